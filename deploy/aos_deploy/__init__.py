@@ -1,0 +1,1 @@
+"""The command line, the deploy file, and the supervisor that brings the system up and down."""

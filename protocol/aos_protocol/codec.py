@@ -1,0 +1,91 @@
+"""Bytes to messages and back: msgpack in an envelope, with a size limit and a version check.
+
+Every failure to decode is a BusError with code AOS602 (malformed), AOS603 (another protocol version) and
+names the field; nothing else escapes, whatever the bytes are.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any, TypeVar
+
+import msgspec
+
+from aos_protocol.errors import AosError, BusError, error_from_code
+from aos_protocol.messages import Envelope, Fault, Message
+
+__all__ = [
+    "MAX_BYTES",
+    "PROTOCOL_VERSION",
+    "decode",
+    "decode_fault",
+    "encode",
+    "encode_fault",
+    "open_envelope",
+]
+
+PROTOCOL_VERSION = "1.0"
+MAX_BYTES = 16 * 1024 * 1024
+
+M = TypeVar("M", bound=Message)
+
+_encoder = msgspec.msgpack.Encoder()
+
+
+def encode(message: Message, *, sender: str, stamp_ns: int) -> bytes:
+    """The payload for the bus; BusError AOS602 if it is larger than MAX_BYTES."""
+    body = msgspec.Raw(_encoder.encode(message))
+    payload = _encoder.encode(Envelope(PROTOCOL_VERSION, stamp_ns, sender, body))
+    if len(payload) > MAX_BYTES:
+        raise BusError(
+            f"a {type(message).__name__} of {len(payload)} bytes is too large for the bus",
+            code="AOS602",
+            hint=f"The limit is {MAX_BYTES} bytes",
+        )
+    return payload
+
+
+def open_envelope(payload: bytes) -> Envelope:
+    """The envelope, its body still encoded."""
+    if len(payload) > MAX_BYTES:
+        raise BusError(f"a message of {len(payload)} bytes is too large", code="AOS602")
+    envelope = _checked_decode(payload, Envelope)
+    if envelope.version.split(".")[0] != PROTOCOL_VERSION.split(".")[0]:
+        raise BusError(
+            f"{envelope.sender} speaks protocol {envelope.version}, this is {PROTOCOL_VERSION}",
+            code="AOS603",
+            hint="Install the same AOS version on both sides",
+        )
+    return envelope
+
+
+def decode(payload: bytes, kind: type[M]) -> M:
+    """The message inside a payload."""
+    return _checked_decode(open_envelope(payload).body, kind)
+
+
+def encode_fault(error: AosError, *, sender: str, stamp_ns: int) -> bytes:
+    """An error reply."""
+    fault = Fault(error.code, error.message, error.hint, error.diagnostics)
+    return encode(fault, sender=sender, stamp_ns=stamp_ns)
+
+
+def decode_fault(payload: bytes) -> AosError:
+    """The exception that an error reply stands for."""
+    fault = decode(payload, Fault)
+    return error_from_code(
+        fault.code, fault.message, hint=fault.hint, diagnostics=fault.diagnostics
+    )
+
+
+@cache
+def _decoder(kind: type[Any]) -> msgspec.msgpack.Decoder[Any]:
+    return msgspec.msgpack.Decoder(kind)
+
+
+def _checked_decode(payload: bytes | msgspec.Raw, kind: type[M]) -> M:
+    try:
+        message: M = _decoder(kind).decode(payload)
+    except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
+        raise BusError(f"not a {kind.__name__}: {error}", code="AOS602") from error
+    return message

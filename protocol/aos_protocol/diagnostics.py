@@ -1,0 +1,69 @@
+"""What is said about a user's document: where, which code, what, and what to do.
+
+A diagnostic is collected, never raised: one run over a bundle reports all of them. Machine faults are
+exceptions and live in `errors`.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import msgspec
+
+__all__ = ["Diagnostic", "Severity", "Span", "has_errors", "render"]
+
+
+class Severity(StrEnum):
+    """How bad it is: an error keeps a bundle out of the catalogue, a warning does not."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    REMARK = "remark"
+
+
+class Span(msgspec.Struct, frozen=True, order=True):
+    """A place in a document. `file` is relative to the bundle; line and column count from 1, 0 is unknown."""
+
+    file: str
+    line: int = 0
+    column: int = 0
+
+    def __str__(self) -> str:
+        parts = [self.file, *(str(n) for n in (self.line, self.column) if n)]
+        return ":".join(parts)
+
+
+class Diagnostic(msgspec.Struct, frozen=True):
+    """One finding. `code` is `AOS` and three digits, see `errors`; `hint` says what to do about it."""
+
+    severity: Severity
+    code: str
+    message: str
+    span: Span
+    hint: str = ""
+    excerpt: str = ""
+
+    @property
+    def is_error(self) -> bool:
+        return self.severity is Severity.ERROR
+
+
+def has_errors(diagnostics: tuple[Diagnostic, ...] | list[Diagnostic]) -> bool:
+    """Whether any of them is an error."""
+    return any(diagnostic.is_error for diagnostic in diagnostics)
+
+
+def render(diagnostic: Diagnostic) -> str:
+    """The text form: `file:line:col: error[AOS123]: what. hint`, then the source line and a caret."""
+    head = f"{diagnostic.span}: {diagnostic.severity}[{diagnostic.code}]: {diagnostic.message}"
+    if diagnostic.hint:
+        head = f"{head.rstrip('.')}. {diagnostic.hint}"
+    if not diagnostic.excerpt:
+        return head
+    number = str(diagnostic.span.line)
+    lines = [head, f"  {number} | {diagnostic.excerpt}"]
+    if diagnostic.span.column:
+        before = diagnostic.excerpt[: diagnostic.span.column - 1]
+        padding = "".join("\t" if character == "\t" else " " for character in before)
+        lines.append(f"  {' ' * len(number)} | {padding}^")
+    return "\n".join(lines)

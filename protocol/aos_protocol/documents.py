@@ -1,0 +1,346 @@
+"""The documents as typed data: one model for every dialect.
+
+Written by the registry's readers, sent over the bus, read by the solver's lowering and the middleware's
+emission. Nothing here is interpreted: code stays text, in `Snippet`, with the place every line came from.
+Names follow the field (skill, response, local variable); the documents' own spellings stay in the readers.
+
+Source: the paper, sections 3.2.1 and 3.2.2; the AOS documentation manual, versions 1.2 and 2.0.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import msgspec
+
+from aos_protocol.diagnostics import Span
+
+__all__ = [
+    "AbstractionMapping",
+    "Activation",
+    "ActivationField",
+    "Assignment",
+    "CompoundType",
+    "EnumType",
+    "Environment",
+    "Field",
+    "Import",
+    "Iteration",
+    "LocalSource",
+    "LocalVariable",
+    "LowLevelConstant",
+    "LowLevelDocument",
+    "LowLevelType",
+    "Parameter",
+    "Project",
+    "ResponseRule",
+    "Skill",
+    "SkillModel",
+    "Snippet",
+    "SpecialState",
+    "StateVariable",
+    "TemporaryVariable",
+]
+
+
+class Snippet(msgspec.Struct, frozen=True):
+    """Code from a document, verbatim.
+
+    `origins[i]` is the place in the document where line `i` of `code` starts, so that a compiler's or an
+    interpreter's complaint comes back to the document whatever the dialect did to the text.
+    """
+
+    code: str
+    origins: tuple[Span, ...]
+
+    @property
+    def span(self) -> Span:
+        """Where the snippet starts."""
+        return self.origins[0]
+
+    def locate(self, line: int, column: int = 1) -> Span:
+        """The document place of a line and column of `code`, both from 1; clamped to the snippet."""
+        index = min(max(line, 1), len(self.origins)) - 1
+        origin = self.origins[index]
+        return Span(origin.file, origin.line, origin.column + max(column, 1) - 1)
+
+
+# --- state ---------------------------------------------------------------------------------------------
+
+
+class EnumType(msgspec.Struct, frozen=True):
+    """An enumerated type; its values are numbered from 0 and share one namespace with all other enums."""
+
+    name: str
+    values: tuple[str, ...]
+    span: Span
+
+
+class Field(msgspec.Struct, frozen=True):
+    """A field of a compound type. `default` is an expression; `low_level_type` belongs to `anyValue`."""
+
+    name: str
+    type: str
+    span: Span
+    default: Snippet | None = None
+    low_level_type: str | None = None
+
+
+class CompoundType(msgspec.Struct, frozen=True):
+    """A structure of primitive, enum or compound fields."""
+
+    name: str
+    fields: tuple[Field, ...]
+    span: Span
+
+
+class StateVariable(msgspec.Struct, frozen=True):
+    """A state variable, or a value that skills may take as a parameter (`is_parameter_value`).
+
+    `default_value` is an expression, `default_code` statements over `state.`; at most one is given.
+    `key_types` makes it a map from tuples of enum names or integer ranges to `type`.
+    """
+
+    name: str
+    type: str
+    span: Span
+    is_array: bool = False
+    is_parameter_value: bool = False
+    default_value: Snippet | None = None
+    default_code: Snippet | None = None
+    key_types: tuple[str, ...] = ()
+    low_level_type: str | None = None
+
+
+# --- code blocks ---------------------------------------------------------------------------------------
+
+
+class TemporaryVariable(msgspec.Struct, frozen=True):
+    """A variable of a code block. For an enum, `enum_name` and `enum_values` declare its type on the spot."""
+
+    name: str
+    type: str
+    span: Span
+    enum_name: str = ""
+    enum_values: tuple[str, ...] = ()
+
+
+class Iteration(msgspec.Struct, frozen=True):
+    """A loop over all state variables of compound type `type`: `body` runs where `condition` holds."""
+
+    type: str
+    item: str
+    span: Span
+    condition: Snippet | None = None
+    body: Snippet | None = None
+
+
+class Assignment(msgspec.Struct, frozen=True):
+    """One block of model code. Order of effect: the temporary variable, the loops, then `code`.
+
+    The loops of one tuple are nested; `over_previous` runs over `state`, `over_next` over the copy that the
+    block writes.
+    """
+
+    span: Span
+    name: str = ""
+    temporary: TemporaryVariable | None = None
+    over_previous: tuple[Iteration, ...] = ()
+    over_next: tuple[Iteration, ...] = ()
+    code: Snippet | None = None
+
+
+class SpecialState(msgspec.Struct, frozen=True):
+    """A reward or a goal. Form A: `condition`, `reward` and the flags. Form B: `code`, which sets
+    `__reward`, `__isGoalState` and `__stopEvaluatingState`.
+    """
+
+    span: Span
+    condition: Snippet | None = None
+    reward: float = 0.0
+    is_goal: bool = False
+    is_one_time: bool = False
+    code: tuple[Assignment, ...] = ()
+
+
+class Environment(msgspec.Struct, frozen=True):
+    """The robot's one environment document: state, initial belief, extrinsic changes, rewards."""
+
+    project: str
+    span: Span
+    horizon: int
+    discount: float
+    enums: tuple[EnumType, ...] = ()
+    compounds: tuple[CompoundType, ...] = ()
+    variables: tuple[StateVariable, ...] = ()
+    initial_belief: tuple[Assignment, ...] = ()
+    special_states: tuple[SpecialState, ...] = ()
+    extrinsic_changes: tuple[Assignment, ...] = ()
+    state_heuristic: tuple[Assignment, ...] = ()
+    print_state: tuple[Assignment, ...] = ()
+    is_one_state_model: bool = False
+
+
+# --- skills --------------------------------------------------------------------------------------------
+
+
+class Parameter(msgspec.Struct, frozen=True):
+    """A skill parameter."""
+
+    name: str
+    type: str
+    span: Span
+
+
+class SkillModel(msgspec.Struct, frozen=True):
+    """A skill document (SD): how the skill changes the world, what it costs, what it reports."""
+
+    project: str
+    name: str
+    span: Span
+    parameters: tuple[Parameter, ...] = ()
+    possible_parameters: tuple[Assignment, ...] = ()
+    precondition: tuple[Assignment, ...] = ()
+    rollout_policy: tuple[Assignment, ...] = ()
+    violation_penalty: float = 0.0
+    execution_time: tuple[Assignment, ...] = ()
+    dynamic_model: tuple[Assignment, ...] = ()
+    state_given_observation: tuple[Assignment, ...] = ()
+
+
+class Import(msgspec.Struct, frozen=True):
+    """`from module import names`, or `import names` where `module` is empty."""
+
+    module: str
+    names: tuple[str, ...]
+    span: Span
+
+
+class ResponseRule(msgspec.Struct, frozen=True):
+    """Gives `response` when `condition`, a Python expression over local variables, holds. First match wins."""
+
+    response: str
+    condition: Snippet | None
+    span: Span
+
+
+class LocalSource(StrEnum):
+    """Where a local variable's value comes from."""
+
+    PARAMETER = "parameter"
+    SERVICE_RESPONSE = "service_response"
+    TOPIC = "topic"
+
+
+class LocalVariable(msgspec.Struct, frozen=True):
+    """A value the rules and the activation can use.
+
+    PARAMETER: `parameter_path` is `parameter` or `parameter.field`. SERVICE_RESPONSE: `code` assigns the
+    variable from `__input`. TOPIC: `code` is a function body over `__input` that returns the new value;
+    `initial_value` is a Python expression, evaluated anew for each activation.
+    """
+
+    name: str
+    source: LocalSource
+    span: Span
+    type: str = ""
+    parameter_path: str = ""
+    topic: str = ""
+    message_type: str = ""
+    initial_value: Snippet | None = None
+    code: Snippet | None = None
+    imports: tuple[Import, ...] = ()
+    is_heavy: bool = False
+
+
+class ActivationField(msgspec.Struct, frozen=True):
+    """One field of the request: its value is a Python expression over local variables."""
+
+    name: str
+    value: Snippet
+
+
+class Activation(msgspec.Struct, frozen=True):
+    """How to run the skill: the kind (`ros_service`, or our `skill`), the path, the request's fields."""
+
+    kind: str
+    path: str
+    span: Span
+    service_type: str = ""
+    fields: tuple[ActivationField, ...] = ()
+    imports: tuple[Import, ...] = ()
+    max_duration_s: float | None = None
+
+
+class AbstractionMapping(msgspec.Struct, frozen=True):
+    """An abstraction mapping (AM): from parameters to the call, and from what happened to the observation.
+
+    With `response_variable` the observation is the text of that local variable and the rules do not count.
+    """
+
+    project: str
+    name: str
+    span: Span
+    activation: Activation
+    rules: tuple[ResponseRule, ...] = ()
+    response_variable: str = ""
+    local_variables: tuple[LocalVariable, ...] = ()
+
+
+class Skill(msgspec.Struct, frozen=True):
+    """A skill's two documents; the registry lets no skill pass with only one."""
+
+    model: SkillModel
+    mapping: AbstractionMapping
+
+    @property
+    def name(self) -> str:
+        return self.model.name
+
+
+# --- low-level values ----------------------------------------------------------------------------------
+
+
+class LowLevelType(msgspec.Struct, frozen=True):
+    """A Python-side structure for `anyValue` parameters."""
+
+    name: str
+    fields: tuple[Parameter, ...]
+    span: Span
+
+
+class LowLevelConstant(msgspec.Struct, frozen=True):
+    """A Python-side value that an `anyValue` field may hold; in model code the name stands for `true`."""
+
+    name: str
+    type: str
+    code: Snippet
+    span: Span
+
+
+class LowLevelDocument(msgspec.Struct, frozen=True):
+    """The environment's Python side (AOS 1.x `EnvironmentGlue`)."""
+
+    project: str
+    span: Span
+    types: tuple[LowLevelType, ...] = ()
+    constants: tuple[LowLevelConstant, ...] = ()
+
+
+class Project(msgspec.Struct, frozen=True):
+    """Everything about one robot and task: what the registry publishes and the generators read.
+
+    Skills are sorted by name, so that grounded actions have the same numbers whatever the file names are.
+    """
+
+    name: str
+    environment: Environment
+    skills: tuple[Skill, ...]
+    low_level: LowLevelDocument | None = None
+
+    def skill(self, name: str) -> Skill:
+        """The skill of that name; KeyError if there is none."""
+        for skill in self.skills:
+            if skill.name == name:
+                return skill
+        raise KeyError(name)

@@ -1,0 +1,175 @@
+"""The errors that cross the bus, and the table of codes.
+
+The number crosses the bus, the class stays local:
+
+    AosError
+      DocumentError   AOS1xx  a document cannot be read, or documents contradict each other
+      ModelError      AOS2xx  model code does not compile, crashes, hangs
+      PlanningError   AOS3xx  no decision, impossible observation
+      MappingError    AOS4xx  an abstraction mapping raised, or no rule matched
+      SkillError      AOS5xx  a skill is unknown, refused, timed out, lost
+      BusError        AOS6xx  no answer, late answer, malformed message
+      StorageError    AOS7xx  journal or catalogue
+      DeployError     AOS8xx  deploy file, start-up, supervision
+
+A user's mistakes are collected as diagnostics; an AosError may carry them.
+"""
+
+from __future__ import annotations
+
+from aos_protocol.diagnostics import Diagnostic
+
+__all__ = [
+    "CODES",
+    "AosError",
+    "BusError",
+    "DeployError",
+    "DocumentError",
+    "MappingError",
+    "ModelError",
+    "PlanningError",
+    "SkillError",
+    "StorageError",
+    "error_from_code",
+]
+
+CODES: dict[str, str] = {
+    "AOS101": "the file cannot be read",
+    "AOS102": "unknown key or section",
+    "AOS103": "the same key twice",
+    "AOS104": "the file is not well-formed",
+    "AOS105": "a required key or section is missing",
+    "AOS106": "a value has the wrong type",
+    "AOS107": "this file is not an AOS document",
+    "AOS108": "the snippet cannot be placed in a function",
+    "AOS110": "unknown name",
+    "AOS111": "two documents of one name",
+    "AOS112": "the new documents do not fit the running mission",
+    "AOS113": "documents of different projects",
+    "AOS114": "a skill has no abstraction mapping, or a mapping no skill",
+    "AOS115": "no environment document",
+    "AOS116": "a response that the abstraction mapping never gives",
+    "AOS117": "a response that the skill document never produces",
+    "AOS118": "a rule that can never fire",
+    "AOS119": "a skill without grounded actions",
+    "AOS120": "the bundle is refused",
+    "AOS121": "the abstraction mapping's Python is not valid",
+    "AOS122": "weights are wrong",
+    "AOS123": "the wrong copy of the state is written or read",
+    "AOS124": "a construct that is not supported yet",
+    "AOS125": "a repeated section, the last one counts",
+    "AOS201": "the model's C++ does not compile",
+    "AOS202": "the compiler hit a limit",
+    "AOS203": "no C++ compiler",
+    "AOS210": "model code crashed",
+    "AOS211": "model code did not finish",
+    "AOS213": "the engine ended unexpectedly",
+    "AOS214": "a reward that is not a number",
+    "AOS215": "a model fault: an index, a weight list or a container limit",
+    "AOS220": "exact evaluation is not tractable",
+    "AOS301": "no decision in time",
+    "AOS302": "every state of the belief is terminal",
+    "AOS310": "an observation that the model holds impossible",
+    "AOS401": "abstraction mapping code raised",
+    "AOS402": "no response rule matched",
+    "AOS403": "abstraction mapping code did not finish",
+    "AOS501": "unknown skill",
+    "AOS502": "the adapter refused the call",
+    "AOS503": "the skill did not answer in time",
+    "AOS504": "the outcome of the activation is unknown",
+    "AOS505": "no adapter answers",
+    "AOS506": "a stale mission epoch",
+    "AOS601": "no answer in time",
+    "AOS602": "a malformed message",
+    "AOS603": "another protocol version",
+    "AOS604": "nobody answers this key",
+    "AOS605": "the bus cannot be reached",
+    "AOS606": "the handler failed",
+    "AOS701": "the journal cannot be written",
+    "AOS702": "the journal cannot be read",
+    "AOS801": "the deploy file is not valid",
+    "AOS802": "a service did not start",
+    "AOS803": "a second instance on this bus",
+    "AOS804": "a service ended unexpectedly",
+    "AOS805": "something this machine lacks",
+}
+"""Every code with its meaning; docs/errors.md is made from this table."""
+
+
+class AosError(Exception):
+    """A fault with a code, what happened, and what to do.
+
+    `str(error)` reads `AOS601: what. hint`; diagnostics, when there are any, are for the caller to print.
+    """
+
+    code = "AOS606"
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        code: str | None = None,
+        hint: str = "",
+        diagnostics: tuple[Diagnostic, ...] = (),
+    ) -> None:
+        super().__init__(message)
+        self.code = code or type(self).code
+        self.message = message
+        self.hint = hint
+        self.diagnostics = diagnostics
+
+    def __str__(self) -> str:
+        text = f"{self.code}: {self.message}"
+        return f"{text.rstrip('.')}. {self.hint}" if self.hint else text
+
+
+class DocumentError(AosError):
+    code = "AOS104"
+
+
+class ModelError(AosError):
+    code = "AOS201"
+
+
+class PlanningError(AosError):
+    code = "AOS301"
+
+
+class MappingError(AosError):
+    code = "AOS401"
+
+
+class SkillError(AosError):
+    code = "AOS502"
+
+
+class BusError(AosError):
+    code = "AOS601"
+
+
+class StorageError(AosError):
+    code = "AOS701"
+
+
+class DeployError(AosError):
+    code = "AOS801"
+
+
+_BY_HUNDRED: dict[str, type[AosError]] = {
+    "1": DocumentError,
+    "2": ModelError,
+    "3": PlanningError,
+    "4": MappingError,
+    "5": SkillError,
+    "6": BusError,
+    "7": StorageError,
+    "8": DeployError,
+}
+
+
+def error_from_code(
+    code: str, message: str, *, hint: str = "", diagnostics: tuple[Diagnostic, ...] = ()
+) -> AosError:
+    """The local exception for a code that came over the bus."""
+    kind = _BY_HUNDRED.get(code[3:4], AosError)
+    return kind(message, code=code, hint=hint, diagnostics=diagnostics)

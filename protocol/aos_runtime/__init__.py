@@ -1,0 +1,1 @@
+"""What every process needs: bus, journal, lifecycle, clock, child processes."""

@@ -1,0 +1,1 @@
+"""Reads bundles, checks them, keeps them in a catalogue and publishes them."""

@@ -1,0 +1,1 @@
+"""Adapters: what turns an activation into motion."""

@@ -1,0 +1,1 @@
+"""Documents to C++ to decisions: lowering, emission, build, engine child, mission loop."""
