@@ -1,0 +1,36 @@
+"""Fixtures that every kind of test may use."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The checkout."""
+    return ROOT
+
+
+@pytest.fixture(scope="session")
+def bundles() -> Path:
+    """Our own document bundles."""
+    return ROOT / "deploy" / "bundles"
+
+
+@pytest.fixture(scope="session")
+def corpus() -> Path:
+    """The original AOS bundles, third-party data beside the checkout; tests skip where it is absent."""
+    folder = ROOT.parent / "shared" / "corpus"
+    if not folder.is_dir():
+        pytest.skip("needs the original AOS bundles in ../shared/corpus, which are not part of this project")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def cache_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Compiled models, shared by all tests of one run."""
+    return tmp_path_factory.mktemp("cache")
