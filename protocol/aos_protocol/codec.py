@@ -73,9 +73,7 @@ def encode_fault(error: AosError, *, sender: str, stamp_ns: int) -> bytes:
 def decode_fault(payload: bytes) -> AosError:
     """The exception that an error reply stands for."""
     fault = decode(payload, Fault)
-    return error_from_code(
-        fault.code, fault.message, hint=fault.hint, diagnostics=fault.diagnostics
-    )
+    return error_from_code(fault.code, fault.message, hint=fault.hint, diagnostics=fault.diagnostics)
 
 
 @cache

@@ -11,6 +11,7 @@
     aos/<robot>/call/<path>             query: the adapter runs a skill's code      SkillCall -> SkillResult
     aos/<robot>/skill/cancel            query: stop whatever moves                  Cancel -> Cancelled
     aos/<robot>/topic/<path>            stream: raw data of the robot               TopicMessage
+    aos/<robot>/model/check             query: can the solver use these documents   CheckModel -> ModelCheck
     aos/<robot>/mission/start           query: start the mission                    StartMission -> MissionState
     aos/<robot>/mission/state           stream and query: where the mission is      MissionState
     aos/<robot>/decision/record         stream: decisions and their outcomes        DecisionRecord
@@ -86,6 +87,10 @@ class Keys:
 
     def topic(self, path: str) -> str:
         return f"{self._root}/topic/{_path(path)}"
+
+    @property
+    def check_model(self) -> str:
+        return f"{self._root}/model/check"
 
     @property
     def start_mission(self) -> str:

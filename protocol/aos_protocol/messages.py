@@ -24,6 +24,7 @@ __all__ = [
     "Catalogue",
     "CatalogueEntry",
     "CatalogueQuery",
+    "CheckModel",
     "DecisionRecord",
     "Envelope",
     "Fault",
@@ -33,6 +34,7 @@ __all__ = [
     "MappingState",
     "Marginal",
     "MissionState",
+    "ModelCheck",
     "Outcome",
     "PredictedObservation",
     "ProjectQuery",
@@ -126,6 +128,18 @@ class Catalogue(Message, frozen=True):
 # --- mission -------------------------------------------------------------------------------------------
 
 
+class CheckModel(Message, frozen=True):
+    """The registry's question before it accepts documents: can the solver use them, now?"""
+
+    project: Project
+
+
+class ModelCheck(Message, frozen=True):
+    """The solver's answer: compile errors, or that the running mission cannot carry its belief over."""
+
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
 class StartMission(Message, frozen=True):
     """Starts the mission that the solver was configured for. A second start changes nothing."""
 
@@ -165,7 +179,6 @@ class MissionState(Message, frozen=True):
     ending: str = ""
     remark: str = ""
     revision: int = 0
-    total_reward: float = 0.0
 
 
 class ActivationId(Message, frozen=True):
