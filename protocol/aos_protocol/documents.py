@@ -217,7 +217,7 @@ class Import(msgspec.Struct, frozen=True):
 
 
 class ResponseRule(msgspec.Struct, frozen=True):
-    """Gives `response` when `condition`, a Python expression over local variables, holds. First match wins."""
+    """Gives `response` when `condition`, a Python expression over local variables, holds; the first wins."""
 
     response: str
     condition: Snippet | None

@@ -1,21 +1,21 @@
 """Every key expression on the bus; the only file that spells one.
 
-    aos/<robot>/live/<service>          liveliness token: the service is ready
-    aos/<robot>/bundle/push             query: a bundle for the registry            PushBundle -> BundleReport
-    aos/<robot>/bundle/project          query: the current documents of a project   ProjectQuery -> ProjectRevision
-    aos/<robot>/bundle/list             query: what the catalogue holds             CatalogueQuery -> Catalogue
-    aos/<robot>/bundle/announced        stream: a new project revision              ProjectRevision
-    aos/<robot>/bundle/report           stream: what became of a dropped bundle     BundleReport
-    aos/<robot>/activate/<skill>        query: run a grounded action                Activate -> Outcome
-    aos/<robot>/middleware/ready        query: which skills are generated           MappingQuery -> MappingState
-    aos/<robot>/call/<path>             query: the adapter runs a skill's code      SkillCall -> SkillResult
-    aos/<robot>/skill/cancel            query: stop whatever moves                  Cancel -> Cancelled
-    aos/<robot>/topic/<path>            stream: raw data of the robot               TopicMessage
-    aos/<robot>/model/check             query: can the solver use these documents   CheckModel -> ModelCheck
-    aos/<robot>/mission/start           query: start the mission                    StartMission -> MissionState
-    aos/<robot>/mission/state           stream and query: where the mission is      MissionState
-    aos/<robot>/decision/record         stream: decisions and their outcomes        DecisionRecord
-    aos/<robot>/decision/history        query: the records from a sequence number   HistoryQuery -> History
+    aos/<robot>/live/<service>      token   the service is ready
+    aos/<robot>/bundle/push         query   a bundle for the registry              PushBundle -> BundleReport
+    aos/<robot>/bundle/project      query   the documents of a project        ProjectQuery -> ProjectRevision
+    aos/<robot>/bundle/list         query   what the catalogue holds              CatalogueQuery -> Catalogue
+    aos/<robot>/bundle/announced    stream  a new project revision                            ProjectRevision
+    aos/<robot>/bundle/report       stream  what became of a dropped bundle                      BundleReport
+    aos/<robot>/activate/<skill>    query   run a grounded action                         Activate -> Outcome
+    aos/<robot>/middleware/ready    query   which skills are generated           MappingQuery -> MappingState
+    aos/<robot>/call/<path>         query   the adapter runs a skill's code          SkillCall -> SkillResult
+    aos/<robot>/skill/cancel        query   stop whatever moves                           Cancel -> Cancelled
+    aos/<robot>/topic/<path>        stream  raw data of the robot                                TopicMessage
+    aos/<robot>/model/check         query   can the solver use these documents       CheckModel -> ModelCheck
+    aos/<robot>/mission/start       query   start the mission                    StartMission -> MissionState
+    aos/<robot>/mission/state       stream and query: where the mission is                       MissionState
+    aos/<robot>/decision/record     stream  decisions and their outcomes                       DecisionRecord
+    aos/<robot>/decision/history    query   the records from a sequence number        HistoryQuery -> History
 
 Names are checked where they enter, so that no wildcard can: robot, service and skill names are identifiers,
 paths are what a ROS name may be.
