@@ -1,0 +1,60 @@
+"""When a mission is over, and how it ended: the rules that the mission loop and `aos simulate` share."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import msgspec
+
+from aos_protocol.messages import ActionValue, BeliefSummary
+
+__all__ = ["Ending", "MissionLimits", "ending_after_planning", "ending_of_belief"]
+
+
+class Ending(StrEnum):
+    """How a mission ends; `FAULT` and `CANCELLED` come from outside the belief."""
+
+    GOAL = "goal"
+    FAILURE = "failure"
+    NOTHING_WORTHWHILE = "nothing_worthwhile"
+    STEP_LIMIT = "step_limit"
+    CANCELLED = "cancelled"
+    FAULT = "fault"
+
+
+class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
+    """What ends a mission: `goal_probability` holds for the goal and for the other endings alike.
+
+    `stop_below_value` is an expected return: when even the best action promises less, the robot does better
+    by doing nothing, which is worth 0. None never stops for that reason.
+    """
+
+    goal_probability: float = 0.9
+    step_limit: int = 30
+    stop_below_value: float | None = None
+
+
+def ending_of_belief(belief: BeliefSummary, steps_taken: int, limits: MissionLimits) -> Ending | None:
+    """The ending that a belief calls for after so many steps; None while there is something left to do.
+
+    A mission that is surely over, but not surely by its goal, counts as a failure.
+    """
+    if belief.goal_probability >= limits.goal_probability:
+        return Ending.GOAL
+    if belief.goal_probability + belief.failure_probability >= limits.goal_probability:
+        return Ending.FAILURE
+    if steps_taken >= limits.step_limit:
+        return Ending.STEP_LIMIT
+    return None
+
+
+def ending_after_planning(best: ActionValue, limits: MissionLimits) -> Ending | None:
+    """The ending that the search's best action calls for.
+
+    Twice the standard error is given as the benefit of the doubt.
+    """
+    if limits.stop_below_value is None:
+        return None
+    if best.q + 2 * best.stderr < limits.stop_below_value:
+        return Ending.NOTHING_WORTHWHILE
+    return None

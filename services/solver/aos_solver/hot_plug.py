@@ -1,0 +1,150 @@
+"""Models in the making: from a project revision to a running engine, while a mission goes on.
+
+A revision is built and started in the background. At a decision boundary the mission takes the newest
+model that is ready on both sides, here and in the middleware, and the belief moves over. That works
+between models with the same state layout; others are refused before they are stored (AOS112).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity, has_errors
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError, ModelError
+from aos_protocol.messages import ProjectRevision
+from aos_solver.build import BuiltModel, build
+from aos_solver.emit import emit
+from aos_solver.engine import Engine
+from aos_solver.lower import lower
+
+__all__ = ["ModelShelf", "RunningModel", "build_project"]
+
+log = logging.getLogger(__name__)
+
+
+class RunningModel(msgspec.Struct, frozen=True):
+    """A compiled model with its engine child."""
+
+    revision: int
+    built: BuiltModel
+    engine: Engine
+
+    @property
+    def digest(self) -> str:
+        return self.built.emitted.digest
+
+
+async def build_project(project: Project, cache_dir: Path, on_progress: Callable[[str], None]) -> BuiltModel:
+    """Lower, emit and compile; ModelError with all diagnostics if the documents have mistakes."""
+    program, diagnostics = lower(project)
+    if program is None or has_errors(diagnostics):
+        raise ModelError(
+            f"the documents of {project.name} have mistakes",
+            hint="Mend the places named above",
+            diagnostics=tuple(diagnostics),
+        )
+    return await build(emit(program), cache_dir=cache_dir, on_progress=on_progress)
+
+
+class ModelShelf:
+    """Holds the newest model that is ready to run, at most one besides the mission's own."""
+
+    def __init__(
+        self,
+        cache_dir: Path,
+        on_progress: Callable[[str], None],
+        start_engine: Callable[[BuiltModel], Awaitable[Engine]],
+        mapping_revision: Callable[[], Awaitable[int]],
+    ) -> None:
+        self._cache_dir = cache_dir
+        self._on_progress = on_progress
+        self._start_engine = start_engine
+        self._mapping_revision = mapping_revision
+        self._ready: RunningModel | None = None
+        self._fault: AosError | None = None
+        self._changed = asyncio.Condition()
+        self._newest_revision = 0
+        self._building = asyncio.Lock()
+
+    async def make(self, revision: ProjectRevision) -> None:
+        """Build a revision and start its engine; a fault is kept for `first` and changes nothing else."""
+        if revision.revision <= self._newest_revision:
+            return
+        self._newest_revision = revision.revision
+        async with self._building:
+            if revision.revision == self._newest_revision:
+                await self._make(revision)
+
+    async def _make(self, revision: ProjectRevision) -> None:
+        try:
+            built = await build_project(revision.project, self._cache_dir, self._on_progress)
+            model = RunningModel(revision.revision, built, await self._start_engine(built))
+        except AosError as error:
+            log.warning("revision %d is not used: %s", revision.revision, error)
+            async with self._changed:
+                self._fault = error
+                self._changed.notify_all()
+            return
+        async with self._changed:
+            outdated, self._ready, self._fault = self._ready, model, None
+            self._changed.notify_all()
+        if outdated is not None:
+            await outdated.engine.close()
+
+    async def first(self) -> RunningModel:
+        """The first model that runs; raises what kept it from running."""
+        async with self._changed:
+            await self._changed.wait_for(lambda: self._ready is not None or self._fault is not None)
+            if self._ready is None:
+                assert self._fault is not None
+                raise self._fault
+            model, self._ready = self._ready, None
+            return model
+
+    async def newest(self, running: RunningModel) -> RunningModel:
+        """The running model, or its successor with the belief carried over and the old engine closed."""
+        candidate = self._ready
+        if candidate is None or await self._mapping_revision() < candidate.revision:
+            return running
+        if candidate.built.emitted.state_digest != running.built.emitted.state_digest:
+            log.warning("revision %d changes the state and waits for a new mission", candidate.revision)
+            return running
+        self._ready = None
+        await candidate.engine.import_belief(await running.engine.export_belief())
+        await running.engine.close()
+        log.info("revision %d takes over from revision %d", candidate.revision, running.revision)
+        return candidate
+
+    async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
+        """What keeps these documents from being used now: compile errors, or another state layout."""
+        try:
+            built = await build_project(project, self._cache_dir, self._on_progress)
+        except AosError as error:
+            if error.diagnostics:
+                return error.diagnostics
+            span = project.environment.span
+            return (Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),)
+        if running is not None and built.emitted.state_digest != running.built.emitted.state_digest:
+            return (_state_changed(project),)
+        return ()
+
+    async def close(self) -> None:
+        if self._ready is not None:
+            await self._ready.engine.close()
+            self._ready = None
+
+
+def _state_changed(project: Project) -> Diagnostic:
+    return Diagnostic(
+        Severity.ERROR,
+        "AOS112",
+        "the state variables differ from the running mission's, whose belief cannot be carried over",
+        project.environment.span,
+        "Keep the state variables as they are, or end the mission and start it with the new documents",
+    )

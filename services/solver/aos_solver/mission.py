@@ -1,0 +1,246 @@
+"""The mission loop: belief, decision, activation, observation, belief.
+
+Knows the engine, and everything else as ports: where records go, how an activation is run, what time it
+is, which model comes next. Every decision is in the journal before it is on the bus, and the intention to
+move before anything moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import msgspec
+from aos_runtime.clock import Clock
+
+from aos_protocol.errors import AosError
+from aos_protocol.messages import (
+    Activate,
+    ActivationId,
+    BeliefSummary,
+    DecisionRecord,
+    Message,
+    MissionState,
+    Outcome,
+)
+from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
+from aos_solver.engine import BeliefUpdate, Plan
+from aos_solver.hot_plug import RunningModel
+
+__all__ = ["Mission", "Ports", "Search"]
+
+MAX_LOST_ACTIVATIONS = 3
+"""Activations in a row without an answer before the mission ends: the robot is not there."""
+
+
+class Search(msgspec.Struct, frozen=True, kw_only=True):
+    """The planning budget of one decision: `time_s` if given, else `simulations`."""
+
+    simulations: int
+    seed: int
+    time_s: float | None = None
+    horizon: int | None = None
+
+
+class Ports(Protocol):
+    """What the loop needs from outside."""
+
+    clock: Clock
+
+    def journal(self, kind: str, payload: Message) -> None:
+        """Write durably; returns once it is on the disk."""
+        ...
+
+    def publish_record(self, record: DecisionRecord) -> None: ...
+
+    def publish_state(self, state: MissionState) -> None: ...
+
+    async def activate(self, request: Activate) -> Outcome:
+        """Run a grounded action; AosError when nobody can be asked or nobody answers."""
+        ...
+
+    async def newest_model(self, running: RunningModel) -> RunningModel:
+        """The model for the next decision, with the running one's belief: the same, or a hot-plugged one."""
+        ...
+
+
+class Mission:
+    """One mission from the initial belief to its ending; `run` is called once."""
+
+    def __init__(
+        self,
+        name: str,
+        epoch: int,
+        model: RunningModel,
+        limits: MissionLimits,
+        search: Search,
+        ports: Ports,
+        *,
+        activation_timeout_s: float,
+    ) -> None:
+        self.state = MissionState(name, "waiting", 0, 0.0, revision=model.revision)
+        self.records: list[DecisionRecord] = []
+        self._epoch = epoch
+        self._model = model
+        self._limits = limits
+        self._search = search
+        self._ports = ports
+        self._activation_timeout_s = activation_timeout_s
+        self._lost_in_a_row = 0
+
+    async def run(self) -> MissionState:
+        """Decide and act until the mission ends; machine faults end it as `fault` with their text."""
+        try:
+            await self._run_until_ended()
+        except AosError as error:
+            self._end(Ending.FAULT, str(error))
+        return self.state
+
+    def cancel(self, reason: str) -> None:
+        """Record that the mission was stopped from outside."""
+        if not self.state.ending:
+            self._end(Ending.CANCELLED, reason)
+
+    async def _run_until_ended(self) -> None:
+        belief = await self._model.engine.summary()
+        steps_taken = 0
+        while not self._ends_with(ending_of_belief(belief, steps_taken, self._limits), belief):
+            self._model = await self._ports.newest_model(self._model)
+            self._move_to("planning", steps_taken, belief)
+            plan = await self._plan(steps_taken + 1)
+            if self._ends_with(ending_after_planning(plan.best, self._limits), belief):
+                return
+            steps_taken += 1
+            decision = self._decide(steps_taken, plan, belief)
+            self._move_to("acting", steps_taken, belief, remark=decision.action)
+            outcome = await self._act(decision)
+            belief = await self._observe(decision, outcome)
+
+    async def _plan(self, step: int) -> Plan:
+        search = self._search
+        return await self._model.engine.plan(
+            simulations=None if search.time_s is not None else search.simulations,
+            time_s=search.time_s,
+            seed=search.seed + step,
+            horizon=search.horizon,
+        )
+
+    def _decide(self, step: int, plan: Plan, belief: BeliefSummary) -> DecisionRecord:
+        chosen = self._model.engine.description.actions[plan.index]
+        record = DecisionRecord(
+            sequence=len(self.records),
+            stamp_ns=self._ports.clock.now_ns(),
+            mission=self.state.mission,
+            epoch=self._epoch,
+            step=step,
+            action=chosen.name,
+            skill=chosen.skill,
+            parameters=chosen.parameters,
+            model_digest=self._model.digest,
+            revision=self._model.revision,
+            seed=self._search.seed + step,
+            simulations=plan.simulations,
+            horizon=plan.horizon,
+            planning_s=plan.seconds,
+            actions=plan.actions,
+            predicted=plan.predicted,
+            belief=belief,
+        )
+        self._publish(record)
+        return record
+
+    async def _act(self, decision: DecisionRecord) -> Outcome:
+        request = Activate(
+            ActivationId(decision.mission, decision.epoch, decision.step),
+            decision.skill,
+            decision.parameters,
+            self._activation_timeout_s,
+        )
+        self._ports.journal("intended", request)
+        outcome = await self._ports.activate(request)
+        self._ports.journal("outcome", outcome)
+        return outcome
+
+    async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> BeliefSummary:
+        update = await self._updated_belief(decision, outcome)
+        record = msgspec.structs.replace(
+            decision,
+            sequence=len(self.records),
+            stamp_ns=self._ports.clock.now_ns(),
+            belief=update.summary,
+            outcome=outcome,
+            surprise=update.surprise,
+            is_impossible=update.is_impossible,
+        )
+        self._publish(record)
+        return update.summary
+
+    async def _updated_belief(self, decision: DecisionRecord, outcome: Outcome) -> BeliefUpdate:
+        """The belief after an outcome. Without an answer it is a mixture of "it ran" and "it did not"."""
+        engine = self._model.engine
+        if outcome.status == "observed":
+            self._lost_in_a_row = 0
+            return await engine.update(decision.action, outcome.response)
+        if outcome.fault is not None and outcome.status == "failed":
+            raise AosError(outcome.fault.message, code=outcome.fault.code, hint=outcome.fault.hint)
+        self._lost_in_a_row += 1
+        if self._lost_in_a_row >= MAX_LOST_ACTIVATIONS:
+            raise AosError(
+                f"{decision.action} and the activations before it brought no answer",
+                code="AOS503",
+                hint="Look at the skill's log, and at its time limit in the deploy file",
+            )
+        return await engine.update_without_observation(decision.action, ran_probability=0.5)
+
+    def _publish(self, record: DecisionRecord) -> None:
+        self._ports.journal("decision", record)
+        self.records.append(record)
+        self._ports.publish_record(record)
+
+    def _ends_with(self, ending: Ending | None, belief: BeliefSummary) -> bool:
+        if ending is None:
+            return False
+        self._end(ending, _REMARKS[ending](belief, self._limits))
+        return True
+
+    def _move_to(self, phase: str, step: int, belief: BeliefSummary, *, remark: str = "") -> None:
+        self._set_state(
+            msgspec.structs.replace(
+                self.state,
+                phase=phase,
+                step=step,
+                goal_probability=belief.goal_probability,
+                remark=remark,
+                revision=self._model.revision,
+            )
+        )
+
+    def _end(self, ending: Ending, remark: str) -> None:
+        goal = self.records[-1].belief.goal_probability if self.records else 0.0
+        self._set_state(
+            msgspec.structs.replace(
+                self.state,
+                phase="ended",
+                ending=ending.value,
+                remark=remark,
+                goal_probability=goal,
+            )
+        )
+
+    def _set_state(self, state: MissionState) -> None:
+        self.state = state
+        self._ports.journal("mission", state)
+        self._ports.publish_state(state)
+
+
+_REMARKS: dict[Ending, Callable[[BeliefSummary, MissionLimits], str]] = {
+    Ending.GOAL: lambda belief, _: f"the goal is reached with probability {belief.goal_probability:.3f}",
+    Ending.FAILURE: lambda belief, _: (
+        "the mission is over without its goal: "
+        f"goal {belief.goal_probability:.3f}, failure {belief.failure_probability:.3f}"
+    ),
+    Ending.NOTHING_WORTHWHILE: lambda _, limits: (
+        f"no action is expected to return more than {limits.stop_below_value}"
+    ),
+    Ending.STEP_LIMIT: lambda _, limits: f"the step limit of {limits.step_limit} is reached",
+}

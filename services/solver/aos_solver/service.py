@@ -1,0 +1,223 @@
+"""The solver service: wires documents, models, the mission and the bus.
+
+Start-up: the service is ready as soon as it can be asked. It takes the project from the registry when it
+is there, builds it, and waits for the start of the mission; from then on newer revisions are built in the
+background. Whoever starts the mission is told about a model that cannot be built.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from pathlib import Path
+
+from aos_runtime.journal import Journal
+from aos_runtime.lifecycle import Service
+
+from aos_protocol.errors import AosError
+from aos_protocol.messages import (
+    Activate,
+    CheckModel,
+    DecisionRecord,
+    History,
+    HistoryQuery,
+    MappingQuery,
+    MappingState,
+    Message,
+    MissionState,
+    ModelCheck,
+    Outcome,
+    ProjectQuery,
+    ProjectRevision,
+    StartMission,
+)
+from aos_solver.build import BuiltModel
+from aos_solver.endings import MissionLimits
+from aos_solver.engine import Engine
+from aos_solver.hot_plug import ModelShelf, RunningModel
+from aos_solver.mission import Mission, Search
+from aos_solver.settings import Settings
+
+__all__ = ["serve"]
+
+log = logging.getLogger(__name__)
+
+ASK_TIMEOUT_S = 5.0
+MAPPING_DEADLINE_S = 20.0
+MAPPING_POLL_S = 0.05
+ACTIVATION_MARGIN_S = 5.0
+"""How much longer than the activation itself its answer may take."""
+
+
+async def serve(service: Service[Settings]) -> None:
+    """Run one mission and stay until stopped, so that its history can be asked for."""
+    solver = _Solver(service)
+    try:
+        await solver.run()
+    finally:
+        await solver.close()
+
+
+class _Solver:
+    """The mission's ports on the real bus and disk, and the queries the service answers."""
+
+    def __init__(self, service: Service[Settings]) -> None:
+        settings = service.settings
+        self.clock = service.clock
+        self._service = service
+        self._bus = service.bus
+        self._keys = service.keys
+        self._settings = settings
+        self._journal = Journal.open(Path(settings.run_dir) / "journal.db")
+        self._shelf = ModelShelf(
+            Path(settings.cache_dir), self._report_progress, self._start_engine, self._mapping_revision
+        )
+        self._name = Path(settings.run_dir).name
+        self._running: RunningModel | None = None
+        self._mission: Mission | None = None
+        self._starting = asyncio.Lock()
+        self._started = asyncio.Event()
+
+    async def run(self) -> None:
+        bus, keys = self._bus, self._keys
+        async with asyncio.TaskGroup() as tasks, bus.listen(keys.announced, ProjectRevision) as announced:
+            await bus.answer(keys.start_mission, StartMission, self._start)
+            await bus.answer(keys.mission_state, StartMission, self._answer_state)
+            await bus.answer(keys.decision_history, HistoryQuery, self._answer_history)
+            await bus.answer(keys.check_model, CheckModel, self._check)
+            await self._service.ready()
+            tasks.create_task(self._make_current())
+            tasks.create_task(self._run_mission())
+            async for _, revision in announced:
+                if revision.project.name == self._settings.project:
+                    tasks.create_task(self._shelf.make(revision))
+
+    async def close(self) -> None:
+        if self._mission is not None:
+            self._mission.cancel("the solver was stopped")
+        await self._shelf.close()
+        if self._running is not None:
+            await self._running.engine.close()
+        self._journal.close()
+
+    # --- answers -------------------------------------------------------------------------------------
+
+    async def _start(self, _: StartMission, __: str) -> MissionState:
+        """Starts the mission once its model runs; tells the caller why if it cannot."""
+        async with self._starting:
+            if self._running is None:
+                self._running = await self._shelf.first()
+        self._started.set()
+        return self._state()
+
+    async def _answer_state(self, _: StartMission, __: str) -> MissionState:
+        return self._state()
+
+    async def _answer_history(self, query: HistoryQuery, _: str) -> History:
+        records = self._mission.records if self._mission else []
+        return History(self._name, tuple(records[max(query.since, 0) :]))
+
+    async def _check(self, question: CheckModel, _: str) -> ModelCheck:
+        return ModelCheck(await self._shelf.check(question.project, self._running))
+
+    def _state(self) -> MissionState:
+        return self._mission.state if self._mission else MissionState(self._name, "waiting", 0, 0.0)
+
+    # --- models --------------------------------------------------------------------------------------
+
+    async def _make_current(self) -> None:
+        """Build what the registry holds already; without it the announcement will come."""
+        try:
+            revision = await self._bus.ask(
+                self._keys.project,
+                ProjectQuery(self._settings.project),
+                ProjectRevision,
+                timeout_s=ASK_TIMEOUT_S,
+            )
+        except AosError as error:
+            log.info("no documents yet: %s", error)
+            return
+        await self._shelf.make(revision)
+
+    async def _start_engine(self, built: BuiltModel) -> Engine:
+        return await Engine.start(
+            built,
+            seed=self._settings.seed,
+            impossible_observation=self._settings.impossible_observation,
+        )
+
+    async def _mapping_revision(self) -> int:
+        state = await self._bus.ask(
+            self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
+        )
+        return state.revision
+
+    def _report_progress(self, remark: str) -> None:
+        log.info("%s", remark)
+        if self._mission is None:
+            self.publish_state(MissionState(self._name, "building", 0, 0.0, remark=remark))
+
+    # --- the mission and its ports -------------------------------------------------------------------
+
+    async def _run_mission(self) -> None:
+        await self._started.wait()
+        assert self._running is not None
+        settings = self._settings
+        self._mission = Mission(
+            self._name,
+            self._next_epoch(),
+            self._running,
+            MissionLimits(
+                goal_probability=settings.goal_probability,
+                step_limit=settings.step_limit,
+                stop_below_value=settings.stop_below_value,
+            ),
+            Search(
+                simulations=settings.simulations,
+                time_s=settings.time_s,
+                seed=settings.seed,
+                horizon=settings.horizon,
+            ),
+            self,
+            activation_timeout_s=settings.activation_timeout_s,
+        )
+        await self._await_mappings(self._running.revision)
+        state = await self._mission.run()
+        log.info("the mission ended: %s, %s", state.ending, state.remark)
+
+    async def _await_mappings(self, revision: int) -> None:
+        """Until the middleware has the mappings of a revision, or the deadline; then activations tell."""
+        deadline_s = self.clock.monotonic_s() + MAPPING_DEADLINE_S
+        while self.clock.monotonic_s() < deadline_s:
+            try:
+                if await self._mapping_revision() >= revision:
+                    return
+            except AosError as error:
+                log.info("the middleware is not there yet: %s", error)
+            await asyncio.sleep(MAPPING_POLL_S)
+
+    def _next_epoch(self) -> int:
+        epoch = 1 + len(self._journal.rows("epoch"))
+        self._journal.append("epoch", StartMission())
+        return epoch
+
+    def journal(self, kind: str, payload: Message) -> None:
+        self._journal.append(kind, payload)
+
+    def publish_record(self, record: DecisionRecord) -> None:
+        self._bus.tell(self._keys.decisions, record)
+
+    def publish_state(self, state: MissionState) -> None:
+        self._bus.tell(self._keys.mission_state, state)
+
+    async def activate(self, request: Activate) -> Outcome:
+        return await self._bus.ask(
+            self._keys.activate(request.skill),
+            request,
+            Outcome,
+            timeout_s=request.deadline_s + ACTIVATION_MARGIN_S,
+        )
+
+    async def newest_model(self, running: RunningModel) -> RunningModel:
+        self._running = await self._shelf.newest(running)
+        return self._running
