@@ -13,6 +13,9 @@ import msgspec
 __all__ = ["Diagnostic", "Severity", "Span", "has_errors", "render"]
 
 
+_EXCERPT_WIDTH = 100
+
+
 class Severity(StrEnum):
     """How bad it is: an error keeps a bundle out of the catalogue, a warning does not."""
 
@@ -61,9 +64,20 @@ def render(diagnostic: Diagnostic) -> str:
     if not diagnostic.excerpt:
         return head
     number = str(diagnostic.span.line)
-    lines = [head, f"  {number} | {diagnostic.excerpt}"]
-    if diagnostic.span.column:
-        before = diagnostic.excerpt[: diagnostic.span.column - 1]
-        padding = "".join("\t" if character == "\t" else " " for character in before)
+    excerpt, column = _window(diagnostic.excerpt, diagnostic.span.column)
+    lines = [head, f"  {number} | {excerpt}"]
+    if column:
+        padding = "".join("\t" if character == "\t" else " " for character in excerpt[: column - 1])
         lines.append(f"  {' ' * len(number)} | {padding}^")
     return "\n".join(lines)
+
+
+def _window(excerpt: str, column: int) -> tuple[str, int]:
+    """The part of a long line around a column, and the column in it."""
+    if len(excerpt) <= _EXCERPT_WIDTH:
+        return excerpt, column
+    start = max(0, min(column - _EXCERPT_WIDTH // 2, len(excerpt) - _EXCERPT_WIDTH))
+    end = start + _EXCERPT_WIDTH
+    before, after = "…" if start else "", "…" if end < len(excerpt) else ""
+    shift = start - len(before)
+    return f"{before}{excerpt[start:end]}{after}", max(0, column - shift)

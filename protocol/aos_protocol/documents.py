@@ -47,11 +47,13 @@ class Snippet(msgspec.Struct, frozen=True):
     """Code from a document, verbatim.
 
     `origins[i]` is the place in the document where line `i` of `code` starts, so that a compiler's or an
-    interpreter's complaint comes back to the document whatever the dialect did to the text.
+    interpreter's complaint comes back to the document whatever the dialect did to the text. `escapes` holds
+    (line, column, width) of each character of `code` that takes `width` > 1 characters of its document.
     """
 
     code: str
     origins: tuple[Span, ...]
+    escapes: tuple[tuple[int, int, int], ...] = ()
 
     @property
     def span(self) -> Span:
@@ -60,9 +62,11 @@ class Snippet(msgspec.Struct, frozen=True):
 
     def locate(self, line: int, column: int = 1) -> Span:
         """The document place of a line and column of `code`, both from 1; clamped to the snippet."""
-        index = min(max(line, 1), len(self.origins)) - 1
-        origin = self.origins[index]
-        return Span(origin.file, origin.line, origin.column + max(column, 1) - 1)
+        line = min(max(line, 1), len(self.origins))
+        column = max(column, 1)
+        origin = self.origins[line - 1]
+        extra = sum(width - 1 for at, before, width in self.escapes if at == line and before < column)
+        return Span(origin.file, origin.line, origin.column + column - 1 + extra)
 
 
 # --- state ---------------------------------------------------------------------------------------------

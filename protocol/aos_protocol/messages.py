@@ -258,13 +258,15 @@ class Activate(Message, frozen=True):
     """The solver's request to run a grounded action. A repeat of an ended id returns the stored outcome.
 
     Parameter values are plain data: numbers, bools, strings (enum values by name), dicts for compounds.
-    `deadline_s` bounds the whole activation.
+    `deadline_s` bounds the whole activation. `revision` is that of the model which decided, so that the
+    observation is one of that model's; 0 takes the newest.
     """
 
     id: ActivationId
     skill: str
     parameters: dict[str, Any]
     deadline_s: float
+    revision: int = 0
 
 
 class Outcome(Message, frozen=True):

@@ -1,0 +1,43 @@
+# Shortcuts for people who work on AOS; CONTRIBUTING.md says when to use which.
+VENV := .venv
+BIN := $(VENV)/bin
+LOCK := deploy/lock
+UPGRADE :=
+COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
+	--no-emit-index-url --no-emit-find-links --no-header
+
+.PHONY: help setup check test format promote docs lock newcomer clean
+
+help:  ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
+
+setup:  ## set up .venv with everything for development
+	./setup.sh --dev
+
+check:  ## lint, types, layers, documents and all tests: what CI runs
+	tests/check.sh
+
+test:  ## the tests alone
+	$(BIN)/pytest
+
+format:  ## put the sources into the house's form
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+docs:  ## write the generated parts of docs/ anew
+	$(BIN)/python docs/write_reference.py
+
+promote:  ## accept the emitted code as it is now as the golden files
+	AOS_PROMOTE=1 $(BIN)/pytest tests/golden
+
+lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.venv/bin/pip install uv)
+	$(COMPILE) --output-file $(LOCK)/build.txt $(LOCK)/build.in
+	$(COMPILE) --output-file $(LOCK)/runtime.txt --constraint $(LOCK)/build.txt pyproject.toml
+	$(COMPILE) --output-file $(LOCK)/dev.txt --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
+	printf 'ziglang>=0.15\n' | $(COMPILE) --output-file $(LOCK)/compiler.txt -
+
+newcomer:  ## run README's two commands in a fresh clone, an empty home and without a compiler
+	tests/newcomer.sh
+
+clean:  ## remove what set-up, tests and runs have left
+	rm -rf $(VENV) build runs *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

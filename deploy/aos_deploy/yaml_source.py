@@ -1,0 +1,147 @@
+"""A YAML file as plain values that know their place in it.
+
+Only what a configuration needs: mappings with text keys, lists, scalars. A key given twice, anchors, aliases
+and tags are findings, not features.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+
+__all__ = ["Findings", "YamlList", "YamlMap", "YamlNode", "YamlScalar", "read_yaml"]
+
+
+class YamlScalar(msgspec.Struct, frozen=True):
+    """A number, text, bool or None."""
+
+    value: int | float | bool | str | None
+    span: Span
+
+
+class YamlList(msgspec.Struct, frozen=True):
+    items: tuple[YamlNode, ...]
+    span: Span
+
+
+class YamlMap(msgspec.Struct, frozen=True):
+    """`keys` holds where each key stands."""
+
+    entries: dict[str, YamlNode]
+    keys: dict[str, Span]
+    span: Span
+
+
+YamlNode = YamlScalar | YamlList | YamlMap
+
+
+class Findings:
+    """The diagnostics about one file, with its lines for the excerpts."""
+
+    def __init__(self, file: str, text: str) -> None:
+        self.file = file
+        self.diagnostics: list[Diagnostic] = []
+        self._lines = text.splitlines()
+
+    def error(self, code: str, message: str, span: Span, hint: str = "") -> None:
+        excerpt = self._lines[span.line - 1] if 0 < span.line <= len(self._lines) else ""
+        self.diagnostics.append(Diagnostic(Severity.ERROR, code, message, span, hint, excerpt))
+
+    def span(self, mark: Any) -> Span:
+        """The place of a position mark of the YAML reader."""
+        return Span(self.file, mark.line + 1, mark.column + 1)
+
+
+def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
+    """The mapping a file holds, None if it cannot be read as one. `file` names it in the findings."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        findings = Findings(file, "")
+        findings.error("AOS101", f"the file cannot be read: {error.strerror}", Span(file))
+        return None, findings
+    except UnicodeDecodeError as error:
+        findings = Findings(file, "")
+        findings.error("AOS101", f"the file is not UTF-8 text (byte {error.start})", Span(file))
+        return None, findings
+    findings = Findings(file, text)
+    try:
+        root = YAML(typ="safe", pure=True).compose(text)
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        where = findings.span(mark) if mark else Span(file)
+        context = f" {error.context}" if error.context else ""
+        findings.error("AOS104", f"not well-formed YAML{context}: {error.problem}", where)
+        return None, findings
+    except (YAMLError, RecursionError, ValueError) as error:
+        findings.error("AOS104", f"not well-formed YAML: {error}", Span(file))
+        return None, findings
+    if not isinstance(root, MappingNode):
+        findings.error("AOS104", "not a mapping of keys to values", Span(file, 1))
+        return None, findings
+    return _map(root, findings), findings
+
+
+def _node(node: Node, findings: Findings) -> YamlNode:
+    if node.anchor:
+        findings.error("AOS104", "anchors and aliases are not used here", findings.span(node.start_mark))
+    if isinstance(node, MappingNode):
+        return _map(node, findings)
+    if isinstance(node, SequenceNode):
+        items = tuple(_node(item, findings) for item in node.value)
+        return YamlList(items, findings.span(node.start_mark))
+    return _scalar(node, findings)
+
+
+def _map(node: MappingNode, findings: Findings) -> YamlMap:
+    entries: dict[str, YamlNode] = {}
+    keys: dict[str, Span] = {}
+    for key_node, value_node in node.value:
+        where = findings.span(key_node.start_mark)
+        if not isinstance(key_node, ScalarNode):
+            findings.error("AOS104", "a key is not a text", where)
+            continue
+        key = str(key_node.value)
+        if key in entries:
+            findings.error(
+                "AOS103", f"the key {key} is given twice", where, f"First in line {keys[key].line}"
+            )
+            continue
+        keys[key] = where
+        entries[key] = _node(value_node, findings)
+    return YamlMap(entries, keys, findings.span(node.start_mark))
+
+
+def _scalar(node: ScalarNode, findings: Findings) -> YamlScalar:
+    where = findings.span(node.start_mark)
+    text = str(node.value)
+    match str(node.tag).rpartition(":")[2]:
+        case "str":
+            return YamlScalar(text, where)
+        case "null":
+            return YamlScalar(None, where)
+        case "bool":
+            return YamlScalar(text.lower() == "true", where)
+        case "int" | "float":
+            return YamlScalar(_number(text), where)
+        case tag:
+            findings.error("AOS104", f"the tag {tag} is not used here", where)
+            return YamlScalar(None, where)
+
+
+def _number(text: str) -> int | float | str:
+    """The number; the text itself where YAML sees a number that Python does not."""
+    plain = text.replace("_", "").replace(".inf", "inf").replace(".Inf", "inf").replace(".nan", "nan")
+    for convert in (lambda: int(plain, 0), lambda: int(plain), lambda: float(plain)):
+        try:
+            return convert()
+        except ValueError:
+            continue
+    return text

@@ -1,0 +1,143 @@
+"""Writes the reference pages that follow from the sources: errors.md, and the tables of protocol.md.
+
+`python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
+not). In protocol.md the text between `<!-- generated: NAME -->` and `<!-- end -->` is replaced, the rest is
+written by hand.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+from aos_protocol import errors, keys, messages
+
+DOCS = Path(__file__).resolve().parent
+GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+SECTION = re.compile(r"# --- (.+?) -+")
+
+
+# --- errors --------------------------------------------------------------------------------------------
+
+
+def errors_page() -> str:
+    """Every code under the exception that carries it; the classes come from the drawing in `errors`."""
+    lines = [
+        "# Error codes",
+        "",
+        "Every fault and every finding about a document has a code. The code crosses the bus and stands in",
+        "the journal; the exception class is local to Python. Messages name the file and line where there is",
+        "one, and say what to do. This page is written by `make docs` from `aos_protocol.errors.CODES`.",
+    ]
+    for digit, (name, situation) in error_classes().items():
+        lines += ["", f"## {name}: {situation}", "", "| Code | Meaning |", "| --- | --- |"]
+        lines += [f"| {code} | {text} |" for code, text in errors.CODES.items() if code[3] == digit]
+    return "\n".join(lines) + "\n"
+
+
+def error_classes() -> dict[str, tuple[str, str]]:
+    """First digit of a code -> class name and what it is for."""
+    drawn = re.findall(r"^ +(\w+) +AOS(\d)xx  (.+)$", errors.__doc__ or "", re.MULTILINE)
+    return {digit: (name, situation) for name, digit, situation in drawn}
+
+
+# --- keys ----------------------------------------------------------------------------------------------
+
+
+def key_rows() -> Iterator[tuple[str, str, str, str]]:
+    """(key, kind, what for, messages) of each line of the table in `keys`."""
+    for line in (keys.__doc__ or "").splitlines():
+        if not line.startswith("    aos/"):
+            continue
+        key, kind, *rest = re.split(r"\s{2,}|: ", line.strip())
+        what, said = (*rest, "")[:2]
+        yield key, kind, what, said
+
+
+def key_table() -> str:
+    """The key table as Markdown, message names linked to their section."""
+    lines = ["| Key | Kind | What for | Message |", "| --- | --- | --- | --- |"]
+    for key, kind, what, said in key_rows():
+        linked = re.sub(r"\w+", lambda name: f"[{name[0]}](#{name[0].lower()})", said)
+        lines.append(f"| `{key}` | {kind} | {what} | {linked.replace('->', '→')} |")
+    return "\n".join(lines) + "\n"
+
+
+# --- messages ------------------------------------------------------------------------------------------
+
+
+def message_sections() -> str:
+    """Every message with its fields, under the conversations of the source file."""
+    source, tree = _parsed(messages)
+    sections = [(0, "around every message")]
+    for number, line in enumerate(source.splitlines(), 1):
+        if match := SECTION.match(line):
+            sections.append((number, match[1]))
+    parts: list[str] = []
+    for node in tree.body:
+        if not isinstance(node, ast.ClassDef) or node.name == "Message":
+            continue
+        while sections and sections[0][0] < node.lineno:
+            parts.append(f"### {sections.pop(0)[1].capitalize()}\n")
+        parts.append(_message(node))
+    return "\n".join(parts)
+
+
+def _message(node: ast.ClassDef) -> str:
+    lines = [f"#### {node.name}", "", " ".join((ast.get_docstring(node) or "").split()), ""]
+    fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
+    if fields:
+        lines += ["| Field | Type | Default |", "| --- | --- | --- |"]
+    for field in fields:
+        default = f"`{ast.unparse(field.value)}`" if field.value else ""
+        kind = ast.unparse(field.annotation).replace("|", "\\|")
+        lines.append(f"| `{ast.unparse(field.target)}` | `{kind}` | {default} |")
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _parsed(module: ModuleType) -> tuple[str, ast.Module]:
+    source = inspect.getsource(module)
+    return source, ast.parse(source)
+
+
+# --- pages ---------------------------------------------------------------------------------------------
+
+
+def protocol_page(current: str) -> str:
+    """The page with its generated parts renewed."""
+    parts = {"keys": key_table, "messages": message_sections}
+    return GENERATED.sub(lambda match: f"{match[1]}\n{parts[match[2]]()}\n{match[3]}", current)
+
+
+def pages() -> dict[Path, str]:
+    """The text that each page should have."""
+    protocol = DOCS / "protocol.md"
+    return {
+        DOCS / "errors.md": errors_page(),
+        protocol: protocol_page(protocol.read_text(encoding="utf-8")),
+    }
+
+
+def main() -> int:
+    stale = [
+        (page, text)
+        for page, text in pages().items()
+        if not page.exists() or page.read_text(encoding="utf-8") != text
+    ]
+    if "--check" in sys.argv[1:]:
+        for page, _ in stale:
+            sys.stderr.write(f"docs/{page.name} is not current: run `make docs`\n")
+        return 1 if stale else 0
+    for page, text in stale:
+        page.write_text(text, encoding="utf-8")
+        sys.stdout.write(f"docs/{page.name} written\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,306 @@
+"""The bus: typed questions, answers, streams and presence over Zenoh, for asyncio.
+
+Zenoh calls back on its own network threads. A callback here does one thing, `call_soon_threadsafe`, and runs
+on that thread itself (`indirect=False`): with a Python thread for each subscriber the interpreter cannot end
+while one is open. Everything else happens on the event loop that opened the bus.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from functools import partial
+from typing import Any, Self, TypeVar
+
+import zenoh
+from zenoh.handlers import Callback
+
+from aos_protocol.codec import decode, decode_fault, encode, encode_fault
+from aos_protocol.errors import AosError, BusError
+from aos_protocol.messages import Message
+from aos_runtime.bus_config import client_config
+from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.subscription import Subscription, Undeclare
+
+__all__ = ["Bus", "Subscription"]
+
+M = TypeVar("M", bound=Message)
+R = TypeVar("R", bound=Message)
+
+_RETRY_S = 0.02
+_ROUND_TRIP_S = 2.0
+_LATE_S = 0.5
+"""How long after Zenoh's own deadline a question ends by ours, in case Zenoh says nothing."""
+
+_log = logging.getLogger("aos.bus")
+
+
+class Bus:
+    """A client's session on the bus. Belongs to the event loop that opened it; close it before that ends."""
+
+    def __init__(self, session: zenoh.Session, sender: str, clock: Clock) -> None:
+        self.sender = sender
+        self._session = session
+        self._clock = clock
+        self._loop = asyncio.get_running_loop()
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._subscriptions: set[Subscription[Any]] = set()
+        self._queryables: list[zenoh.Queryable[None]] = []
+        self._tokens: dict[str, zenoh.LivelinessToken] = {}
+        # `session.is_closed()` takes a lock of Zenoh's without letting the interpreter go, while a callback
+        # holds that lock and waits for the interpreter: asked on a busy session, it hangs both for ever.
+        self._is_closed = False
+
+    @classmethod
+    async def open(
+        cls, endpoint: str, *, sender: str, connect_timeout_s: float = 5.0, clock: Clock | None = None
+    ) -> Bus:
+        """Connects to the router, waiting for it to come up; BusError AOS605 if it does not in time."""
+        clock = clock or SystemClock()
+        deadline_s = clock.monotonic_s() + connect_timeout_s
+        while True:
+            try:
+                session = await asyncio.to_thread(zenoh.open, client_config(endpoint))
+            except zenoh.ZError as error:
+                if clock.monotonic_s() >= deadline_s:
+                    raise BusError(
+                        f"no bus router answers at {endpoint}",
+                        code="AOS605",
+                        hint="Start a system with aos-up, or give the endpoint of the one that runs",
+                    ) from error
+                await asyncio.sleep(_RETRY_S)
+            else:
+                return cls(session, sender, clock)
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        """Cancels running handlers, ends all streams, leaves the bus. Closing twice does nothing."""
+        if self._is_closed:
+            return
+        self._is_closed = True
+        for token in self._tokens.values():
+            token.undeclare()  # type: ignore[no-untyped-call]
+        for queryable in self._queryables:
+            queryable.undeclare()  # type: ignore[no-untyped-call]
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        for subscription in tuple(self._subscriptions):
+            subscription.close()
+        await asyncio.to_thread(self._session.close)
+
+    async def ask(self, key: str, message: Message, reply: type[R], *, timeout_s: float) -> R:
+        """The answer of whoever serves `key`.
+
+        BusError AOS604 if nobody does, or whoever did ended before it replied; AOS601 if no reply comes
+        within `timeout_s`; AOS602 or AOS603 if the reply is malformed or of another protocol version; the
+        handler's own AosError if it raised one.
+        """
+        payload = encode(message, sender=self.sender, stamp_ns=self._clock.now_ns())
+        answer: asyncio.Future[tuple[bool, bytes] | None] = self._loop.create_future()
+
+        def settle(result: tuple[bool, bytes] | None) -> None:
+            if not answer.done():
+                answer.set_result(result)
+
+        def on_reply(received: zenoh.Reply) -> None:
+            if received.ok is not None:
+                result = (True, received.ok.payload.to_bytes())
+            else:
+                result = (False, received.err.payload.to_bytes() if received.err else b"")
+            self._loop.call_soon_threadsafe(settle, result)
+
+        self._check_open()
+        self._session.get(
+            key,
+            Callback(on_reply, partial(self._loop.call_soon_threadsafe, settle, None), indirect=False),
+            payload=payload,
+            timeout=timeout_s,
+            # Otherwise a reply is held back until every responder has finished.
+            consolidation=zenoh.ConsolidationMode.NONE,
+        )
+        try:
+            async with asyncio.timeout(timeout_s + _LATE_S):
+                result = await answer
+        except TimeoutError:
+            result = (False, b"Timeout")
+        return _read_answer(result, key, reply, timeout_s)
+
+    async def answer(
+        self, key: str, request: type[M], handler: Callable[[M, str], Awaitable[Message]]
+    ) -> None:
+        """Serves `key` until the bus closes: `handler(message, key)` runs as a task for each question.
+
+        Questions may overlap. An AosError of the handler goes to the asker with its code, any other exception
+        as AOS606 and into the log. On return the key can be asked from anywhere.
+        """
+
+        def on_query(query: zenoh.Query) -> None:
+            self._loop.call_soon_threadsafe(self._start_answering, query, request, handler)
+
+        queryable = self._session.declare_queryable(key, Callback(on_query, indirect=False))
+        self._queryables.append(queryable)
+        await self._wait_for_router()
+
+    def tell(self, key: str, message: Message) -> None:
+        """Sends to whoever listens now. Nothing says whether it arrived: use it for what can be re-read."""
+        payload = encode(message, sender=self.sender, stamp_ns=self._clock.now_ns())
+        self._check_open()
+        self._session.put(key, payload, congestion_control=zenoh.CongestionControl.BLOCK)
+
+    def listen(self, key: str, kind: type[M], *, queue_size: int = 1000) -> Subscription[tuple[str, M]]:
+        """The messages told on `key` (which may hold wildcards), each with its own key.
+
+        Messages that cannot be decoded are logged and left out.
+        """
+
+        async def declare(subscription: Subscription[tuple[str, M]]) -> Undeclare:
+            def on_payload(message_key: str, payload: bytes) -> None:
+                try:
+                    subscription.push((message_key, decode(payload, kind)))
+                except BusError as error:
+                    _log.warning("on %s: %s", message_key, error)
+
+            def on_sample(sample: zenoh.Sample) -> None:
+                self._loop.call_soon_threadsafe(on_payload, str(sample.key_expr), sample.payload.to_bytes())
+
+            subscriber = self._session.declare_subscriber(key, Callback(on_sample, indirect=False))
+            await self._wait_for_router()
+            self._subscriptions.add(subscription)
+            return partial(self._end, subscription, subscriber)
+
+        return Subscription(declare, queue_size)
+
+    async def announce(self, key: str) -> None:
+        """Makes `key` present until the bus closes or this process ends, however it ends."""
+        self._tokens[key] = self._session.liveliness().declare_token(key)
+        await self._wait_for_router()
+
+    def presence(self, key_expression: str) -> Subscription[tuple[str, bool]]:
+        """Which keys are present: (key, True) for each that is there or comes, (key, False) when it goes.
+
+        Once entered, the keys already there are in the queue.
+        """
+
+        async def declare(subscription: Subscription[tuple[str, bool]]) -> Undeclare:
+            present: set[str] = set()
+
+            def on_change(key: str, is_alive: bool) -> None:
+                if is_alive is (key in present):  # Zenoh may repeat what it said.
+                    return
+                (present.add if is_alive else present.discard)(key)
+                subscription.push((key, is_alive))
+
+            def on_sample(sample: zenoh.Sample) -> None:
+                is_alive = sample.kind == zenoh.SampleKind.PUT
+                self._loop.call_soon_threadsafe(on_change, str(sample.key_expr), is_alive)
+
+            subscriber = self._session.liveliness().declare_subscriber(
+                key_expression, Callback(on_sample, indirect=False), history=True
+            )
+            await self._wait_for_router()
+            self._subscriptions.add(subscription)
+            return partial(self._end, subscription, subscriber)
+
+        return Subscription(declare, 1000)
+
+    def _check_open(self) -> None:
+        if self._is_closed:
+            raise BusError(f"{self.sender} has left the bus", code="AOS605")
+
+    def _end(self, subscription: Subscription[Any], subscriber: zenoh.Subscriber[None]) -> None:
+        self._subscriptions.discard(subscription)
+        if not self._is_closed:
+            subscriber.undeclare()  # type: ignore[no-untyped-call]
+
+    async def _wait_for_router(self) -> None:
+        """Returns when the router has taken in everything declared so far.
+
+        A declaration returns before the router knows of it, and what another client sends meanwhile is lost;
+        a round trip on the same link comes back after it.
+        """
+        done = self._loop.create_future()
+        self._session.liveliness().get(
+            "aos/round-trip",
+            Callback(_ignore, partial(self._loop.call_soon_threadsafe, _settle, done), indirect=False),
+            timeout=_ROUND_TRIP_S,
+        )
+        try:
+            async with asyncio.timeout(_ROUND_TRIP_S + _LATE_S):
+                await done
+        except TimeoutError as error:
+            raise BusError("the bus router does not answer", code="AOS605") from error
+
+    def _start_answering(
+        self,
+        query: zenoh.Query,
+        request: type[M],
+        handler: Callable[[M, str], Awaitable[Message]],
+    ) -> None:
+        task = self._loop.create_task(self._answer_one(query, request, handler))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _answer_one(
+        self,
+        query: zenoh.Query,
+        request: type[M],
+        handler: Callable[[M, str], Awaitable[Message]],
+    ) -> None:
+        # The asker waits out its whole deadline while a query is referenced, replied or not.
+        with query:
+            key = str(query.key_expr)
+            try:
+                if "*" in key:
+                    raise BusError(f"a question to {key} has no one answer", code="AOS602")
+                payload = query.payload.to_bytes() if query.payload is not None else b""
+                result = await handler(decode(payload, request), key)
+                answer = encode(result, sender=self.sender, stamp_ns=self._clock.now_ns())
+            except AosError as error:
+                self._refuse(query, error)
+            except asyncio.CancelledError:
+                self._refuse(query, BusError(f"{self.sender} stopped while it answered {key}", code="AOS606"))
+                raise
+            except Exception as error:
+                _log.exception("the handler of %s failed", key)
+                text = f"{self.sender} failed on {key}: {type(error).__name__}: {error}"
+                self._refuse(query, BusError(text, code="AOS606", hint=f"See the log of {self.sender}"))
+            else:
+                try:
+                    query.reply(query.key_expr, answer)
+                except zenoh.ZError as error:
+                    _log.warning("the answer on %s was not delivered: %s", key, error)
+
+    def _refuse(self, query: zenoh.Query, error: AosError) -> None:
+        try:
+            query.reply_err(encode_fault(error, sender=self.sender, stamp_ns=self._clock.now_ns()))
+        except (zenoh.ZError, BusError) as failure:
+            _log.warning("the refusal on %s was not delivered: %s", query.key_expr, failure)
+
+
+def _read_answer(result: tuple[bool, bytes] | None, key: str, reply: type[R], timeout_s: float) -> R:
+    if result is None:
+        raise BusError(
+            f"nobody answers {key}", code="AOS604", hint="Is the service that should answer running?"
+        )
+    is_answer, payload = result
+    if is_answer:
+        return decode(payload, reply)
+    if payload == b"Timeout":  # Zenoh's own error reply, the only one that is not an envelope.
+        raise BusError(f"no answer on {key} within {timeout_s:g} s", code="AOS601")
+    raise decode_fault(payload)
+
+
+def _ignore(_: object) -> None:
+    """For replies whose end alone matters."""
+
+
+def _settle(future: asyncio.Future[None]) -> None:
+    if not future.done():
+        future.set_result(None)

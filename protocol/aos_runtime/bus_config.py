@@ -1,0 +1,58 @@
+"""How every Zenoh session of AOS is configured: the only file that names Zenoh's options.
+
+One router, all others its clients: no scouting, no gossip, no listening anywhere but where the deploy file
+says. Zenoh itself refuses options it does not know.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import zenoh
+
+from aos_protocol.errors import BusError
+
+__all__ = ["LEASE_S", "client_config", "router_config"]
+
+LEASE_S = 2.0
+"""A process that is silent for this long is taken for gone. One that ends is noticed at once."""
+
+_ENDPOINT = re.compile(r"(tcp|udp|tls|quic|ws|unixsock-stream)/\S+")
+
+_COMMON: dict[str, Any] = {
+    # Without the delay a router waits half a second at start for peers that scouting would find.
+    "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": False}},
+    "transport": {
+        "link": {"tx": {"lease": int(LEASE_S * 1000)}},
+        # Shared memory would leave files behind when a process is killed.
+        "shared_memory": {"enabled": False},
+    },
+    "adminspace": {"enabled": False},
+}
+
+
+def client_config(endpoint: str) -> zenoh.Config:
+    """A client of the router at `endpoint`, such as `tcp/127.0.0.1:7447`. Opening it tries once."""
+    connect = {"endpoints": [_checked(endpoint)], "timeout_ms": 0}
+    return _config({"mode": "client", "connect": connect})
+
+
+def router_config(endpoint: str) -> zenoh.Config:
+    """The router, listening at `endpoint` and nowhere else."""
+    return _config({"mode": "router", "listen": {"endpoints": [_checked(endpoint)]}})
+
+
+def _config(options: dict[str, Any]) -> zenoh.Config:
+    return zenoh.Config.from_json5(json.dumps(_COMMON | options))
+
+
+def _checked(endpoint: str) -> str:
+    if not _ENDPOINT.fullmatch(endpoint):
+        raise BusError(
+            f"{endpoint!r} is not a bus endpoint",
+            code="AOS605",
+            hint="Write it as tcp/127.0.0.1:7447",
+        )
+    return endpoint

@@ -1,0 +1,147 @@
+"""Child processes of a service or of aos-up, on asyncio.
+
+Start children from the main thread: they end with the thread that started them, see `parent`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import IO, Any, Self
+
+import msgspec
+
+from aos_protocol.errors import DeployError
+from aos_runtime.parent import PARENT_VARIABLE
+
+__all__ = ["PIPE", "Child", "Limits", "guarded"]
+
+PIPE = asyncio.subprocess.PIPE
+
+Stdio = int | IO[Any] | None
+
+_LAUNCH_GUARD = (
+    "import sys; sys.path.insert(0, sys.argv[1]); from aos_runtime.guard import main; main(sys.argv[2:])"
+)
+
+
+class Limits(msgspec.Struct, frozen=True, kw_only=True):
+    """What a guarded command may use; None is unlimited. `grace_s` lies between SIGTERM and SIGKILL."""
+
+    address_space_bytes: int | None = None
+    cpu_s: int | None = None
+    file_bytes: int | None = None
+    grace_s: float = 0.5
+
+
+def guarded(command: list[str], limits: Limits | None = None) -> list[str]:
+    """The command line that runs `command` under `aos_runtime.guard`, so that nothing of it stays behind."""
+    options: list[str] = []
+    for name, value in msgspec.structs.asdict(limits or Limits()).items():
+        if value is not None:
+            options += [f"--{name.replace('_', '-')}", str(value)]
+    packages = str(Path(__file__).parent.parent)
+    return [sys.executable, "-I", "-S", "-c", _LAUNCH_GUARD, packages, *options, "--", *command]
+
+
+class Child:
+    """A process in a session of its own, so that Ctrl-C at the terminal reaches only who started it.
+
+    A Python child of AOS ends with this process by `die_with_parent`; wrap any other program in `guarded`.
+    """
+
+    def __init__(self, process: asyncio.subprocess.Process, name: str) -> None:
+        self.name = name
+        self._process = process
+
+    @classmethod
+    async def start(
+        cls,
+        argv: list[str],
+        *,
+        name: str = "",
+        cwd: str | os.PathLike[str] | None = None,
+        env: Mapping[str, str] | None = None,
+        stdin: Stdio = asyncio.subprocess.DEVNULL,
+        stdout: Stdio = None,
+        stderr: Stdio = None,
+        pass_fds: Iterable[int] = (),
+        stream_limit_bytes: int = 2**16,
+    ) -> Self:
+        """Starts `argv`; `env` adds to this process's environment. DeployError AOS802 if it cannot be."""
+        environment = {**os.environ, **(env or {}), PARENT_VARIABLE: str(os.getpid())}
+        try:
+            process = await asyncio.create_subprocess_exec(
+                *argv,
+                cwd=cwd,
+                env=environment,
+                stdin=stdin,
+                stdout=stdout,
+                stderr=stderr,
+                pass_fds=tuple(pass_fds),
+                limit=stream_limit_bytes,
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise DeployError(f"cannot start {argv[0]}: {error.strerror}", code="AOS802") from error
+        return cls(process, name or argv[0])
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def returncode(self) -> int | None:
+        """None while it runs; the exit status, or minus the signal that ended it."""
+        return self._process.returncode
+
+    @property
+    def stdin(self) -> asyncio.StreamWriter:
+        """Its input, if started with PIPE."""
+        assert self._process.stdin is not None
+        return self._process.stdin
+
+    @property
+    def stdout(self) -> asyncio.StreamReader:
+        """Its output, if started with PIPE."""
+        assert self._process.stdout is not None
+        return self._process.stdout
+
+    @property
+    def stderr(self) -> asyncio.StreamReader:
+        """Its error output, if started with PIPE."""
+        assert self._process.stderr is not None
+        return self._process.stderr
+
+    async def wait(self) -> int:
+        """Its return code, once it has ended."""
+        return await self._process.wait()
+
+    async def stop(self, grace_s: float = 2.0) -> int:
+        """SIGTERM to its group, SIGKILL after `grace_s`; its return code. Stopping twice does nothing.
+
+        Give a guarded command more than the guard's own grace.
+        """
+        if self.returncode is None:
+            self._signal(signal.SIGTERM)
+            try:
+                async with asyncio.timeout(grace_s):
+                    await self.wait()
+            except TimeoutError:
+                self.kill()
+        return await self.wait()
+
+    def kill(self) -> None:
+        """SIGKILL to its group, now."""
+        self._signal(signal.SIGKILL)
+
+    def _signal(self, number: signal.Signals) -> None:
+        if self.returncode is not None:
+            return
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self.pid, number)

@@ -1,0 +1,130 @@
+"""A small client for whoever wants to follow a robot from Python.
+
+async with AosClient.connect("tcp/127.0.0.1:7447", "armadillo") as aos:
+    async for record in aos.decisions():
+        print(record.step, record.action)
+"""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from aos_protocol.errors import BusError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    DecisionRecord,
+    History,
+    HistoryQuery,
+    MissionState,
+    StartMission,
+)
+from aos_runtime.bus import Bus
+from aos_runtime.subscription import merged
+
+__all__ = ["AosClient", "DecisionFeed"]
+
+_HISTORY_TIMEOUT_S = 5.0
+
+
+class AosClient:
+    """What may be watched of one robot. Watching changes nothing."""
+
+    def __init__(self, bus: Bus, robot: str) -> None:
+        self.bus = bus
+        self.keys = Keys(robot)
+
+    @classmethod
+    @asynccontextmanager
+    async def connect(
+        cls, endpoint: str, robot: str, *, connect_timeout_s: float = 5.0
+    ) -> AsyncIterator[AosClient]:
+        """A client of the system at `endpoint`; BusError AOS605 if none is there in time."""
+        bus = await Bus.open(endpoint, sender="client", connect_timeout_s=connect_timeout_s)
+        async with bus:
+            yield cls(bus, robot)
+
+    async def mission_state(self) -> MissionState:
+        """Where the mission is now; BusError AOS604 if there is no solver."""
+        return await self.bus.ask(
+            self.keys.mission_state, StartMission(), MissionState, timeout_s=_HISTORY_TIMEOUT_S
+        )
+
+    async def decisions(self) -> AsyncIterator[DecisionRecord]:
+        """Every decision record from the first, each once and in order, until the mission ends.
+
+        Who joins late gets what was before, and a gap in the stream is filled from the solver's history. If
+        the solver is not there yet, waits for it; ends when it goes.
+        """
+        keys = self.keys
+        feed = DecisionFeed()
+        stream = merged(
+            self.bus.listen(keys.decisions, DecisionRecord),
+            self.bus.listen(keys.mission_state, MissionState),
+            self.bus.presence(keys.live("solver")),
+        )
+        async with stream:
+            async for _, event in stream:
+                is_over = event is False
+                if isinstance(event, DecisionRecord):
+                    for record in feed.take(event):
+                        yield record
+                elif isinstance(event, MissionState):
+                    is_over = event.phase == "ended"
+                if feed.has_gap or event is True or is_over:
+                    for record in feed.take_history(await self._history(feed.next_sequence)):
+                        yield record
+                if event is True:
+                    is_over = await self._has_ended()
+                if is_over:
+                    return
+
+    async def _history(self, since: int) -> History:
+        """What the solver has; nothing, if it has gone."""
+        try:
+            return await self.bus.ask(
+                self.keys.decision_history, HistoryQuery(since), History, timeout_s=_HISTORY_TIMEOUT_S
+            )
+        except BusError:
+            return History("", ())
+
+    async def _has_ended(self) -> bool:
+        try:
+            return (await self.mission_state()).phase == "ended"
+        except BusError:
+            return True
+
+
+class DecisionFeed:
+    """Puts records into order: each sequence number once, ascending; what follows a gap is held back.
+
+    A record of another mission starts again from its first.
+    """
+
+    def __init__(self) -> None:
+        self.next_sequence = 0
+        self._mission = ""
+        self._ahead: dict[int, DecisionRecord] = {}
+
+    @property
+    def has_gap(self) -> bool:
+        """Whether records are held back for one that is missing."""
+        return bool(self._ahead)
+
+    def take(self, record: DecisionRecord) -> list[DecisionRecord]:
+        """The records that can be given now that this one is here."""
+        if record.mission != self._mission:
+            self._mission = record.mission
+            self.next_sequence = 0
+            self._ahead.clear()
+        if record.sequence >= self.next_sequence:
+            self._ahead[record.sequence] = record
+        ready: list[DecisionRecord] = []
+        while self.next_sequence in self._ahead:
+            ready.append(self._ahead.pop(self.next_sequence))
+            self.next_sequence += 1
+        return ready
+
+    def take_history(self, history: History) -> list[DecisionRecord]:
+        """As `take`, for all records of an answer."""
+        return [ready for record in history.records for ready in self.take(record)]

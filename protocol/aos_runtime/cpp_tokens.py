@@ -1,0 +1,174 @@
+"""C++ text cut into comments, literals and brackets: what decides whether a snippet stays in its function.
+
+A parser recovers from an unbalanced bracket somewhere; a person wants to know which one. Line continuations,
+digraphs, raw strings and digit separators are read as the compiler reads them, so that no bracket hides.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from enum import StrEnum
+from typing import NamedTuple
+
+import msgspec
+
+__all__ = ["Extent", "Fault", "FaultKind", "Lines", "Tokens", "cut"]
+
+MAX_NESTING = 200
+
+_TOKEN = re.compile(
+    r"""
+      (?P<raw>(?:u8|[uUL])?R"(?P<delimiter>[^()\\\s]{0,16})\(.*?\)(?P=delimiter)")
+    | (?P<string>(?:u8|[uUL])?"(?:[^"\\\n]|\\.)*")
+    | (?P<char>(?:u8|[uUL])?'(?:[^'\\\n]|\\.)+')
+    | (?P<line_comment>//(?:\\[ \t\r\f\v]*\n|[^\n])*)
+    | (?P<block_comment>/\*.*?\*/)
+    | (?P<open_comment>/\*)
+    | (?P<number>\.?[0-9](?:'?[A-Za-z0-9_.])*)
+    | (?P<word>[A-Za-z_]\w*)
+    | (?P<continuation>\\[ \t\r\f\v]*\n)
+    | (?P<directive>(?<![^\n])[ \t\f\v]*(?:\#|%:)[^\n]*)
+    | (?P<scope><::(?![:>]))
+    | (?P<bracket>[()\[\]{}]|<%|%>|<:|:>)
+    | (?P<quote>["'])
+    | (?P<other>.)
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+_CANONICAL = {"<%": "{", "%>": "}", "<:": "[", ":>": "]"}
+_PARTNER = {")": "(", "]": "[", "}": "{"}
+_CLOSES = {opening: closing for closing, opening in _PARTNER.items()}
+
+
+class Extent(NamedTuple):
+    """A piece of a code text: `code[start:end]`; line and column of its start count from 1."""
+
+    start: int
+    end: int
+    line: int
+    column: int
+
+
+class FaultKind(StrEnum):
+    """Why a snippet cannot be placed in a function. SYNTAX is a hint, the compiler decides."""
+
+    BRACKET = "bracket"
+    QUOTE = "quote"
+    COMMENT = "comment"
+    PREPROCESSOR = "preprocessor"
+    SYNTAX = "syntax"
+
+
+class Fault(msgspec.Struct, frozen=True):
+    """One reason, with its place."""
+
+    kind: FaultKind
+    message: str
+    extent: Extent
+
+
+class Tokens(msgspec.Struct, frozen=True):
+    """The comments, the string and character literals, and what is wrong."""
+
+    comments: tuple[Extent, ...]
+    literals: tuple[Extent, ...]
+    faults: tuple[Fault, ...]
+
+
+class Lines:
+    """Line and column of every offset of a text."""
+
+    def __init__(self, text: str) -> None:
+        self._starts = [0, *(match.end() for match in re.finditer("\n", text))]
+
+    def extent(self, start: int, end: int) -> Extent:
+        line = bisect_right(self._starts, start)
+        return Extent(start, end, line, start - self._starts[line - 1] + 1)
+
+
+def cut(code: str) -> Tokens:
+    """The tokens of a snippet; every fault of it, in text order."""
+    lines = Lines(code)
+    comments: list[Extent] = []
+    literals: list[Extent] = []
+    faults: list[Fault] = []
+    brackets = _Brackets()
+    position = 0
+    while match := _TOKEN.match(code, position):
+        position = match.end()
+        kind = str(match.lastgroup)
+        if kind in ("word", "other", "number", "scope"):
+            continue
+        extent = lines.extent(*match.span())
+        if kind in ("raw", "string", "char"):
+            literals.append(extent)
+        elif kind in ("line_comment", "block_comment"):
+            comments.append(extent)
+        elif kind == "bracket":
+            faults += brackets.take(match.group(), extent)
+        elif kind == "directive":
+            start = match.end() - len(match.group().lstrip())
+            faults.append(_directive(match.group(), lines.extent(start, match.end())))
+        elif kind == "continuation":
+            faults.append(Fault(FaultKind.PREPROCESSOR, "a backslash at the end of a line", extent))
+        elif kind == "open_comment":
+            faults.append(Fault(FaultKind.COMMENT, "this comment is never closed", extent))
+            position = len(code)
+        else:
+            faults.append(Fault(FaultKind.QUOTE, f"this {match.group()} has no partner on its line", extent))
+            position = _end_of_line(code, position)
+    faults += brackets.still_open()
+    return Tokens(
+        tuple(comments), tuple(literals), tuple(sorted(faults, key=lambda fault: fault.extent.start))
+    )
+
+
+class _Brackets:
+    """The brackets that are open, and the complaint for each that does not fit."""
+
+    def __init__(self) -> None:
+        self._open: list[tuple[str, Extent]] = []
+
+    def take(self, spelling: str, extent: Extent) -> list[Fault]:
+        bracket = _CANONICAL.get(spelling, spelling)
+        if bracket in _CLOSES:
+            self._open.append((bracket, extent))
+            if len(self._open) == MAX_NESTING + 1:
+                return [Fault(FaultKind.BRACKET, f"brackets nested deeper than {MAX_NESTING}", extent)]
+            return []
+        if not self._open:
+            return [Fault(FaultKind.BRACKET, f"this {spelling} closes nothing", extent)]
+        opening, place = self._open[-1]
+        if opening == _PARTNER[bracket]:
+            self._open.pop()
+            return []
+        if any(other == _PARTNER[bracket] for other, _ in self._open):
+            faults = self._drop_to(_PARTNER[bracket])
+            self._open.pop()
+            return faults
+        where = f"the {opening} of line {place.line}"
+        return [Fault(FaultKind.BRACKET, f"this {spelling} does not fit {where}", extent)]
+
+    def still_open(self) -> list[Fault]:
+        return [_never_closed(opening, extent) for opening, extent in self._open]
+
+    def _drop_to(self, opening: str) -> list[Fault]:
+        faults = []
+        while self._open[-1][0] != opening:
+            faults.append(_never_closed(*self._open.pop()))
+        return faults
+
+
+def _never_closed(opening: str, extent: Extent) -> Fault:
+    return Fault(FaultKind.BRACKET, f"this {opening} is never closed by {_CLOSES[opening]}", extent)
+
+
+def _directive(text: str, extent: Extent) -> Fault:
+    word = text.strip().split(maxsplit=1)[0]
+    return Fault(FaultKind.PREPROCESSOR, f"a preprocessor line ({word})", extent)
+
+
+def _end_of_line(code: str, position: int) -> int:
+    newline = code.find("\n", position)
+    return len(code) if newline < 0 else newline

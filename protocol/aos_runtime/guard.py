@@ -1,0 +1,171 @@
+r"""A small process around a command that must leave nothing behind: compilers, engines, mapping workers.
+
+    python -m aos_runtime.guard [--address-space-bytes N] [--cpu-s N] [--file-bytes N] [--grace-s S] \
+        -- command...
+
+The command runs in a process group of its own, under the limits, on the guard's own stdin, stdout and
+stderr. When it ends, when the guard is told to stop (SIGTERM, SIGINT, SIGHUP), or when the guard's parent
+ends, every descendant of the guard is ended, those that left the group too: SIGTERM, and after the grace
+SIGKILL. The guard then ends the way the command did, by the same signal or with the same status; with 127 if
+the command cannot be started.
+
+If the guard itself is killed with SIGKILL, the command dies with it, but not what the command has started.
+Write command lines with `children.guarded`. The module imports little and no site packages: it starts in
+about 25 ms.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import signal
+import sys
+import time
+
+from aos_runtime.parent import adopt_orphans, die_with_parent, request_death_signal
+
+TYPE_CHECKING = False  # typing itself takes as long to import as everything else here.
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+__all__ = ["main"]
+
+_STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+_NOT_STARTED = 127
+_GRACE_S = 0.5
+
+_LIMITS = {
+    "--address-space-bytes": resource.RLIMIT_AS,
+    "--cpu-s": resource.RLIMIT_CPU,
+    "--file-bytes": resource.RLIMIT_FSIZE,
+}
+
+
+def main(arguments: list[str]) -> NoReturn:
+    """Runs the command named in the arguments and ends as it ends."""
+    grace_s, limits, command = _parse(arguments)
+    signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, signal.SIGCHLD})
+    die_with_parent(signal.SIGTERM)
+    adopt_orphans()
+    guard_pid = os.getpid()
+    pid = os.fork()
+    if pid == 0:
+        _become(command, limits, guard_pid)
+    status = _wait(pid, grace_s)
+    _end_descendants(grace_s)
+    _end_like(status)
+
+
+def _parse(arguments: list[str]) -> tuple[float, dict[int, int], list[str]]:
+    """The grace, the limits by kind, and the command."""
+    split = arguments.index("--") if "--" in arguments else len(arguments)
+    options, command = arguments[:split], arguments[split + 1 :]
+    if len(options) % 2 or not command:
+        _fail("usage: guard [--option value]... -- command...")
+    grace_s = _GRACE_S
+    limits: dict[int, int] = {}
+    for name, text in zip(options[::2], options[1::2], strict=True):
+        if name == "--grace-s":
+            grace_s = float(text)
+        elif name in _LIMITS:
+            limits[_LIMITS[name]] = int(text)
+        else:
+            _fail(f"unknown option {name}")
+    return grace_s, limits, command
+
+
+def _become(command: list[str], limits: dict[int, int], guard_pid: int) -> NoReturn:
+    """In the child: own process group, limits, and the command in place of this program."""
+    try:
+        os.setpgid(0, 0)
+        request_death_signal(signal.SIGKILL, guard_pid)
+        for kind, value in {resource.RLIMIT_CORE: 0, **limits}.items():
+            _limit(kind, value)
+        # What Python ignores, the command would inherit as ignored.
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+        os.execvp(command[0], command)
+    except OSError as error:
+        _fail(f"cannot start {command[0]}: {error.strerror}")
+
+
+def _limit(kind: int, value: int) -> None:
+    _, hard = resource.getrlimit(kind)
+    if hard != resource.RLIM_INFINITY:
+        value = min(value, hard)
+    resource.setrlimit(kind, (value, value))
+
+
+def _wait(pid: int, grace_s: float) -> int:
+    """The command's wait status; being told to stop stops it first."""
+    kill_at_s: float | None = None
+    while True:
+        ended, status = os.waitpid(pid, os.WNOHANG)
+        if ended:
+            return status
+        if kill_at_s is None:
+            received = signal.sigwait({*_STOP_SIGNALS, signal.SIGCHLD})
+            if received in _STOP_SIGNALS:
+                _signal_group(pid, signal.SIGTERM)
+                kill_at_s = time.monotonic() + grace_s
+        elif time.monotonic() >= kill_at_s:
+            _signal_group(pid, signal.SIGKILL)
+            return os.waitpid(pid, 0)[1]
+        else:
+            signal.sigtimedwait({signal.SIGCHLD}, kill_at_s - time.monotonic())
+
+
+def _end_descendants(grace_s: float) -> None:
+    """Ends what the command left behind; it has become this process's own children."""
+    kill_at_s = time.monotonic() + grace_s
+    while children := _children():
+        is_late = time.monotonic() >= kill_at_s
+        for child in children:
+            os.kill(child, signal.SIGKILL if is_late else signal.SIGTERM)
+        signal.sigtimedwait({signal.SIGCHLD}, 0.05)
+        _reap()
+
+
+def _children() -> list[int]:
+    _reap()
+    with open(f"/proc/self/task/{os.getpid()}/children", "rb") as listing:  # noqa: PTH123
+        return [int(pid) for pid in listing.read().split()]
+
+
+def _reap() -> None:
+    try:
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
+    except ChildProcessError:
+        pass
+
+
+def _signal_group(pid: int, number: signal.Signals) -> None:
+    for target, send in ((pid, os.killpg), (pid, os.kill)):
+        # Before the child has made its group only the second reaches it.
+        try:
+            send(target, number)
+        except ProcessLookupError:
+            continue
+
+
+def _end_like(status: int) -> NoReturn:
+    if os.WIFSIGNALED(status):
+        number = os.WTERMSIG(status)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        if number not in (signal.SIGKILL, signal.SIGSTOP):
+            signal.signal(number, signal.SIG_DFL)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, {number})
+        os.kill(os.getpid(), number)
+        os._exit(128 + number)
+    os._exit(os.waitstatus_to_exitcode(status))
+
+
+def _fail(text: str) -> NoReturn:
+    os.write(2, f"guard: {text}\n".encode())
+    os._exit(_NOT_STARTED)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

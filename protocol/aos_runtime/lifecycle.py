@@ -1,0 +1,160 @@
+"""How a service process lives: settings in, bus open, serve, and a word on why it ended.
+
+    python -m aos_registry SETTINGS.json
+
+A service ends with its parent, on SIGTERM, or with a fault. SIGTERM cancels `serve`, which cleans up in
+`finally`. A fault goes to the log on stderr and, for aos-up, to `<run_dir>/faults/<service>.json`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+import sys
+from collections.abc import Awaitable, Callable, Coroutine
+from pathlib import Path
+from typing import Any, Generic, NoReturn, TypeVar
+
+import msgspec
+
+from aos_protocol.errors import AosError, DeployError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import Fault
+from aos_runtime.bus import Bus
+from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.parent import die_with_parent
+
+__all__ = ["Service", "ServiceSettings", "fault_path", "run_process", "run_service"]
+
+
+class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
+    """What every service is told; each adds its own. `run_dir` is absolute."""
+
+    robot: str
+    service: str
+    endpoint: str
+    run_dir: str
+
+
+S = TypeVar("S", bound=ServiceSettings)
+
+_log = logging.getLogger("aos.service")
+
+
+class Service(Generic[S]):
+    """What `serve` works with. `keys` are those of the robot; `bus` closes after `serve` has ended."""
+
+    def __init__(self, settings: S, bus: Bus, clock: Clock) -> None:
+        self.settings = settings
+        self.bus = bus
+        self.clock = clock
+        self.keys = Keys(settings.robot)
+
+    async def ready(self) -> None:
+        """Declares the service present: call it once everything it answers is declared.
+
+        DeployError AOS803 if one of the same name already is.
+        """
+        key = self.keys.live(self.settings.service)
+        async with self.bus.presence(key) as present:
+            if present.has_items:
+                raise DeployError(
+                    f"a {self.settings.service} for robot {self.settings.robot} is already on this bus",
+                    code="AOS803",
+                    hint="Stop the other system, or give this one another robot name or endpoint",
+                )
+        await self.bus.announce(key)
+        _log.info("ready")
+
+
+def run_service(settings_type: type[S], serve: Callable[[Service[S]], Awaitable[None]]) -> NoReturn:
+    """The whole of a service's `__main__`: runs `serve` until it returns, fails or is told to stop."""
+
+    async def run(settings: S) -> None:
+        clock = SystemClock()
+        async with await Bus.open(settings.endpoint, sender=settings.service, clock=clock) as bus:
+            await serve(Service(settings, bus, clock))
+
+    run_process(settings_type, run)
+
+
+def run_process(settings_type: type[S], run: Callable[[S], Coroutine[Any, Any, None]]) -> NoReturn:
+    """As `run_service`, for a process that opens its own connection to the bus."""
+    die_with_parent()
+    settings = _read_settings(settings_type)
+    logging.basicConfig(
+        level=os.environ.get("AOS_LOG", "INFO").upper(),
+        format=f"%(asctime)s %(levelname)-7s {settings.service}: %(message)s",
+        stream=sys.stderr,
+    )
+    try:
+        asyncio.run(_until_told_to_stop(run(settings)))
+    except AosError as error:
+        _log.error("%s", error)
+        _leave_fault(settings, Fault(error.code, error.message, error.hint, error.diagnostics))
+        status = 1
+    except Exception as error:
+        _log.exception("ended by a defect")
+        text = f"{settings.service} ended by a defect: {type(error).__name__}: {error}"
+        _leave_fault(settings, Fault("AOS606", text))
+        status = 1
+    else:
+        status = 0
+    logging.shutdown()
+    sys.exit(status)
+
+
+def fault_path(run_dir: str | Path, service: str) -> Path:
+    """Where a service leaves the fault that ended it, a JSON `Fault`."""
+    return Path(run_dir) / "faults" / f"{service}.json"
+
+
+async def _until_told_to_stop(work: Coroutine[Any, Any, None]) -> None:
+    """Runs `work`; SIGTERM and SIGINT cancel it, which counts as a good end. Groups of one are unwrapped."""
+    task = asyncio.ensure_future(work)
+    is_stopping = False
+
+    def stop() -> None:
+        nonlocal is_stopping
+        is_stopping = True
+        task.cancel()
+
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        loop.add_signal_handler(number, stop)
+    try:
+        await task
+    except asyncio.CancelledError:
+        if not is_stopping:
+            raise
+    except BaseExceptionGroup as group:
+        raise _cause(group) from group
+
+
+def _cause(error: BaseException) -> BaseException:
+    """The first AosError inside nested task groups, else the first exception."""
+    if not isinstance(error, BaseExceptionGroup):
+        return error
+    causes = [_cause(inner) for inner in error.exceptions]
+    return next((cause for cause in causes if isinstance(cause, AosError)), causes[0])
+
+
+def _read_settings(settings_type: type[S]) -> S:
+    if len(sys.argv) != 2:
+        sys.exit(f"usage: python -m {settings_type.__module__.split('.')[0]} SETTINGS.json")
+    path = Path(sys.argv[1])
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=settings_type)
+    except (OSError, msgspec.MsgspecError) as error:
+        sys.exit(f"{path}: {error}")
+
+
+def _leave_fault(settings: ServiceSettings, fault: Fault) -> None:
+    path = fault_path(settings.run_dir, settings.service)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(msgspec.json.encode(fault))
+    except OSError as error:
+        _log.error("cannot write %s: %s", path, error)

@@ -1,0 +1,87 @@
+"""A stream from the bus as an asynchronous iterator with a bounded queue."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Awaitable, Callable
+from typing import Any, Generic, Self, TypeVar
+
+__all__ = ["Subscription", "merged"]
+
+T = TypeVar("T")
+
+Undeclare = Callable[[], None]
+
+
+class Subscription(Generic[T]):
+    """`async with subscription as items: async for item in items`.
+
+    Once entered, whatever is sent afterwards arrives, in the order of each sender. The oldest item gives way
+    when the queue is full; `dropped` counts those. The iteration ends when the subscription is closed, after
+    the items already queued.
+    """
+
+    def __init__(self, declare: Callable[[Subscription[T]], Awaitable[Undeclare]], queue_size: int) -> None:
+        """`declare` starts a stream into `push` of the subscription it gets, and returns what ends it."""
+        self.dropped = 0
+        self._declare = declare
+        self._undeclare: Undeclare | None = None
+        self._items: deque[T] = deque(maxlen=queue_size)
+        self._changed = asyncio.Event()
+        self._is_closed = False
+
+    async def __aenter__(self) -> Self:
+        self._undeclare = await self._declare(self)
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def has_items(self) -> bool:
+        """Whether the next item is there already."""
+        return bool(self._items)
+
+    def close(self) -> None:
+        """Ends the stream; closing twice does nothing."""
+        self._is_closed = True
+        self._changed.set()
+        if self._undeclare is not None:
+            self._undeclare()
+            self._undeclare = None
+
+    def __aiter__(self) -> Self:
+        return self
+
+    async def __anext__(self) -> T:
+        while not self._items:
+            if self._is_closed:
+                raise StopAsyncIteration
+            self._changed.clear()
+            await self._changed.wait()
+        return self._items.popleft()
+
+    def push(self, item: T) -> None:
+        """Puts an item into the queue; for the source of the stream."""
+        if self._is_closed:
+            return
+        if len(self._items) == self._items.maxlen:
+            self.dropped += 1
+        self._items.append(item)
+        self._changed.set()
+
+
+def merged(*subscriptions: Subscription[Any], queue_size: int = 1000) -> Subscription[Any]:
+    """One stream out of several that have not been entered; what one sender sends stays in order."""
+
+    async def declare(into: Subscription[Any]) -> Undeclare:
+        undeclare = [await subscription._declare(into) for subscription in subscriptions]
+
+        def undeclare_all() -> None:
+            for each in undeclare:
+                each()
+
+        return undeclare_all
+
+    return Subscription(declare, queue_size)

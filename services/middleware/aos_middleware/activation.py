@@ -1,0 +1,236 @@
+"""One activation: from parameters to the call, from what happened to the observation.
+
+Order of effect: fields of the call from the parameters; topics are listened to; the call; every topic
+message that was sent before the call ended; the result; the rules. Nothing of one activation reaches the
+next.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from typing import Any, NamedTuple
+
+from aos_middleware.evaluator import Evaluator, MappingFault
+from aos_protocol.documents import AbstractionMapping, LocalSource
+from aos_protocol.errors import AosError, BusError, SkillError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    Activate,
+    Cancel,
+    Cancelled,
+    Fault,
+    Outcome,
+    SkillCall,
+    SkillResult,
+    TopicMessage,
+)
+from aos_runtime.bus import Bus, Subscription
+from aos_runtime.clock import Clock
+from aos_runtime.subscription import merged
+
+__all__ = ["Surroundings", "fault_of", "run_activation"]
+
+CATCH_UP_S = 0.5
+"""How long to wait, after the call, for topic messages that were sent during it."""
+
+_REPLY_GRACE_S = 0.5
+_CANCEL_S = 1.0
+_SURELY_NOT_STARTED_S = 0.2
+"""An adapter that is not there is known at once; one that is lost later may have moved something."""
+
+_BATCH = 256
+_QUEUE_SIZE = 4096
+
+_STATUS = {"AOS503": "timed_out", "AOS504": "unknown", "AOS507": "cancelled", "AOS606": "unknown"}
+"""What an error says about the skill; AOS606 is a defect of the adapter, in the middle of anything."""
+
+_log = logging.getLogger("aos.middleware")
+
+
+class Surroundings(NamedTuple):
+    """What an activation reaches outside: the bus, the robot's keys, the time.
+
+    `published` is what had been sent on each topic when the last call ended; each activation updates it.
+    """
+
+    bus: Bus
+    keys: Keys
+    clock: Clock
+    published: dict[str, int]
+
+
+async def run_activation(request: Activate, evaluator: Evaluator, around: Surroundings) -> Outcome:
+    """How the activation ended, within its deadline. Whatever goes wrong is in the outcome."""
+    started_ns = around.clock.now_ns()
+    response = ""
+    local_variables: dict[str, str] = {}
+    fault: AosError | None = None
+    try:
+        response, local_variables = await _Activation(request, evaluator, around).run()
+    except MappingFault as error:
+        fault, local_variables = error, error.local_variables
+    except AosError as error:
+        fault = error
+    return Outcome(
+        request.id,
+        request.skill,
+        "observed" if fault is None else _STATUS.get(fault.code, "failed"),
+        response,
+        local_variables,
+        started_ns,
+        around.clock.now_ns(),
+        None if fault is None else fault_of(fault),
+    )
+
+
+def fault_of(error: AosError) -> Fault:
+    """An exception as a message."""
+    return Fault(error.code, error.message, error.hint, error.diagnostics)
+
+
+class _Activation:
+    """The steps of one activation and what they share: the deadline, and which messages were seen."""
+
+    def __init__(self, request: Activate, evaluator: Evaluator, around: Surroundings) -> None:
+        self._request = request
+        self._evaluator = evaluator
+        self._bus, self._keys, self._clock, self._published_before = around
+        self._mapping: AbstractionMapping = evaluator.emitted.mapping
+        self._ends_at_s = self._clock.monotonic_s() + request.deadline_s
+        self._topic_of = {
+            self._keys.topic(variable.topic): variable.topic
+            for variable in self._mapping.local_variables
+            if variable.source is LocalSource.TOPIC
+        }
+        self._seen: dict[str, int] = {}
+        self._has_seen = asyncio.Event()
+        self._fault: AosError | None = None
+
+    async def run(self) -> tuple[str, dict[str, str]]:
+        """The response and the local variables as text."""
+        fields = await self._evaluator.begin(self._request.parameters)
+        result = await self._listening_call(fields)
+        observed = await self._evaluator.finish(result.fields)
+        if observed.response is None:
+            raise self._no_response(observed.local_variables)
+        return observed.response, observed.local_variables
+
+    async def _listening_call(self, fields: dict[str, Any]) -> SkillResult:
+        """Calls the skill while topic messages are evaluated.
+
+        Mapping code that fails during the call does not end the call: the skill may be moving.
+        """
+        result: SkillResult | None = None
+        streams = [self._bus.listen(key, TopicMessage) for key in sorted(self._topic_of)]
+        async with merged(*streams, queue_size=_QUEUE_SIZE) as messages, asyncio.TaskGroup() as tasks:
+            tasks.create_task(self._take(messages))
+            try:
+                result = await self._call(fields)
+                await self._catch_up(result)
+            except AosError as error:
+                self._fault = error
+            finally:
+                messages.close()
+        if messages.dropped:
+            _log.warning("%s: %d topic messages came too fast", self._request.skill, messages.dropped)
+        if self._fault is not None:
+            raise self._fault
+        assert result is not None
+        return result
+
+    async def _call(self, fields: dict[str, Any]) -> SkillResult:
+        path = self._mapping.activation.path
+        started_s = self._clock.monotonic_s()
+        limit_s = max(self._ends_at_s - started_s, 0.0)
+        if self._mapping.activation.max_duration_s is not None:
+            limit_s = min(limit_s, self._mapping.activation.max_duration_s)
+        call = SkillCall(self._request.id, path, fields, limit_s)
+        try:
+            return await self._bus.ask(
+                self._keys.call(path), call, SkillResult, timeout_s=limit_s + _REPLY_GRACE_S
+            )
+        except BusError as error:
+            if error.code == "AOS601":
+                await self._cancel(f"{self._request.skill} did not end within {limit_s:g} s")
+                raise _timed_out(path, limit_s) from error
+            if error.code == "AOS604":
+                raise _no_adapter(path, self._clock.monotonic_s() - started_s) from error
+            raise
+
+    async def _cancel(self, reason: str) -> None:
+        """Has whatever moves stopped, as far as somebody answers."""
+        try:
+            await self._bus.ask(self._keys.cancel, Cancel(reason), Cancelled, timeout_s=_CANCEL_S)
+        except AosError as error:
+            _log.warning("%s, and stopping it failed: %s", reason, error)
+
+    async def _take(self, messages: Subscription[tuple[str, TopicMessage]]) -> None:
+        """Evaluates topic messages until the stream is closed and empty."""
+        async for first in messages:
+            batch = [first]
+            while messages.has_items and len(batch) < _BATCH:
+                batch.append(await anext(messages))
+            if self._fault is None:
+                try:
+                    await self._evaluator.take(
+                        [(self._topic_of[key], message.fields) for key, message in batch]
+                    )
+                except AosError as error:
+                    self._fault = error
+            for key, message in batch:
+                self._seen[key] = message.number
+            self._has_seen.set()
+
+    async def _catch_up(self, result: SkillResult) -> None:
+        """Waits until every message that the adapter had sent when the call ended has been evaluated."""
+        published = {path.strip("/"): number for path, number in result.published.items()}
+        sent = {}
+        for key, topic in self._topic_of.items():
+            number = published.get(topic.strip("/"), 0)
+            # An unchanged number: the topic was silent, and there is nothing to wait for.
+            if number != self._published_before.get(topic.strip("/"), 0):
+                sent[key] = number
+        self._published_before.update(published)
+        try:
+            async with asyncio.timeout(CATCH_UP_S):
+                while any(self._seen.get(key, 0) < number for key, number in sent.items()):
+                    self._has_seen.clear()
+                    await self._has_seen.wait()
+        except TimeoutError:
+            for key, number in sent.items():
+                _log.info("%s: message %d did not come, seen %d", key, number, self._seen.get(key, 0))
+
+    def _no_response(self, local_variables: dict[str, str]) -> MappingFault:
+        mapping = self._mapping
+        values = ", ".join(f"{name}={text}" for name, text in local_variables.items())
+        if mapping.response_variable:
+            message = f"the response is the text of {mapping.response_variable}, which has no value"
+            hint = "See that its code assigns it, whatever the skill's result is"
+        else:
+            message = f"no response rule of {mapping.name} holds ({values or 'no local variables'})"
+            hint = "End the rules with one whose condition is True"
+        span = mapping.rules[0].span if mapping.rules else mapping.span
+        return MappingFault(message, span, code="AOS402", hint=hint, local_variables=local_variables)
+
+
+def _timed_out(path: str, limit_s: float) -> SkillError:
+    return SkillError(
+        f"the skill at {path} did not answer within {limit_s:g} s",
+        code="AOS503",
+        hint="See the skill's log; its time is the mapping's `max_duration` or the mission's limit",
+    )
+
+
+def _no_adapter(path: str, after_s: float) -> SkillError:
+    if after_s < _SURELY_NOT_STARTED_S:
+        return SkillError(
+            f"no adapter answers calls of {path}",
+            code="AOS505",
+            hint=f"Name one for {path} under `bind:` in the deploy file, and see that it runs",
+        )
+    return SkillError(
+        f"the adapter of {path} was lost {after_s:.1f} s after it was called",
+        code="AOS504",
+        hint="Whether the skill did its work is not known",
+    )

@@ -1,0 +1,127 @@
+"""Abstraction mappings to Python: one readable module for each skill.
+
+The module's text depends on nothing but the documents, byte for byte. Every line that stands for a part of a
+document knows its place there, so that whatever Python says about the module is said about the document.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from pathlib import Path
+
+import jinja2
+import msgspec
+
+from aos_middleware.generated_lines import word
+from aos_middleware.python_code import LineOrigin, python_fault
+from aos_middleware.sections import Sections
+from aos_protocol.diagnostics import Diagnostic, Span
+from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill
+from aos_protocol.errors import DocumentError
+
+__all__ = ["EmittedMapping", "emit_mapping"]
+
+_DIGEST_LENGTH = 16
+
+_templates = jinja2.Environment(
+    loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+    undefined=jinja2.StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+    keep_trailing_newline=True,
+    autoescape=False,
+)
+
+
+class EmittedMapping(msgspec.Struct, frozen=True):
+    """A mapping as a Python module. `digest` is over `python`, and so over the documents with their places.
+
+    `origins[i]` is where line i + 1 of `python` came from, None for lines that no document part made.
+    """
+
+    skill: str
+    python: str
+    digest: str
+    origins: tuple[LineOrigin | None, ...]
+    mapping: AbstractionMapping
+
+    @property
+    def file_name(self) -> str:
+        """What the module is called in tracebacks and in the folder of generated modules."""
+        return f"{self.skill}.py"
+
+    def locate(self, line: int, column: int = 1) -> Span:
+        """The document place of a line and column of the module, both from 1."""
+        if not 1 <= line <= len(self.origins):
+            return self.mapping.span
+        origin = self.origins[line - 1]
+        return self.mapping.span if origin is None else origin.locate(column)
+
+
+def emit_mapping(skill: Skill, low_level: LowLevelDocument | None = None) -> EmittedMapping:
+    """The Python module of a skill's abstraction mapping.
+
+    DocumentError AOS121 with a diagnostic for each mistake if the documents' Python is not valid.
+    """
+    mapping = skill.mapping
+    sections = Sections(mapping, low_level)
+    request, functions, observe = sections.request(), sections.variable_functions(), sections.observe()
+    start_values = sections.start_values()
+    constants = sections.constants()
+    types = sections.low_level_types()
+    whole, parts, by_star = sections.imports()
+    if sections.diagnostics:
+        raise _refusal(mapping, sections.diagnostics)
+    support = [
+        *(["low_level_type"] if constants or types else []),
+        *(["stand_in"] if by_star or any(part.otherwise != ("pass",) for part in parts) else []),
+    ]
+    rendered = _templates.get_template("mapping.py.jinja").render(
+        skill=skill.name,
+        project=word(mapping.project),
+        documents=word(mapping.span.file),
+        digest=_digest_of(mapping, low_level),
+        support=", ".join(support),
+        whole_imports=whole,
+        from_imports=parts,
+        star_imports=by_star,
+        low_level_types=types,
+        constants=constants,
+        start_values=start_values,
+        request=request,
+        functions=functions,
+        observe=observe,
+        tables=sections.tables(constants),
+    )
+    python, origins = sections.marks.separate(rendered)
+    digest = hashlib.sha256(python.encode()).hexdigest()[:_DIGEST_LENGTH]
+    emitted = EmittedMapping(skill.name, python, digest, origins, mapping)
+    _check_whole(emitted)
+    return emitted
+
+
+def _digest_of(*documents: msgspec.Struct | None) -> str:
+    return hashlib.sha256(msgspec.msgpack.encode(documents)).hexdigest()[:_DIGEST_LENGTH]
+
+
+def _check_whole(emitted: EmittedMapping) -> None:
+    """Compiles the module, for what shows only there, such as `global` in front of a local variable."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            compile(emitted.python, emitted.file_name, "exec", dont_inherit=True)
+        except SyntaxError as error:
+            span = emitted.locate(error.lineno or 1, error.offset or 1)
+            raise _refusal(emitted.mapping, [python_fault(error, span)]) from None
+        except (ValueError, RecursionError, MemoryError) as error:
+            raise _refusal(emitted.mapping, [python_fault(error, emitted.mapping.span)]) from None
+
+
+def _refusal(mapping: AbstractionMapping, diagnostics: list[Diagnostic]) -> DocumentError:
+    return DocumentError(
+        f"the abstraction mapping of {mapping.name} cannot be used",
+        code="AOS121",
+        hint="Mend the places named with this error",
+        diagnostics=tuple(sorted(diagnostics, key=lambda each: each.span)),
+    )

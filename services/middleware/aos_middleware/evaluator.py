@@ -1,0 +1,250 @@
+"""Mapping code from the service's side: a worker process for each mapping, never more than one.
+
+The process is started when it is first needed and again after it ended, whatever ended it: a crash, an
+evaluation beyond its deadline, a kill. What mapping code prints is in a log file of its own.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import msgspec
+
+from aos_middleware.emit import EmittedMapping
+from aos_middleware.frames import (
+    MAX_FRAME_BYTES,
+    Begin,
+    Begun,
+    Done,
+    Finish,
+    Load,
+    Observed,
+    Question,
+    Raised,
+    Take,
+    pack,
+    read_answer,
+)
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.documents import LocalSource
+from aos_protocol.errors import MappingError
+from aos_runtime.children import PIPE, Child, Limits, guarded
+
+__all__ = ["EvaluationLimits", "Evaluator", "MappingFault"]
+
+A = TypeVar("A", Begun, Done, Observed)
+
+_MARGIN_S = 1.0
+"""How much longer than the worker's own deadlines an answer may take before the worker is killed."""
+
+_END_S = 1.0
+_TRACEBACK_BYTES = 16 * 1024
+_FRAME = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
+
+_log = logging.getLogger("aos.middleware")
+
+
+class EvaluationLimits(msgspec.Struct, frozen=True, kw_only=True):
+    """What mapping code may use: seconds to load its module, seconds for each evaluation, memory, imports."""
+
+    load_s: float = 5.0
+    evaluation_s: float = 0.5
+    address_space_bytes: int = 2 * 1024**3
+    file_bytes: int = 16 * 1024**2
+    allowed_imports: tuple[str, ...] | None = None
+
+
+class MappingFault(MappingError):
+    """Mapping code failed at a place of its document; `local_variables` are as they were then, as text."""
+
+    def __init__(
+        self, message: str, span: Span, *, code: str, hint: str, local_variables: dict[str, str] | None = None
+    ) -> None:
+        diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)
+        super().__init__(f"{span}: {message}", code=code, hint=hint, diagnostics=(diagnostic,))
+        self.local_variables = local_variables or {}
+
+
+class Evaluator:
+    """Runs the code of one mapping, one activation at a time: `begin`, then `take` any often, then `finish`.
+
+    Each raises MappingFault: AOS401 if mapping code raised or ended its process, AOS403 if it did not finish
+    in time. After a fault the activation is over; the next `begin` finds a worker again. Whoever runs an
+    activation holds `in_use` meanwhile.
+    """
+
+    def __init__(self, emitted: EmittedMapping, log_path: Path, limits: EvaluationLimits) -> None:
+        self.emitted = emitted
+        self.in_use = asyncio.Lock()
+        self._log_path = log_path
+        self._limits = limits
+        self._child: Child | None = None
+        self._log_start_bytes = 0
+
+    @property
+    def pid(self) -> int | None:
+        """The process under which the worker runs, None while there is none."""
+        return None if self._child is None else self._child.pid
+
+    async def start(self) -> None:
+        """Has a worker with the module loaded; MappingFault if it cannot be loaded."""
+        if self._child is not None and self._child.returncode is None:
+            return
+        await self.close()
+        self._log_path.parent.mkdir(parents=True, exist_ok=True)
+        limits = self._limits
+        command = [sys.executable, "-I", "-m", "aos_middleware.worker"]
+        with self._log_path.open("ab") as log:
+            self._log_start_bytes = log.tell()
+            self._child = await Child.start(
+                guarded(
+                    command,
+                    Limits(address_space_bytes=limits.address_space_bytes, file_bytes=limits.file_bytes),
+                ),
+                name=f"mapping of {self.emitted.skill}",
+                cwd="/",
+                stdin=PIPE,
+                stdout=PIPE,
+                stderr=log,
+            )
+        load = Load(
+            self.emitted.python,
+            self.emitted.file_name,
+            limits.load_s,
+            limits.evaluation_s,
+            limits.allowed_imports,
+        )
+        try:
+            await self._ask(load, Done, limits.load_s)
+        except MappingFault:
+            await self.close()
+            raise
+
+    async def begin(self, parameters: dict[str, Any]) -> dict[str, Any]:
+        """Starts an activation; the fields of the call."""
+        await self.start()
+        return (await self._ask(Begin(parameters), Begun, self._limits.evaluation_s)).fields
+
+    async def take(self, messages: Sequence[tuple[str, dict[str, Any]]]) -> None:
+        """Hands over topic messages, (topic, fields), in the order in which they came."""
+        variables = len(self.emitted.mapping.local_variables)
+        longest_s = self._limits.evaluation_s * len(messages) * variables
+        await self._ask(Take(list(messages)), Done, longest_s)
+
+    async def finish(self, result: dict[str, Any]) -> Observed:
+        """Ends the activation with the call's result: the response, if a rule holds, and local variables."""
+        evaluations = 1 + len(self.emitted.mapping.local_variables)
+        return await self._ask(Finish(result), Observed, self._limits.evaluation_s * evaluations)
+
+    async def close(self) -> None:
+        """Ends the worker. Closing twice does nothing."""
+        child, self._child = self._child, None
+        if child is not None:
+            await child.stop()
+
+    async def _ask(self, question: Question, expected: type[A], timeout_s: float) -> A:
+        child = self._child
+        if child is None:
+            raise self._fault("AOS401", "the worker has ended", None)
+        is_answered = False
+        try:
+            async with asyncio.timeout(timeout_s + _MARGIN_S):
+                child.stdin.write(pack(question))
+                await child.stdin.drain()
+                size = int.from_bytes(await child.stdout.readexactly(4), "big")
+                if size > MAX_FRAME_BYTES:
+                    raise self._fault("AOS401", "the worker sent no message", None)
+                answer = read_answer(await child.stdout.readexactly(size))
+            is_answered = True
+        except TimeoutError:
+            raise self._fault("AOS403", "the code did not finish in time and was stopped", None) from None
+        except (asyncio.IncompleteReadError, BrokenPipeError, ConnectionResetError):
+            limit_s = self._limits.load_s if isinstance(question, Load) else self._limits.evaluation_s
+            raise await self._why_it_ended(child, limit_s) from None
+        except msgspec.MsgspecError as error:
+            raise self._fault("AOS401", f"the worker sent no message: {error}", None) from None
+        finally:
+            if not is_answered:
+                # Also when the caller was cancelled: the next answer would be that of this question.
+                await self.close()
+        if isinstance(answer, Raised):
+            raise self._raised(answer)
+        if not isinstance(answer, expected):
+            await self.close()
+            raise self._fault("AOS401", "the worker answered another question", None)
+        return answer
+
+    def _raised(self, answer: Raised) -> MappingFault:
+        place = self.emitted.locate(answer.line, answer.column) if answer.line else None
+        return self._fault(
+            "AOS401",
+            answer.error,
+            place,
+            hint=self._unset_hint(answer),
+            local_variables=answer.local_variables,
+        )
+
+    def _unset_hint(self, answer: Raised) -> str:
+        """Most type errors in rules are about a topic that said nothing."""
+        if not answer.error.startswith(("TypeError", "AttributeError")):
+            return ""
+        for variable in self.emitted.mapping.local_variables:
+            if variable.name in answer.unset and variable.source is LocalSource.TOPIC:
+                return (
+                    f"{variable.name} had no value: no message came on {variable.topic}, "
+                    "and the document gives no initial value"
+                )
+        return ""
+
+    async def _why_it_ended(self, child: Child, limit_s: float) -> MappingFault:
+        """The fault behind a worker that ended instead of answering, from what it left in the log."""
+        try:
+            async with asyncio.timeout(_END_S):
+                status = await child.wait()
+        except TimeoutError:
+            return self._fault("AOS401", "the code closed its worker's connection", None)
+        trace = self._left_in_log()
+        place = self._place_in(trace)
+        if trace.startswith("Timeout ("):
+            return self._fault("AOS403", f"this took more than {limit_s:g} s and was stopped", place)
+        how = f"by signal {-status}" if status < 0 else f"with status {status}"
+        return self._fault("AOS401", f"the code ended its process {how}", place)
+
+    def _left_in_log(self) -> str:
+        """The traceback with which the process ended, empty if it left none."""
+        with self._log_path.open("rb") as log:
+            end = log.seek(0, 2)
+            log.seek(max(self._log_start_bytes, end - _TRACEBACK_BYTES))
+            text = log.read().decode(errors="replace")
+        starts = [text.rfind(head) for head in ("Timeout (", "Fatal Python error:")]
+        return text[max(starts) :] if max(starts) >= 0 else ""
+
+    def _place_in(self, trace: str) -> Span | None:
+        for file_name, line in _FRAME.findall(trace):
+            if file_name == self.emitted.file_name:
+                return self.emitted.locate(int(line))
+        return None
+
+    def _fault(
+        self,
+        code: str,
+        message: str,
+        place: Span | None,
+        *,
+        hint: str = "",
+        local_variables: dict[str, str] | None = None,
+    ) -> MappingFault:
+        _log.warning("mapping of %s: %s at %s", self.emitted.skill, message, place or "an unknown place")
+        return MappingFault(
+            message,
+            place or self.emitted.mapping.span,
+            code=code,
+            hint=hint or f"Mend the abstraction mapping of {self.emitted.skill}",
+            local_variables=local_variables,
+        )

@@ -1,0 +1,118 @@
+"""What the service and a mapping worker say to each other, over two pipes.
+
+A frame is four bytes of length, most significant first, and a msgpack body. The service asks, the worker
+answers each question with one frame; a question that brings no answer ends with the worker's process.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+__all__ = [
+    "MAX_FRAME_BYTES",
+    "Answer",
+    "Begin",
+    "Begun",
+    "Done",
+    "Finish",
+    "Load",
+    "Observed",
+    "Question",
+    "Raised",
+    "Take",
+    "pack",
+    "read_answer",
+    "read_question",
+]
+
+MAX_FRAME_BYTES = 64 * 1024 * 1024
+
+
+class Load(msgspec.Struct, frozen=True, tag=True):
+    """The module to run, once and first. Its statements may take `load_s`, each later evaluation
+    `evaluation_s`. `allowed_imports` names the top-level modules it may import; None is any.
+    """
+
+    python: str
+    file_name: str
+    load_s: float
+    evaluation_s: float
+    allowed_imports: tuple[str, ...] | None = None
+
+
+class Begin(msgspec.Struct, frozen=True, tag=True):
+    """An activation starts: local variables anew from these parameters. Answered by Begun."""
+
+    parameters: dict[str, Any]
+
+
+class Take(msgspec.Struct, frozen=True, tag=True):
+    """Topic messages in the order in which they came: (topic, fields). Answered by Done."""
+
+    messages: list[tuple[str, dict[str, Any]]]
+
+
+class Finish(msgspec.Struct, frozen=True, tag=True):
+    """The call's result; the activation is over. Answered by Observed."""
+
+    result: dict[str, Any]
+
+
+class Done(msgspec.Struct, frozen=True, tag=True):
+    """It is done."""
+
+
+class Begun(msgspec.Struct, frozen=True, tag=True):
+    """The fields of the call."""
+
+    fields: dict[str, Any]
+
+
+class Observed(msgspec.Struct, frozen=True, tag=True):
+    """The response, None if no rule holds, and all local variables as text."""
+
+    response: str | None
+    local_variables: dict[str, str]
+
+
+class Raised(msgspec.Struct, frozen=True, tag=True):
+    """Mapping code raised at a line and column of the module, from 1; 0 where the module is not involved.
+
+    `unset` names the local variables that the code was given as None.
+    """
+
+    error: str
+    line: int
+    column: int
+    unset: tuple[str, ...] = ()
+    local_variables: dict[str, str] = {}
+
+
+Question = Load | Begin | Take | Finish
+Answer = Done | Begun | Observed | Raised
+
+_encoder = msgspec.msgpack.Encoder()
+_questions = msgspec.msgpack.Decoder(Question)
+_answers = msgspec.msgpack.Decoder(Answer)
+
+
+def pack(message: Question | Answer) -> bytes:
+    """The frame of a message; an exception of msgspec's or of Python's if it holds no plain data."""
+    body = _encoder.encode(message)
+    if len(body) > MAX_FRAME_BYTES:
+        raise ValueError(f"{len(body)} bytes are too much for one message")
+    return len(body).to_bytes(4, "big") + body
+
+
+def read_question(body: bytes) -> Question:
+    """The question in a frame's body."""
+    question: Question = _questions.decode(body)
+    return question
+
+
+def read_answer(body: bytes) -> Answer:
+    """The answer in a frame's body; msgspec.MsgspecError if it is none."""
+    answer: Answer = _answers.decode(body)
+    return answer

@@ -1,0 +1,81 @@
+"""Lines of a generated module that remember which document place they stand for.
+
+A template decides how the module looks; each line it places carries an invisible mark, and the marks are
+taken out again after rendering. No line count is kept by hand, and no document text becomes template source.
+"""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+from aos_middleware.python_code import LineOrigin, PythonCode
+
+__all__ = ["MarkedLines", "literal", "word"]
+
+_MARK = re.compile("\x00(\\d+)\x00")
+_INDENT = " " * 4
+
+
+class MarkedLines:
+    """Makes marked lines, and finds them in the rendered text."""
+
+    def __init__(self) -> None:
+        self._origins: list[LineOrigin] = []
+
+    def line(self, text: str, origin: LineOrigin) -> str:
+        """One line that stands for `origin`."""
+        self._origins.append(origin)
+        return f"\x00{len(self._origins) - 1}\x00{text}"
+
+    def body(self, code: PythonCode, depth: int) -> list[str]:
+        """Statements, `depth` levels deep; the lines that begin inside a text keep their indentation."""
+        return [
+            self.line(line.text, line.origin)
+            if line.is_fixed
+            else self.line(_indented(line.text, depth), line.origin.indented(depth * len(_INDENT)))
+            for line in code.lines
+        ]
+
+    def expression(self, before: str, code: PythonCode, after: str, depth: int) -> list[str]:
+        """An expression between two pieces of generated text, in parentheses where it needs them."""
+        if not code.is_plain:
+            origin = code.lines[0].origin
+            return [
+                self.line(_indented(f"{before}(", depth), origin),
+                *self.body(code, depth + 1),
+                self.line(_indented(f"){after}", depth), origin),
+            ]
+        first = code.lines[0]
+        start = _indented(before, depth)
+        rest = msgspec.structs.replace(code, lines=code.lines[1:])
+        lines = [
+            self.line(f"{start}{first.text}", first.origin.indented(len(start))),
+            *self.body(rest, depth),
+        ]
+        return [*lines[:-1], f"{lines[-1]}{after}"]
+
+    def separate(self, rendered: str) -> tuple[str, tuple[LineOrigin | None, ...]]:
+        """The text without marks, and for each of its lines where it came from."""
+        origins = []
+        for line in rendered.split("\n"):
+            mark = _MARK.search(line)
+            origins.append(self._origins[int(mark[1])] if mark else None)
+        return _MARK.sub("", rendered), tuple(origins)
+
+
+def literal(text: str) -> str:
+    """A Python literal of a text."""
+    if text.isprintable() and '"' not in text and "\\" not in text:
+        return f'"{text}"'
+    return repr(text)
+
+
+def word(text: str) -> str:
+    """A document's text inside a comment or a docstring: what could end either gives way to `?`."""
+    return re.sub(r"[^\w./ -]", "?", text.strip())
+
+
+def _indented(text: str, depth: int) -> str:
+    return f"{_INDENT * depth}{text}" if text else ""

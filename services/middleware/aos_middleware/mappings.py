@@ -1,0 +1,152 @@
+"""The mappings of a project's revisions: generated, loaded, and exchanged between activations.
+
+The newest two revisions are kept: the solver may still decide with the model before the newest one, whose
+responses are those of that revision's mappings. A mapping that did not change is shared between them.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from difflib import get_close_matches
+from pathlib import Path
+
+from aos_middleware.emit import EmittedMapping, emit_mapping
+from aos_middleware.evaluator import Evaluator
+from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError, DocumentError, SkillError
+from aos_protocol.messages import ProjectRevision
+
+__all__ = ["Mappings", "emit_project"]
+
+_KEPT = 2
+
+_log = logging.getLogger("aos.middleware")
+
+
+def emit_project(project: Project) -> tuple[EmittedMapping, ...]:
+    """The mappings of all skills; DocumentError AOS121 with every diagnostic if one cannot be generated."""
+    emitted: list[EmittedMapping] = []
+    diagnostics: list[Diagnostic] = []
+    for skill in project.skills:
+        try:
+            emitted.append(emit_mapping(skill, project.low_level))
+        except DocumentError as error:
+            diagnostics += error.diagnostics
+    if diagnostics:
+        raise DocumentError(
+            f"abstraction mappings of {project.name} cannot be used",
+            code="AOS121",
+            hint="Mend the places named with this error",
+            diagnostics=tuple(diagnostics),
+        )
+    return tuple(emitted)
+
+
+class Mappings:
+    """Evaluators by revision and skill. A revision that cannot be used changes nothing but the log."""
+
+    def __init__(self, folder: Path, make_evaluator: Callable[[EmittedMapping], Evaluator]) -> None:
+        """`folder` receives the modules of the newest revision, for people."""
+        self._folder = folder
+        self._make_evaluator = make_evaluator
+        self._kept: dict[int, dict[str, Evaluator]] = {}
+        self._refusal: AosError | None = None
+        self._announced = 0
+        self._adopting = asyncio.Lock()
+
+    @property
+    def revision(self) -> int:
+        """The newest revision in use; 0 before the first."""
+        return max(self._kept, default=0)
+
+    @property
+    def skills(self) -> tuple[str, ...]:
+        """The skills of the newest revision, sorted."""
+        return tuple(sorted(self._kept.get(self.revision, {})))
+
+    def evaluator(self, skill: str, revision: int = 0) -> Evaluator:
+        """The evaluator of a skill in a revision, or in the newest where that one is not kept.
+
+        SkillError AOS501 if there is no such skill; the reason of the refusal if no revision could be used.
+        """
+        mappings = self._kept.get(revision) or self._kept.get(self.revision, {})
+        if skill in mappings:
+            return mappings[skill]
+        if not self._kept and self._refusal is not None:
+            raise self._refusal
+        near = get_close_matches(skill, mappings, n=1)
+        known = f"did you mean {near[0]}?" if near else f"Known are: {', '.join(self.skills) or 'none'}"
+        raise SkillError(f"there is no skill {skill}", code="AOS501", hint=known)
+
+    async def adopt(self, announced: ProjectRevision) -> None:
+        """Generates a revision's mappings and puts them to use; older ones, and repeats, are passed over.
+
+        What replaces mappings in use is loaded first, so that a mapping that cannot be loaded replaces
+        nothing.
+        """
+        self._announced = max(self._announced, announced.revision)
+        async with self._adopting:
+            if announced.revision < self._announced or announced.revision in self._kept:
+                return
+            try:
+                await self._adopt(announced)
+            except AosError as error:
+                self._refusal = error
+                _log.error("revision %d is not used: %s", announced.revision, error)
+                for diagnostic in error.diagnostics:
+                    _log.error("%s: %s", diagnostic.span, diagnostic.message)
+
+    async def close(self) -> None:
+        """Ends all workers."""
+        for evaluator in self._evaluators():
+            await evaluator.close()
+        self._kept.clear()
+
+    async def _adopt(self, announced: ProjectRevision) -> None:
+        emitted = emit_project(announced.project)
+        mappings = {each.skill: self._same_or_new(each) for each in emitted}
+        outdated = self._evaluators()
+        if outdated:
+            await _load(set(mappings.values()) - outdated)
+        self._kept[announced.revision] = mappings
+        self._kept = dict(sorted(self._kept.items())[-_KEPT:])
+        self._write(emitted)
+        _log.info("revision %d: mappings of %s", announced.revision, ", ".join(sorted(mappings)))
+        for evaluator in outdated - self._evaluators():
+            async with evaluator.in_use:
+                await evaluator.close()
+
+    def _same_or_new(self, emitted: EmittedMapping) -> Evaluator:
+        current = self._kept.get(self.revision, {}).get(emitted.skill)
+        if current is not None and current.emitted.digest == emitted.digest:
+            return current
+        return self._make_evaluator(emitted)
+
+    def _evaluators(self) -> set[Evaluator]:
+        return {evaluator for mappings in self._kept.values() for evaluator in mappings.values()}
+
+    def _write(self, emitted: tuple[EmittedMapping, ...]) -> None:
+        """Puts the modules where people can read them; nothing depends on it."""
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            for path in self._folder.glob("*.py"):
+                if path.name not in {each.file_name for each in emitted}:
+                    path.unlink()
+            for each in emitted:
+                (self._folder / each.file_name).write_text(each.python, encoding="utf-8")
+        except OSError as error:
+            _log.warning("the generated modules are not in %s: %s", self._folder, error)
+
+
+async def _load(evaluators: set[Evaluator]) -> None:
+    """Loads all of them, one after the other: the mission goes on meanwhile. None is left if one fails."""
+    try:
+        for evaluator in evaluators:
+            await evaluator.start()
+    except BaseException:
+        for evaluator in evaluators:
+            await evaluator.close()
+        raise

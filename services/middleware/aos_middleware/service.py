@@ -1,0 +1,138 @@
+"""The middleware service: wires documents, mappings, activations and the bus.
+
+Ready as soon as it can be asked; the project comes from the registry when that is there, and again with each
+announcement. One activation at a time runs for each skill.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from pathlib import Path
+
+import msgspec
+
+from aos_middleware.activation import Surroundings, run_activation
+from aos_middleware.emit import EmittedMapping
+from aos_middleware.evaluator import EvaluationLimits, Evaluator
+from aos_middleware.ledger import OutcomeLedger
+from aos_middleware.mappings import Mappings
+from aos_middleware.settings import Settings
+from aos_protocol.errors import AosError, BusError, SkillError
+from aos_protocol.messages import (
+    Activate,
+    ActivationId,
+    MappingQuery,
+    MappingState,
+    Outcome,
+    ProjectQuery,
+    ProjectRevision,
+)
+from aos_runtime.lifecycle import Service
+
+__all__ = ["serve"]
+
+ASK_TIMEOUT_S = 5.0
+
+_log = logging.getLogger("aos.middleware")
+
+
+async def serve(service: Service[Settings]) -> None:
+    """Answers activations until it is stopped."""
+    middleware = _Middleware(service)
+    try:
+        await middleware.run()
+    finally:
+        await middleware.close()
+
+
+class _Middleware:
+    """What the service answers, and what it remembers between answers."""
+
+    def __init__(self, service: Service[Settings]) -> None:
+        settings = service.settings
+        run_dir = Path(settings.run_dir)
+        folder = Path(settings.generated_dir) if settings.generated_dir else run_dir / "generated" / "python"
+        self._service = service
+        self._settings = settings
+        self._around = Surroundings(service.bus, service.keys, service.clock, {})
+        self._logs = run_dir / "logs"
+        self._limits = EvaluationLimits(
+            load_s=settings.load_s,
+            evaluation_s=settings.evaluation_s,
+            allowed_imports=settings.allowed_imports,
+        )
+        self._mappings = Mappings(folder, self._make_evaluator)
+        self._ledger = OutcomeLedger.open(run_dir / "middleware.db")
+        self._running: dict[ActivationId, asyncio.Event] = {}
+        self._running_skills: dict[str, ActivationId] = {}
+
+    async def run(self) -> None:
+        bus, keys = self._service.bus, self._service.keys
+        async with bus.listen(keys.announced, ProjectRevision) as announced, asyncio.TaskGroup() as tasks:
+            await bus.answer(keys.activate_any, Activate, self._activate)
+            await bus.answer(keys.mapping_state, MappingQuery, self._answer_state)
+            await self._service.ready()
+            tasks.create_task(self._adopt_current())
+            async for _, revision in announced:
+                if revision.project.name == self._settings.project:
+                    tasks.create_task(self._mappings.adopt(revision))
+
+    async def close(self) -> None:
+        await self._mappings.close()
+        self._ledger.close()
+
+    async def _adopt_current(self) -> None:
+        """Takes what the registry holds already; without it the announcement will come."""
+        question = ProjectQuery(self._settings.project)
+        try:
+            revision = await self._service.bus.ask(
+                self._service.keys.project, question, ProjectRevision, timeout_s=ASK_TIMEOUT_S
+            )
+        except AosError as error:
+            _log.info("no documents yet: %s", error)
+            return
+        await self._mappings.adopt(revision)
+
+    def _make_evaluator(self, emitted: EmittedMapping) -> Evaluator:
+        return Evaluator(emitted, self._logs / f"mapping-{emitted.skill}.log", self._limits)
+
+    async def _answer_state(self, _: MappingQuery, __: str) -> MappingState:
+        return MappingState(self._mappings.revision, self._mappings.skills)
+
+    async def _activate(self, request: Activate, key: str) -> Outcome:
+        """Runs an activation, joins the one of the same id, or tells again how it ended."""
+        if key != self._service.keys.activate(request.skill):
+            raise BusError(f"an activation of {request.skill} was sent to {key}", code="AOS602")
+        if request.id in self._running:
+            await self._running[request.id].wait()
+        known = self._ledger.outcome(request.id)
+        if known is not None:
+            return known
+        evaluator = self._mappings.evaluator(request.skill, request.revision)
+        if request.skill in self._running_skills:
+            raise SkillError(
+                f"{request.skill} is running already, for activation {self._running_skills[request.skill]}",
+                hint="Wait for its outcome, or cancel it",
+            )
+        if request.deadline_s <= 0:
+            request = msgspec.structs.replace(request, deadline_s=self._settings.activation_timeout_s)
+        return await self._run(request, evaluator)
+
+    async def _run(self, request: Activate, evaluator: Evaluator) -> Outcome:
+        ended = self._running[request.id] = asyncio.Event()
+        self._running_skills[request.skill] = request.id
+        try:
+            async with evaluator.in_use:
+                self._ledger.start(request)
+                outcome = await run_activation(request, evaluator, self._around)
+                self._ledger.end(outcome)
+        finally:
+            del self._running[request.id], self._running_skills[request.skill]
+            ended.set()
+        _log.info("%s %s: %s", request.id, request.skill, outcome.response or _why(outcome))
+        return outcome
+
+
+def _why(outcome: Outcome) -> str:
+    return f"{outcome.status}, {outcome.fault.message}" if outcome.fault else outcome.status

@@ -1,0 +1,23 @@
+"""What the middleware service is started with."""
+
+from __future__ import annotations
+
+from aos_runtime.lifecycle import ServiceSettings
+
+__all__ = ["Settings"]
+
+
+class Settings(ServiceSettings, frozen=True, kw_only=True):
+    """`project` names the documents to ask the registry for.
+
+    `activation_timeout_s` holds for an activation that comes without a deadline. Generated modules go to
+    `generated_dir`, by default `<run_dir>/generated/python`. Mapping code may import any module unless
+    `allowed_imports` names the top-level ones; it has `load_s` to load and `evaluation_s` for each function.
+    """
+
+    project: str
+    activation_timeout_s: float = 120.0
+    generated_dir: str = ""
+    load_s: float = 5.0
+    evaluation_s: float = 0.5
+    allowed_imports: tuple[str, ...] | None = None

@@ -1,0 +1,126 @@
+"""What mapping code works on: robot data as objects with attributes, and its way back to plain data.
+
+The bus carries plain data (numbers, texts, bytes, lists, dicts). Documents are written for message classes
+of a robot framework: `__input.pose.x`, `Point(x=1.0)`. `Message` gives the first, `stand_in` the second where
+the framework's class cannot be imported, and `plain_from` turns both, and the real classes, into plain data.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from enum import Enum
+from typing import Any
+
+import msgspec
+
+__all__ = ["Message", "low_level_type", "message_from", "plain_from", "stand_in", "text_of"]
+
+_MAX_DEPTH = 64
+
+
+class Message:
+    """A structure whose fields are attributes; made from field names and values."""
+
+    def __init__(self, **fields: Any) -> None:
+        self.__dict__.update(fields)
+
+    def __getattr__(self, name: str) -> Any:
+        known = list(self.__dict__)
+        near = get_close_matches(name, known, n=1)
+        has = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(known) or 'no fields'}"
+        raise AttributeError(f"no field {name!r}; {has}", name=name)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Message) and self.__dict__ == other.__dict__
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        fields = ", ".join(f"{name}={value!r}" for name, value in self.__dict__.items())
+        return f"{type(self).__name__}({fields})"
+
+
+def message_from(plain: Any) -> Any:
+    """Plain data with every dict as a `Message`."""
+    if isinstance(plain, Mapping):
+        message = Message()
+        message.__dict__.update({str(name): message_from(value) for name, value in plain.items()})
+        return message
+    if isinstance(plain, list | tuple):
+        return [message_from(item) for item in plain]
+    return plain
+
+
+def plain_from(value: Any) -> Any:
+    """The plain data of a value; TypeError if it has none.
+
+    An object counts by its public fields: those in `__slots__`, where it has them, else its attributes.
+    """
+    return _plain(value, _MAX_DEPTH)
+
+
+def stand_in(name: str, module: str) -> type[Message]:
+    """A class for `from module import name` where that cannot be imported: it takes any fields, by name."""
+
+    def __init__(self: Message, *values: Any, **fields: Any) -> None:
+        if values:
+            raise TypeError(
+                f"{module}.{name} cannot be imported here, and what stands in for it takes its fields by name"
+            )
+        Message.__init__(self, **fields)
+
+    return type(name, (Message,), {"__init__": __init__, "__module__": module})
+
+
+def low_level_type(name: str, *fields: str) -> type[Message]:
+    """The class of a low-level type: every field is None until it is assigned."""
+
+    def __init__(self: Message, **values: Any) -> None:
+        Message.__init__(self, **{**dict.fromkeys(fields), **values})
+
+    return type(name, (Message,), {"__init__": __init__})
+
+
+def text_of(value: Any) -> str:
+    """A local variable's value for people and records: JSON where it is plain data, else its `repr`."""
+    try:
+        return msgspec.json.encode(plain_from(value)).decode()
+    except (TypeError, ValueError, OverflowError):
+        return repr(value)
+
+
+def _plain(value: Any, depth: int) -> Any:
+    if depth == 0:
+        raise TypeError("the value is nested too deeply, or contains itself")
+    if isinstance(value, Enum):
+        return _plain(value.value, depth - 1)
+    if value is None or type(value) in (bool, int, float, str, bytes):
+        return value
+    if isinstance(value, bytearray | memoryview):
+        return bytes(value)
+    if isinstance(value, Mapping):
+        return {str(name): _plain(item, depth - 1) for name, item in value.items()}
+    if isinstance(value, list | tuple | set | frozenset):
+        return [_plain(item, depth - 1) for item in value]
+    if not isinstance(value, Message) and hasattr(value, "tolist"):  # numpy's arrays and numbers
+        return _plain(value.tolist(), depth - 1)
+    for primitive in (int, float, str):
+        if isinstance(value, primitive):
+            return primitive(value)
+    fields = _fields(value)
+    if fields is None:
+        raise TypeError(f"a value of type {type(value).__name__} cannot be sent to a skill")
+    return {name: _plain(getattr(value, name), depth - 1) for name in fields}
+
+
+def _fields(value: Any) -> list[str] | None:
+    if isinstance(value, type) or callable(value):
+        return None
+    if isinstance(value, Message):
+        return list(value.__dict__)
+    if hasattr(value, "get_fields_and_field_types"):  # ROS 2 messages; their slots are named otherwise
+        return list(value.get_fields_and_field_types())
+    slots = getattr(type(value), "__slots__", None)
+    names = [slots] if isinstance(slots, str) else slots or getattr(value, "__dict__", None)
+    return None if names is None else [name for name in names if not name.startswith("_")]

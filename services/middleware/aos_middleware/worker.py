@@ -1,0 +1,266 @@
+"""The process in which mapping code runs: `python -I -m aos_middleware.worker`, started by `evaluator`.
+
+Reads questions from its input and writes answers to its output, which mapping code cannot reach: what it
+prints goes to the error output. An evaluation that takes too long ends the process with a traceback there,
+even inside a C function: that is what `faulthandler` does.
+"""
+
+from __future__ import annotations
+
+import builtins
+import copy
+import faulthandler
+import io
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from types import CodeType, TracebackType
+from typing import Any, BinaryIO
+
+from aos_middleware.frames import (
+    Answer,
+    Begin,
+    Begun,
+    Done,
+    Finish,
+    Load,
+    Observed,
+    Question,
+    Raised,
+    Take,
+    pack,
+    read_question,
+)
+from aos_middleware.values import message_from, plain_from, text_of
+
+__all__ = ["LoadedMapping", "main"]
+
+_MAX_ERROR_CHARACTERS = 2000
+_MAX_PRINTED_BYTES = 1024 * 1024
+
+Function = Callable[..., Any]
+
+
+class ImportRefused(Exception):
+    """An import that the deployment does not allow; no ImportError, so that nothing stands in for it."""
+
+
+class LoadedMapping:
+    """A mapping's module, loaded, and the local variables of the activation that runs."""
+
+    def __init__(self, load: Load, error_output: int = 2) -> None:
+        """Runs the module; whatever it raises comes through. Tracebacks go to a descriptor."""
+        self._load = load
+        self._error_output = error_output
+        self._lines = load.python.split("\n")
+        self._values: dict[str, Any] = {}
+        self._last_given: dict[str, Any] = {}
+        namespace: dict[str, Any] = {
+            "__name__": load.file_name.removesuffix(".py"),
+            "__builtins__": _builtins(load.allowed_imports),
+        }
+        with warnings.catch_warnings(), self._watched(load.load_s):
+            warnings.simplefilter("ignore", SyntaxWarning)
+            exec(compile(load.python, load.file_name, "exec", dont_inherit=True), namespace)
+        self._namespace = namespace
+
+    def answer(self, question: Question) -> Answer:
+        """The answer to a question; Raised if mapping code raised."""
+        try:
+            return self._answer(question)
+        except BaseException as error:
+            # Also SystemExit: it ends an evaluation, not the worker.
+            unset = tuple(name for name, value in self._last_given.items() if value is None)
+            return raised(error, self._load.file_name, self._lines, unset, self._texts())
+
+    def _answer(self, question: Question) -> Answer:
+        match question:
+            case Begin(parameters):
+                return Begun(self._begin(parameters))
+            case Take(messages):
+                for topic, fields in messages:
+                    self._take(topic, fields)
+                return Done()
+            case Finish(result):
+                return Observed(self._finish(result), self._texts())
+            case Load():
+                raise ValueError("the module is loaded already")
+
+    def _begin(self, parameters: dict[str, Any]) -> dict[str, Any]:
+        self._values = {}
+        self._last_given = {}
+        with self._watched(self._load.evaluation_s):
+            named = self._with_constants(parameters)
+            self._values = self._namespace["local_variables"](named)
+            fields = self._call(self._namespace["request"])
+            plain: dict[str, Any] = plain_from(fields)
+        return plain
+
+    def _take(self, topic: str, fields: dict[str, Any]) -> None:
+        functions = self._namespace.get("TOPICS", {}).get(topic, {})
+        self._update(functions, message_from(fields))
+
+    def _finish(self, result: dict[str, Any]) -> str | None:
+        self._update(self._namespace.get("RESPONSE", {}), message_from(result))
+        with self._watched(self._load.evaluation_s):
+            response: str | None = self._call(self._namespace["observe"])
+        return response
+
+    def _update(self, functions: Mapping[str, Function], message: Any) -> None:
+        for name, function in functions.items():
+            with self._watched(self._load.evaluation_s):
+                self._values[name] = self._call(function, message)
+
+    def _call(self, function: Function, *message: Any) -> Any:
+        """Calls a generated function with the local variables it names."""
+        code: CodeType = function.__code__
+        names = code.co_varnames[len(message) : code.co_argcount]
+        self._last_given = {name: self._values[name] for name in names}
+        return function(*message, **self._last_given)
+
+    def _with_constants(self, plain: Any) -> Any:
+        """Plain data with the low-level constants in place of their names, each activation its own copy."""
+        constants = self._namespace.get("CONSTANTS", {})
+        if isinstance(plain, dict):
+            return {name: self._with_constants(value) for name, value in plain.items()}
+        if isinstance(plain, list):
+            return [self._with_constants(value) for value in plain]
+        if isinstance(plain, str) and plain in constants:
+            return copy.deepcopy(constants[plain])
+        return plain
+
+    def _texts(self) -> dict[str, str]:
+        return {name: text_of(value) for name, value in self._values.items()}
+
+    @contextmanager
+    def _watched(self, deadline_s: float) -> Iterator[None]:
+        """Ends the process, with a traceback on the error output, if the block takes longer."""
+        faulthandler.dump_traceback_later(deadline_s, exit=True, file=self._error_output)
+        try:
+            yield
+        finally:
+            faulthandler.cancel_dump_traceback_later()
+
+
+def raised(
+    error: BaseException,
+    file_name: str,
+    lines: list[str],
+    unset: tuple[str, ...] = (),
+    local_variables: dict[str, str] | None = None,
+) -> Raised:
+    """What an exception says, and where in the module it was: at the innermost of the module's frames."""
+    text = f"{type(error).__name__}: {_said(error)}"[:_MAX_ERROR_CHARACTERS].rstrip(": ")
+    line, column = _place(error.__traceback__, file_name, lines)
+    return Raised(text, line, column, unset, local_variables or {})
+
+
+def _said(error: BaseException) -> str:
+    try:
+        return str(error)
+    except BaseException as failure:
+        return f"(its text raised {type(failure).__name__})"
+
+
+def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tuple[int, int]:
+    place = (0, 0)
+    while trace is not None:
+        code = trace.tb_frame.f_code
+        if code.co_filename == file_name:
+            line = trace.tb_lineno
+            start = list(code.co_positions())[trace.tb_lasti // 2][2]
+            text = lines[line - 1] if 0 < line <= len(lines) else ""
+            # Python counts bytes, documents characters.
+            column = len(text.encode()[: start or 0].decode(errors="ignore")) + 1
+            place = (line, column)
+        trace = trace.tb_next
+    return place
+
+
+def _builtins(allowed_imports: tuple[str, ...] | None) -> dict[str, Any]:
+    """The builtins of mapping code; its own imports are held to the list, not those of what it imports."""
+    names = dict(vars(builtins))
+    if allowed_imports is None:
+        return names
+    allowed = {"aos_middleware", *allowed_imports}
+
+    def guarded(name: str, *arguments: Any, **named: Any) -> Any:
+        if name.partition(".")[0] not in allowed:
+            raise ImportRefused(f"this deployment does not allow mappings to import {name}")
+        return builtins.__import__(name, *arguments, **named)
+
+    names["__import__"] = guarded
+    return names
+
+
+class _Printed(io.TextIOBase):
+    """What mapping code prints: to the error output at once, up to a limit, and never an error."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+        self._left_bytes = _MAX_PRINTED_BYTES
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        if self._left_bytes > 0:
+            printed = text.encode(errors="backslashreplace")
+            self._left_bytes -= len(printed)
+            try:
+                os.write(self._descriptor, printed)
+                if self._left_bytes <= 0:
+                    os.write(self._descriptor, b"\n(the rest is left out)\n")
+            except OSError:
+                self._left_bytes = 0
+        return len(text)
+
+
+def _take_over_pipes(error_output: int) -> tuple[BinaryIO, BinaryIO]:
+    """The pipes to the service, moved to where prints and reads of mapping code do not reach them."""
+    questions = os.fdopen(os.dup(0), "rb")
+    answers = os.fdopen(os.dup(1), "wb")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr = _Printed(error_output)
+    return questions, answers
+
+
+def _answer_of(
+    mapping: LoadedMapping | None, question: Question, error_output: int
+) -> tuple[LoadedMapping | None, bytes]:
+    """The next state of the worker and the frame to send."""
+    if isinstance(question, Load) and mapping is None:
+        try:
+            return LoadedMapping(question, error_output), pack(Done())
+        except BaseException as error:
+            return None, pack(raised(error, question.file_name, question.python.split("\n")))
+    if mapping is None:
+        raise ValueError("a mapping worker is told what to load first")
+    answer = mapping.answer(question)
+    try:
+        return mapping, pack(answer)
+    except Exception as error:
+        # Whole numbers beyond 64 bits, texts that are not Unicode: plain in Python, not on the bus.
+        return mapping, pack(raised(error, "", []))
+
+
+def main() -> None:
+    """Answers questions until the input ends."""
+    error_output = os.dup(2)
+    questions, answers = _take_over_pipes(error_output)
+    faulthandler.enable(file=error_output)
+    mapping: LoadedMapping | None = None
+    while len(head := questions.read(4)) == 4:
+        body = questions.read(int.from_bytes(head, "big"))
+        mapping, frame = _answer_of(mapping, read_question(body), error_output)
+        answers.write(frame)
+        answers.flush()
+
+
+if __name__ == "__main__":
+    main()

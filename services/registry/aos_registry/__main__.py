@@ -1,0 +1,10 @@
+"""`python -m aos_registry SETTINGS.json`"""
+
+from __future__ import annotations
+
+from aos_registry.service import serve
+from aos_registry.settings import Settings
+from aos_runtime.lifecycle import run_service
+
+if __name__ == "__main__":
+    run_service(Settings, serve)

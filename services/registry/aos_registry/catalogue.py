@@ -1,0 +1,138 @@
+"""The catalogue: every accepted revision of every project, in one SQLite file.
+
+A revision is stored in one transaction, on the disk before `store` returns: after a crash at any moment the
+catalogue holds the old revision or the new one. Equal files are stored once, by digest.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sqlite3
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Self
+
+import msgspec
+
+from aos_protocol.errors import StorageError
+from aos_protocol.messages import CatalogueEntry
+
+__all__ = ["Catalogue", "Revision"]
+
+_SCHEMA_VERSION = 1
+_BUSY_TIMEOUT_S = 5.0
+_SCHEMA = """
+CREATE TABLE content (digest TEXT PRIMARY KEY, data BLOB NOT NULL) STRICT;
+CREATE TABLE revision (
+    project TEXT NOT NULL,
+    number INTEGER NOT NULL,
+    digest TEXT NOT NULL,
+    stored_ns INTEGER NOT NULL,
+    skills TEXT NOT NULL,
+    PRIMARY KEY (project, number)
+) STRICT;
+CREATE TABLE file (
+    project TEXT NOT NULL,
+    number INTEGER NOT NULL,
+    name TEXT NOT NULL,
+    content TEXT NOT NULL REFERENCES content (digest),
+    PRIMARY KEY (project, number, name)
+) STRICT;
+"""
+
+
+class Revision(msgspec.Struct, frozen=True):
+    """A stored revision with its files."""
+
+    project: str
+    number: int
+    digest: str
+    files: dict[str, bytes]
+
+
+class Catalogue:
+    """An open catalogue; has one writer."""
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        self._db = connection
+
+    @classmethod
+    def open(cls, path: Path) -> Self:
+        """The catalogue at `path`, made if it is not there; StorageError if it cannot be used."""
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            connection = sqlite3.connect(path, isolation_level=None, timeout=_BUSY_TIMEOUT_S)
+            connection.execute("PRAGMA journal_mode = WAL")
+            connection.execute("PRAGMA synchronous = FULL")
+            version = connection.execute("PRAGMA user_version").fetchone()[0]
+            if version == 0:
+                connection.executescript(f"BEGIN; {_SCHEMA} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
+        except (OSError, sqlite3.Error) as error:
+            raise StorageError(f"the catalogue {path} cannot be opened: {error}", code="AOS702") from error
+        if version not in (0, _SCHEMA_VERSION):
+            connection.close()
+            raise StorageError(
+                f"the catalogue {path} has schema {version}, this program knows {_SCHEMA_VERSION}",
+                code="AOS702",
+                hint="Use the AOS that wrote it, or move the file away",
+            )
+        return cls(connection)
+
+    def close(self) -> None:
+        self._db.close()
+
+    def store(
+        self, project: str, digest: str, files: Mapping[str, bytes], skills: tuple[str, ...], stored_ns: int
+    ) -> int:
+        """Makes the files the project's next revision and returns its number, from 1."""
+        try:
+            self._db.execute("BEGIN IMMEDIATE")
+            try:
+                number = self._write(project, digest, files, skills, stored_ns)
+            except BaseException:
+                self._db.execute("ROLLBACK")
+                raise
+            self._db.execute("COMMIT")
+        except sqlite3.Error as error:
+            raise StorageError(f"the catalogue cannot be written: {error}", code="AOS701") from error
+        return number
+
+    def _write(
+        self, project: str, digest: str, files: Mapping[str, bytes], skills: tuple[str, ...], stored_ns: int
+    ) -> int:
+        row = self._db.execute("SELECT max(number) FROM revision WHERE project = ?", (project,)).fetchone()
+        number = int(row[0] or 0) + 1
+        self._db.execute(
+            "INSERT INTO revision VALUES (?, ?, ?, ?, ?)",
+            (project, number, digest, stored_ns, json.dumps(skills)),
+        )
+        for name, data in files.items():
+            content = hashlib.sha256(data).hexdigest()
+            self._db.execute("INSERT OR IGNORE INTO content VALUES (?, ?)", (content, data))
+            self._db.execute("INSERT INTO file VALUES (?, ?, ?, ?)", (project, number, name, content))
+        return number
+
+    def current(self, project: str) -> Revision | None:
+        """The newest revision of a project; None where there is none."""
+        row = self._db.execute(
+            "SELECT number, digest FROM revision WHERE project = ? ORDER BY number DESC LIMIT 1", (project,)
+        ).fetchone()
+        if row is None:
+            return None
+        files = self._db.execute(
+            "SELECT name, data FROM file JOIN content ON content = digest WHERE project = ? AND number = ?",
+            (project, row[0]),
+        )
+        return Revision(project, row[0], row[1], dict(files.fetchall()))
+
+    def entries(self) -> tuple[CatalogueEntry, ...]:
+        """The newest revision of each project, by name."""
+        rows = self._db.execute(
+            "SELECT project, max(number), digest, stored_ns, skills FROM revision "
+            "GROUP BY project ORDER BY project"
+        )
+        return tuple(
+            CatalogueEntry(project, number, digest, stored_ns, tuple(json.loads(skills)))
+            for project, number, digest, stored_ns, skills in rows
+        )

@@ -1,0 +1,35 @@
+"""The rules across documents.
+
+`declarations` looks at names and types, `model_code` at the C++ of environment and skills, `responses` at
+what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings.
+"""
+
+from __future__ import annotations
+
+from aos_registry.assembly import Assembly
+from aos_registry.check.declarations import check_environment_names, check_skill_declarations
+from aos_registry.check.mapping_code import check_low_level, check_mapping
+from aos_registry.check.model_code import check_environment_code, check_skill_code
+from aos_registry.check.responses import check_responses
+from aos_registry.check.scope import Scope
+from aos_registry.documents.source import Findings
+
+__all__ = ["check"]
+
+
+def check(assembly: Assembly, findings: Findings) -> None:
+    """Reports all that the documents contradict; what is missing is left to `assembly`."""
+    scope = Scope.of(assembly)
+    if assembly.environment is not None:
+        check_environment_names(assembly.environment, scope, findings)
+        check_environment_code(assembly.environment, scope, findings)
+    for name, model in assembly.models.items():
+        if assembly.environment is not None:
+            check_skill_declarations(model, scope, findings)
+        check_skill_code(model, scope, findings)
+        if name in assembly.mappings:
+            check_responses(model, assembly.mappings[name], scope, findings)
+    for name, mapping in assembly.mappings.items():
+        check_mapping(mapping, assembly.models.get(name), scope, findings)
+    if assembly.low_level is not None:
+        check_low_level(assembly.low_level, findings)

@@ -1,0 +1,104 @@
+"""The pieces of model code of the documents, each with what it may read and write."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import msgspec
+
+from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet, TemporaryVariable
+
+__all__ = ["Block", "Role", "assignment_blocks", "environment_blocks", "skill_blocks"]
+
+
+class Role(msgspec.Struct, frozen=True):
+    """What a block is for: its name in messages, the copies of the state it may read and may write."""
+
+    title: str
+    reads: tuple[str, ...]
+    writes: tuple[str, ...] = ()
+    sees_chosen_action: bool = False
+    may_set_parameter_values: bool = False
+
+
+class Block(msgspec.Struct, frozen=True):
+    """One snippet in its role. `names` are the typed names around it: parameters, items, temporaries."""
+
+    role: Role
+    snippet: Snippet
+    is_expression: bool = False
+    names: Mapping[str, str] = {}
+
+
+DEFAULT = Role("the default of a variable", ("state",), ("state",), may_set_parameter_values=True)
+INITIAL = Role("the initial belief", ("state",), ("state",))
+SPECIAL = Role("a special state", ("state",))
+EXTRINSIC = Role("the extrinsic changes", ("state", "state_"), ("state_",), sees_chosen_action=True)
+HEURISTIC = Role("the state heuristic", ("state",))
+PRINT = Role("the print function", ("state",))
+PARAMETERS = Role("the list of parameters", ("state",))
+PRECONDITION = Role("the precondition", ("state",))
+ROLLOUT = Role("the rollout policy", ("state",))
+DURATION = Role("the execution time", ("state",))
+DYNAMIC = Role("the dynamic model", ("state", "state_", "state__"), ("state__",))
+GIVEN_OBSERVATION = Role("the state given the observation", ("state__", "state___"), ("state___",))
+
+
+def environment_blocks(environment: Environment) -> Iterator[Block]:
+    """All code of the environment, in the order of the document model."""
+    for compound in environment.compounds:
+        for field in compound.fields:
+            if field.default is not None:
+                yield Block(DEFAULT, field.default, is_expression=True)
+    for variable in environment.variables:
+        if variable.default_value is not None:
+            yield Block(DEFAULT, variable.default_value, is_expression=True)
+        if variable.default_code is not None:
+            yield Block(DEFAULT, variable.default_code)
+    yield from assignment_blocks(INITIAL, environment.initial_belief)
+    for special in environment.special_states:
+        if special.condition is not None:
+            yield Block(SPECIAL, special.condition, is_expression=True)
+        yield from assignment_blocks(SPECIAL, special.code)
+    yield from assignment_blocks(EXTRINSIC, environment.extrinsic_changes)
+    yield from assignment_blocks(HEURISTIC, environment.state_heuristic)
+    yield from assignment_blocks(PRINT, environment.print_state)
+
+
+def skill_blocks(model: SkillModel) -> Iterator[Block]:
+    """All code of a skill, in the order of the document model."""
+    names = {parameter.name: parameter.type for parameter in model.parameters}
+    yield from assignment_blocks(PARAMETERS, model.possible_parameters)
+    yield from assignment_blocks(PRECONDITION, model.precondition, names)
+    yield from assignment_blocks(ROLLOUT, model.rollout_policy, names)
+    yield from assignment_blocks(DURATION, model.execution_time, names)
+    yield from assignment_blocks(DYNAMIC, model.dynamic_model, names)
+    yield from assignment_blocks(GIVEN_OBSERVATION, model.state_given_observation, names)
+
+
+def assignment_blocks(
+    role: Role, assignments: tuple[Assignment, ...], names: Mapping[str, str] | None = None
+) -> Iterator[Block]:
+    """The snippets of a block's assignments; a temporary is visible in those after it too."""
+    visible = dict(names or {})
+    for assignment in assignments:
+        if assignment.temporary is not None:
+            visible[assignment.temporary.name] = _temporary_type(assignment.temporary)
+        for loops in (assignment.over_previous, assignment.over_next):
+            yield from _loop_blocks(role, loops, visible)
+        if assignment.code is not None:
+            yield Block(role, assignment.code, names=dict(visible))
+
+
+def _temporary_type(temporary: TemporaryVariable) -> str:
+    return temporary.enum_name or temporary.type
+
+
+def _loop_blocks(role: Role, loops: tuple[Iteration, ...], names: Mapping[str, str]) -> Iterator[Block]:
+    inner = dict(names)
+    for loop in loops:
+        inner[loop.item] = loop.type
+        if loop.condition is not None:
+            yield Block(role, loop.condition, is_expression=True, names=dict(inner))
+        if loop.body is not None:
+            yield Block(role, loop.body, names=dict(inner))

@@ -1,0 +1,109 @@
+"""Names and types: everything is declared once, under a usable name, with a type that exists."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import CompoundType, Environment, SkillModel
+from aos_registry.check.scope import Scope
+from aos_registry.documents.source import Findings, did_you_mean, quoted
+
+__all__ = ["CPP_KEYWORDS", "check_environment_names", "check_skill_declarations"]
+
+CPP_KEYWORDS = frozenset({
+    "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch",
+    "char", "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl",
+    "concept", "const", "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype",
+    "default", "delete", "do", "double", "dynamic_cast", "else", "enum", "explicit", "export", "extern",
+    "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new",
+    "noexcept", "not", "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "public",
+    "register", "reinterpret_cast", "requires", "return", "short", "signed", "sizeof", "static",
+    "static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local", "throw", "true",
+    "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
+    "wchar_t", "while", "xor", "xor_eq",
+})  # fmt: skip
+_OURS = frozenset({"AOS", "AOSUtils", "NULL", "state", "state_", "state__", "state___"})
+
+
+def check_environment_names(environment: Environment, scope: Scope, findings: Findings) -> None:
+    """Types, enum values and variables of the environment."""
+    types = [(enum.name, enum.span) for enum in environment.enums]
+    types += [(compound.name, compound.span) for compound in environment.compounds]
+    values = [(value, enum.span) for enum in environment.enums for value in enum.values]
+    _check_unique([*types, *values], "a type or an enum value", findings)
+    _check_unique([(v.name, v.span) for v in environment.variables], "a variable", findings)
+    for compound in environment.compounds:
+        _check_unique([(f.name, f.span) for f in compound.fields], f"a field of {compound.name}", findings)
+        for field in compound.fields:
+            _check_type(field.type, field.span, scope, findings)
+            _check_low_level_type(field.low_level_type, field.span, scope, findings)
+    _check_cycles(environment.compounds, scope, findings)
+    for variable in environment.variables:
+        _check_type(variable.type, variable.span, scope, findings)
+        _check_low_level_type(variable.low_level_type, variable.span, scope, findings)
+        for key in variable.key_types:
+            if not key.startswith("(") and key not in scope.enums:
+                hint = did_you_mean(key, scope.enums) or "A key is an enum or (start,stop,step)"
+                findings.error("AOS110", f"unknown enum `{key}`", variable.span, hint)
+
+
+def check_skill_declarations(model: SkillModel, scope: Scope, findings: Findings) -> None:
+    """A skill's parameters: names, types, and that there are values for them."""
+    parameters = [(parameter.name, parameter.span) for parameter in model.parameters]
+    _check_unique(parameters, "a parameter", findings)
+    _check_unique([(model.name, model.span)], "a skill", findings)
+    for parameter in model.parameters:
+        if not _check_type(parameter.type, parameter.span, scope, findings) or model.possible_parameters:
+            continue
+        values = [v for v in scope.variables.values() if v.is_parameter_value and v.type == parameter.type]
+        if not values:
+            hint = (
+                f"Declare action parameters of type {parameter.type} in the environment, "
+                "or let the skill's own code list them"
+            )
+            message = f"the parameter {parameter.name} of {model.name} has no values"
+            findings.error("AOS119", message, parameter.span, hint)
+    if model.possible_parameters and not model.parameters:
+        span = model.possible_parameters[0].span
+        findings.warning("AOS119", "this skill has no parameters to list values for", span)
+
+
+def _check_unique(names: Iterable[tuple[str, Span]], what: str, findings: Findings) -> None:
+    first: dict[str, Span] = {}
+    for name, span in names:
+        if name in CPP_KEYWORDS or name in _OURS:
+            findings.error("AOS126", f"`{name}` means something else in C++", span, "Choose another name")
+        elif name in first:
+            hint = f"The first is at {first[name]}"
+            findings.error("AOS126", f"`{name}` is already the name of {what}", span, hint)
+        first.setdefault(name, span)
+
+
+def _check_type(name: str, span: Span, scope: Scope, findings: Findings) -> bool:
+    unknown = scope.unknown_type_name(name)
+    if not unknown:
+        return True
+    hint = did_you_mean(unknown, scope.type_names) or f"The types are {quoted(scope.type_names)}"
+    findings.error("AOS110", f"unknown type `{unknown}`", span, hint)
+    return False
+
+
+def _check_low_level_type(name: str | None, span: Span, scope: Scope, findings: Findings) -> None:
+    if name is not None and name not in scope.low_level_types:
+        hint = did_you_mean(name, scope.low_level_types)
+        findings.warning("AOS110", f"unknown low-level type `{name}`", span, hint)
+
+
+def _check_cycles(compounds: Iterable[CompoundType], scope: Scope, findings: Findings) -> None:
+    """A compound cannot hold itself, not through others either."""
+    for compound in compounds:
+        reached: set[str] = set()
+        waiting = [compound.name]
+        while waiting:
+            inner = scope.compounds[waiting.pop()]
+            new = {field.type for field in inner.fields if field.type in scope.compounds} - reached
+            reached |= new
+            waiting += new
+        if compound.name in reached:
+            findings.error("AOS106", f"the type {compound.name} holds itself", compound.span)

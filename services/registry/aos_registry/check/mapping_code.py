@@ -1,0 +1,200 @@
+"""The Python of the mappings: does it parse, which names does it use, and which rules can fire?"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import keyword
+import warnings
+from collections.abc import Iterable
+
+from aos_protocol.documents import (
+    AbstractionMapping,
+    LocalSource,
+    LocalVariable,
+    LowLevelDocument,
+    ResponseRule,
+    SkillModel,
+    Snippet,
+)
+from aos_registry.check.scope import Scope
+from aos_registry.documents.source import Findings, did_you_mean, quoted
+
+__all__ = ["check_low_level", "check_mapping"]
+
+_BUILT_IN_NAMES = frozenset(dir(builtins))
+
+
+def check_mapping(
+    mapping: AbstractionMapping, model: SkillModel | None, scope: Scope, findings: Findings
+) -> None:
+    """Rules, local variables and the request of one mapping."""
+    _check_local_names(mapping, findings)
+    known = _known_names(mapping)
+    for rule in mapping.rules:
+        _check_expression(rule.condition, known, findings)
+    _check_order(mapping.rules, findings)
+    for field in mapping.activation.fields:
+        _check_expression(field.value, known, findings)
+    for variable in mapping.local_variables:
+        _check_variable(variable, findings)
+        if variable.source is LocalSource.PARAMETER and model is not None:
+            _check_parameter(variable, model, scope, findings)
+    local_names = [variable.name for variable in mapping.local_variables]
+    if mapping.response_variable and mapping.response_variable not in local_names:
+        message = f"unknown local variable `{mapping.response_variable}`"
+        findings.error("AOS110", message, mapping.span, _hint(mapping.response_variable, local_names))
+
+
+def check_low_level(document: LowLevelDocument, findings: Findings) -> None:
+    """The code that makes low-level constants."""
+    for constant in document.constants:
+        _parse(constant.code, "exec", findings)
+
+
+def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
+    first: dict[str, LocalVariable] = {}
+    for variable in mapping.local_variables:
+        if keyword.iskeyword(variable.name):
+            message = f"`{variable.name}` is a word of Python"
+            findings.error("AOS126", message, variable.span, "Choose another name")
+        elif variable.name in first:
+            hint = f"The first is at {first[variable.name].span}"
+            findings.error("AOS126", f"a second local variable `{variable.name}`", variable.span, hint)
+        first.setdefault(variable.name, variable)
+    for field in mapping.activation.fields:
+        if keyword.iskeyword(field.name):
+            message = f"the field `{field.name}` is a word of Python"
+            findings.error("AOS126", message, field.value.span, "Choose another name")
+
+
+def _known_names(mapping: AbstractionMapping) -> frozenset[str] | None:
+    """The names an expression may use; None where an `import *` brings names we cannot know."""
+    imports = [*mapping.activation.imports]
+    for variable in mapping.local_variables:
+        imports += variable.imports
+    names = [name.split(" as ")[-1].strip().split(".")[0] for item in imports for name in item.names]
+    if "*" in names:
+        return None
+    return _BUILT_IN_NAMES.union(names, (variable.name for variable in mapping.local_variables))
+
+
+# --- code ----------------------------------------------------------------------------------------------
+
+
+def _check_expression(snippet: Snippet | None, known: frozenset[str] | None, findings: Findings) -> None:
+    """Parses an expression; a name that nothing gives is a warning, since it fails only when it runs."""
+    tree = _parse(snippet, "eval", findings) if snippet is not None else None
+    if snippet is None or tree is None or known is None:
+        return
+    bound = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
+    bound |= {argument.arg for argument in ast.walk(tree) if isinstance(argument, ast.arg)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and node.id not in known | bound:
+            column = _column(snippet, node.lineno, node.col_offset)
+            span = snippet.locate(node.lineno, column)
+            hint = did_you_mean(node.id, sorted(known))
+            findings.warning("AOS110", f"no local variable gives `{node.id}`", span, hint)
+
+
+def _check_variable(variable: LocalVariable, findings: Findings) -> None:
+    if variable.initial_value is not None:
+        _parse(variable.initial_value, "eval", findings)
+    if variable.code is None:
+        return
+    tree = _parse(variable.code, "exec", findings)
+    if tree is None:
+        return
+    if variable.source is LocalSource.SERVICE_RESPONSE:
+        assigned = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+        if variable.name not in assigned:
+            message = f"this code never assigns `{variable.name}`"
+            hint = f"It assigns {quoted(sorted(assigned))}" if assigned else "Write `name = ...`"
+            findings.error("AOS121", message, variable.code.span, hint)
+    elif not any(isinstance(node, ast.Return) for node in ast.walk(tree)):
+        hint = f"Without it {variable.name} becomes None with each message"
+        findings.warning("AOS121", "this code returns nothing", variable.code.span, hint)
+
+
+def _parse(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
+    """The syntax tree; None, with an error at its place, where it is not Python."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(snippet.code, mode=mode)
+    except SyntaxError as error:
+        span = snippet.locate(error.lineno or 1, error.offset or 1)
+        findings.error("AOS121", f"this is not Python: {error.msg}", span)
+    except (ValueError, RecursionError, MemoryError) as error:
+        findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
+    return None
+
+
+def _column(snippet: Snippet, line: int, byte_offset: int) -> int:
+    """A column from 1 for an offset in UTF-8 bytes, as `ast` gives it."""
+    text = snippet.code.split("\n")[line - 1]
+    return len(text.encode()[:byte_offset].decode(errors="ignore")) + 1
+
+
+# --- rules ---------------------------------------------------------------------------------------------
+
+
+def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
+    """The first rule that holds wins: what stands behind an always-true rule never fires."""
+    always: ResponseRule | None = None
+    seen: dict[str, ResponseRule] = {}
+    for rule in rules:
+        truth = _constant_truth(rule.condition)
+        key = rule.condition.code if rule.condition is not None else "True"
+        span = rule.condition.span if rule.condition is not None else rule.span
+        if always is not None:
+            hint = f"The rule on line {always.span.line} always holds"
+            findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
+        elif truth is False:
+            findings.warning("AOS118", f"the rule for {rule.response} never fires", span)
+        elif key in seen:
+            hint = f"The rule on line {seen[key].span.line} has the same condition"
+            findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
+        if always is None and truth is True:
+            always = rule
+        seen.setdefault(key, rule)
+
+
+def _constant_truth(condition: Snippet | None) -> bool | None:
+    if condition is None:
+        return True
+    try:
+        return bool(ast.literal_eval(condition.code))
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
+        return None
+
+
+# --- parameters ----------------------------------------------------------------------------------------
+
+
+def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, findings: Findings) -> None:
+    name, *fields = variable.parameter_path.split(".")
+    parameters = {parameter.name: parameter.type for parameter in model.parameters}
+    if name not in parameters:
+        message = f"the skill {model.name} has no parameter `{name}`"
+        findings.error("AOS110", message, variable.span, _hint(name, parameters))
+        return
+    kind = parameters[name]
+    for field in fields:
+        compound = scope.compounds.get(kind)
+        if compound is None:
+            if scope.has_environment and not scope.unknown_type_name(kind):
+                message = f"`{field}` of a {kind}, which has no fields"
+                findings.error("AOS110", message, variable.span)
+            return
+        types = {inner.name: inner.type for inner in compound.fields}
+        if field not in types:
+            message = f"the type {kind} has no field `{field}`"
+            findings.error("AOS110", message, variable.span, _hint(field, types))
+            return
+        kind = types[field]
+
+
+def _hint(name: str, known: Iterable[str]) -> str:
+    known = sorted(known)
+    return did_you_mean(name, known) or (f"There are {quoted(known)}" if known else "")

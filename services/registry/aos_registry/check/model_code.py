@@ -1,0 +1,263 @@
+"""The C++ of environment and skills: does each snippet stay in its function, and mean what exists?"""
+
+from __future__ import annotations
+
+import re
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Assignment, Environment, SkillModel
+from aos_registry.check.blocks import Block, environment_blocks, skill_blocks
+from aos_registry.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
+from aos_registry.check.weights import check_weights
+from aos_registry.documents.source import Findings, did_you_mean, quoted
+from aos_runtime.snippets import (
+    Access,
+    Cpp,
+    DeclarationKind,
+    Extent,
+    FaultKind,
+    Mention,
+    read_cpp,
+    read_cpp_expression,
+)
+
+__all__ = ["SPECIAL_NAMES", "check_environment_code", "check_skill_code", "read_block"]
+
+SPECIAL_NAMES = frozenset({
+    "__heuristicValue", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime", "__moduleResponse",
+    "__moduleResponseStr", "__possibleParameters", "__reward", "__stopEvaluatingState",
+})  # fmt: skip
+_BUILT_INS = {
+    "AOS": (
+        "Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform", "SetNull", "IsInitialized",
+        "Initialize", "Uninitialize",
+    ),
+    "AOSUtils": ("Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform"),
+}  # fmt: skip
+_COMPILER_NAMES = re.compile(r"__[a-zA-Z]+__|__(builtin|func|int|attribute)\w*")
+_LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
+
+
+def check_environment_code(environment: Environment, scope: Scope, findings: Findings) -> None:
+    """All model code of the environment."""
+    blocks = (
+        environment.initial_belief,
+        environment.extrinsic_changes,
+        environment.state_heuristic,
+        environment.print_state,
+        *(special.code for special in environment.special_states),
+    )
+    for block in blocks:
+        _check_loops(block, scope, findings)
+    for piece in environment_blocks(environment):
+        _BlockCheck(piece, scope, findings, {}).run()
+
+
+def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> None:
+    """All model code of a skill."""
+    blocks = (
+        model.possible_parameters,
+        model.precondition,
+        model.rollout_policy,
+        model.execution_time,
+        model.dynamic_model,
+        model.state_given_observation,
+    )
+    temporaries: dict[str, int] = {}
+    for block in blocks:
+        _check_loops(block, scope, findings)
+        for assignment in block:
+            if assignment.temporary is not None and assignment.temporary.enum_values:
+                temporaries[assignment.temporary.enum_name] = len(assignment.temporary.enum_values)
+    for piece in skill_blocks(model):
+        _BlockCheck(piece, scope, findings, temporaries).run()
+
+
+def read_block(block: Block) -> Cpp:
+    """A block's snippet, read."""
+    return (read_cpp_expression if block.is_expression else read_cpp)(block.snippet.code)
+
+
+def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings) -> None:
+    for assignment in block:
+        if assignment.temporary is not None and not assignment.temporary.enum_name:
+            temporary = assignment.temporary
+            if scope.has_environment and (unknown := scope.unknown_type_name(temporary.type)):
+                hint = did_you_mean(unknown, scope.type_names)
+                findings.error("AOS110", f"unknown type `{unknown}`", temporary.span, hint)
+        for loop in (*assignment.over_previous, *assignment.over_next):
+            if scope.has_environment and loop.type not in scope.compounds:
+                hint = did_you_mean(loop.type, scope.compounds) or "A loop runs over a compound type"
+                findings.error("AOS110", f"unknown compound type `{loop.type}`", loop.span, hint)
+
+
+class _BlockCheck:
+    """One snippet against the names of the project."""
+
+    def __init__(self, block: Block, scope: Scope, findings: Findings, enum_sizes: dict[str, int]) -> None:
+        self._block = block
+        self._scope = scope
+        self._findings = findings
+        self._cpp = read_block(block)
+        self._enum_sizes = {name: len(enum.values) for name, enum in scope.enums.items()} | enum_sizes
+        self._locals = {declaration.name: declaration.type for declaration in self._cpp.declarations}
+
+    def run(self) -> None:
+        for fault in self._cpp.faults:
+            if fault.kind is FaultKind.SYNTAX:
+                message, hint = f"{fault.message} in C++", "The compiler will tell more"
+                self._findings.warning("AOS108", message, self._span(fault.extent), hint)
+            else:
+                self._findings.error("AOS108", fault.message, self._span(fault.extent))
+        if any(fault.kind is not FaultKind.SYNTAX for fault in self._cpp.faults):
+            return
+        self._check_semicolons()
+        for mention in self._cpp.mentions:
+            self._check_mention(mention)
+        self._check_calls()
+        self._check_lone_name()
+
+    def _check_semicolons(self) -> None:
+        for offset in self._cpp.missing_semicolons:
+            line = self._cpp.code.count("\n", 0, offset) + 1
+            column = offset - (self._cpp.code.rfind("\n", 0, offset) + 1) + 1
+            span = self._block.snippet.locate(line, column)
+            self._findings.warning("AOS127", "a semicolon is missing here", span, "It is put in")
+
+    def _check_calls(self) -> None:
+        for enum in self._cpp.declarations:
+            if enum.kind is DeclarationKind.ENUM:
+                values = [d for d in self._cpp.declarations if d.kind is DeclarationKind.ENUMERATOR]
+                self._enum_sizes[enum.name] = sum(value.type == enum.name for value in values)
+        for call in self._cpp.calls:
+            owner = call.name[0] if len(call.name) == 2 else ""
+            if owner in _BUILT_INS and call.name[1] not in _BUILT_INS[owner]:
+                known = _BUILT_INS[owner]
+                hint = did_you_mean(call.name[1], known) or f"It has {quoted(known)}"
+                span = self._part_span(call.function, call.name[1])
+                self._findings.error("AOS110", f"{owner} has no `{call.name[1]}`", span, hint)
+            elif owner in _BUILT_INS:
+                check_weights(call, self._cpp.code, self._enum_sizes, self._span, self._findings)
+
+    def _check_lone_name(self) -> None:
+        """A default that is one name must be an enum's value, or low-level."""
+        mentions = self._cpp.mentions
+        if not self._block.is_expression or len(mentions) != 1 or len(mentions[0].path) != 1:
+            return
+        name = mentions[0].path[0]
+        known = {*self._scope.enum_values, *self._scope.low_level_names, *self._block.names}
+        if name == self._block.snippet.code.strip() and not name.startswith("_") and name not in known:
+            if name in _LITERAL_NAMES or name.isupper():
+                return
+            hint = did_you_mean(name, known)
+            self._findings.error("AOS110", f"unknown name `{name}`", self._span(mentions[0].root), hint)
+
+    # --- mentions --------------------------------------------------------------------------------------
+
+    def _check_mention(self, mention: Mention) -> None:
+        root = mention.path[0]
+        if mention.access is Access.CALL or root in self._locals:
+            return
+        if root in STATE_COPIES:
+            self._check_copy(mention, root)
+            self._check_state_path(mention)
+        elif root in self._block.names:
+            self._check_named_path(mention, root)
+        elif self._block.role.sees_chosen_action and root in self._scope.skills and len(mention.path) > 1:
+            self._check_action_path(mention, root)
+        elif root.startswith("__") and not _COMPILER_NAMES.fullmatch(root):
+            self._check_reserved_name(mention, root)
+
+    def _check_reserved_name(self, mention: Mention, root: str) -> None:
+        known = (*SPECIAL_NAMES, *self._scope.low_level_names)
+        if root not in known:
+            hint = did_you_mean(root, known)
+            self._findings.error("AOS110", f"unknown name `{root}`", self._span(mention.root), hint)
+
+    def _check_copy(self, mention: Mention, root: str) -> None:
+        role = self._block.role
+        is_write = mention.access in (Access.WRITE, Access.UPDATE)
+        if self._scope.is_one_state_model:
+            return
+        span = self._span(mention.root)
+        if root not in role.reads:
+            hint = f"It sees {quoted(role.reads)} only"
+            self._findings.error("AOS123", f"{role.title} has no `{root}`", span, hint)
+        elif is_write and root not in role.writes:
+            hint = f"It may write {quoted(role.writes)}" if role.writes else "It may not change the state"
+            self._findings.error("AOS123", f"{role.title} writes `{mention.text}`", span, hint)
+
+    def _check_state_path(self, mention: Mention) -> None:
+        if len(mention.path) == 1 or not self._scope.has_environment:
+            return
+        name = mention.path[1]
+        found = self._scope.state_member(name)
+        if found is None:
+            known = self._scope.state_member_names()
+            hint = did_you_mean(name, known) or f"The variables are {quoted(self._scope.variables)}"
+            span = self._part_span(mention.extent, name)
+            self._findings.error("AOS110", f"unknown state variable `{name}`", span, hint)
+            return
+        self._check_fields(mention, found, start=2)
+        variable = self._scope.variables.get(name)
+        is_write = mention.access in (Access.WRITE, Access.UPDATE)
+        is_constant = variable is not None and variable.is_parameter_value
+        if is_constant and is_write and not self._block.role.may_set_parameter_values:
+            message = f"{self._block.role.title} writes {name}, which is a value of an action parameter"
+            hint = "Such values are constants; set them where they are declared"
+            self._findings.error("AOS128", message, self._span(mention.extent), hint)
+
+    def _check_named_path(self, mention: Mention, root: str) -> None:
+        kind = self._block.names[root]
+        self._check_fields(mention, ValueType(kind), start=1)
+
+    def _check_action_path(self, mention: Mention, root: str) -> None:
+        parameters = {p.name: p.type for p in self._scope.skills[root].parameters}
+        name = mention.path[1]
+        if name in parameters:
+            self._check_fields(mention, ValueType(parameters[name]), start=2)
+            return
+        hint = did_you_mean(name, parameters)
+        span = self._part_span(mention.extent, name)
+        self._findings.error("AOS110", f"the skill {root} has no parameter `{name}`", span, hint)
+
+    def _check_fields(self, mention: Mention, kind: ValueType, *, start: int) -> None:
+        """Walks an access path through compound types; stops where a type is not of the documents."""
+        is_container = kind.is_container
+        name = kind.name
+        for part in mention.path[start:]:
+            if part == "[]" and is_container:
+                is_container = False
+                continue
+            if is_container or part == "[]":
+                return
+            if name in NUMBERS or name in self._scope.enums:
+                message = f"`{part}` of a {name}, which has no fields"
+                self._findings.error("AOS110", message, self._part_span(mention.extent, part))
+                return
+            compound = self._scope.compounds.get(name)
+            if compound is None:
+                return
+            fields = {field.name: field.type for field in compound.fields}
+            if part not in fields:
+                hint = did_you_mean(part, fields) or f"It has {quoted(fields)}"
+                span = self._part_span(mention.extent, part)
+                self._findings.error("AOS110", f"the type {name} has no field `{part}`", span, hint)
+                return
+            name = fields[part]
+
+    # --- places ----------------------------------------------------------------------------------------
+
+    def _span(self, extent: Extent) -> Span:
+        return self._block.snippet.locate(extent.line, extent.column)
+
+    def _part_span(self, extent: Extent, part: str) -> Span:
+        """Where a name stands inside a path."""
+        text = self._cpp.code[extent.start : extent.end]
+        match = re.search(rf"(?<![\w]){re.escape(part)}(?!\w)", text)
+        if match is None:
+            return self._span(extent)
+        before = text[: match.start()]
+        line = extent.line + before.count("\n")
+        column = match.start() - before.rfind("\n") if "\n" in before else extent.column + match.start()
+        return self._block.snippet.locate(line, column)

@@ -1,0 +1,97 @@
+"""What a skill document reports against what its abstraction mapping gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aos_protocol.documents import AbstractionMapping, SkillModel
+from aos_registry.check.blocks import DYNAMIC, Block, assignment_blocks
+from aos_registry.check.model_code import SPECIAL_NAMES, read_block
+from aos_registry.check.scope import STATE_COPIES, Scope
+from aos_registry.documents.source import Findings, did_you_mean, quoted
+from aos_runtime.snippets import Access, Cpp, Mention
+
+__all__ = ["check_responses"]
+
+_KNOWN_TO_CPP = frozenset({"AOS", "AOSUtils", "false", "nullptr", "NULL", "this", "true"})
+
+
+def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope, findings: Findings) -> None:
+    """Both directions: a response that no rule gives, and a rule whose response no code produces."""
+    blocks = list(assignment_blocks(DYNAMIC, model.dynamic_model))
+    read = [(block, read_block(block)) for block in blocks]
+    if any(cpp.faults for _, cpp in read):
+        return
+    known = _known_names(model, scope, read)
+    given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
+    for block, mention in _assigned_names(read):
+        name = mention.path[0]
+        if name in given or name in known:
+            continue
+        span = block.snippet.locate(mention.root.line, mention.root.column)
+        message = f"the abstraction mapping of {model.name} has no response `{name}`"
+        findings.error("AOS116", message, span, _hint(name, given))
+    _check_text_response(model, mapping, read, findings)
+    mentioned = {mention.path[0] for _, cpp in read for mention in cpp.mentions if len(mention.path) == 1}
+    for rule in mapping.rules:
+        if rule.response in scope.enum_values:
+            message = f"the response {rule.response} has the name of an enum value"
+            findings.warning("AOS126", message, rule.span, "In the skill's code it is the response")
+        if rule.response not in mentioned and not mapping.response_variable:
+            message = f"the skill document of {model.name} never produces the response {rule.response}"
+            hint = "When it comes, the belief has no explanation for it"
+            findings.warning("AOS117", message, rule.span, hint)
+
+
+def _hint(name: str, given: tuple[str, ...]) -> str:
+    if hint := did_you_mean(name, given):
+        return hint
+    return f"It has {quoted(given)}" if given else "Add a response with its rule to the mapping"
+
+
+def _check_text_response(
+    model: SkillModel, mapping: AbstractionMapping, read: list[tuple[Block, Cpp]], findings: Findings
+) -> None:
+    writes = [
+        (block, mention)
+        for block, cpp in read
+        for mention in cpp.mentions
+        if mention.path[0] == "__moduleResponseStr"
+    ]
+    if writes and not mapping.response_variable:
+        block, mention = writes[0]
+        span = block.snippet.locate(mention.root.line, mention.root.column)
+        hint = "Name the local variable that holds it with `response_local_variable:`"
+        message = f"the abstraction mapping of {model.name} gives no text response"
+        findings.warning("AOS116", message, span, hint)
+    if mapping.response_variable and not writes and model.dynamic_model:
+        message = f"the skill document of {model.name} never sets __moduleResponseStr"
+        findings.warning("AOS117", message, mapping.span)
+
+
+def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Mention]]:
+    """The lone names in what is assigned to `__moduleResponse`."""
+    for block, cpp in read:
+        extents = [
+            mention.assigned
+            for mention in cpp.mentions
+            if mention.path == ("__moduleResponse",) and mention.assigned is not None
+        ]
+        for mention in cpp.mentions:
+            is_name = len(mention.path) == 1 and mention.access is Access.READ
+            at = mention.extent.start
+            if is_name and any(extent.start <= at < extent.end for extent in extents):
+                yield block, mention
+
+
+def _known_names(model: SkillModel, scope: Scope, read: list[tuple[Block, Cpp]]) -> set[str]:
+    known = {*SPECIAL_NAMES, *_KNOWN_TO_CPP, *STATE_COPIES, *scope.enum_values, *scope.enums}
+    known |= {*scope.low_level_names, *(parameter.name for parameter in model.parameters)}
+    blocks = (model.precondition, model.execution_time, model.dynamic_model)
+    for assignment in (assignment for block in blocks for assignment in block):
+        if assignment.temporary is not None:
+            temporary = assignment.temporary
+            known |= {temporary.name, temporary.enum_name, *temporary.enum_values}
+    for block, cpp in read:
+        known |= {*block.names, *(declaration.name for declaration in cpp.declarations)}
+    return known

@@ -1,0 +1,72 @@
+"""Probabilities and weights that stand as numbers in the model code."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+
+from aos_protocol.diagnostics import Span
+from aos_registry.documents.source import Findings
+from aos_runtime.snippets import Call, Extent
+
+__all__ = ["check_weights"]
+
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?[fF]?")
+_WEIGHT_LIST = re.compile(
+    r"(?:(?:std::)?vector\s*<\s*(?:float|double)\s*>\s*\(?\s*)?\{(.*)\}\s*\)?", re.DOTALL
+)
+_TOLERANCE = 1e-6
+
+
+def check_weights(
+    call: Call,
+    code: str,
+    enum_sizes: Mapping[str, int],
+    span_of: Callable[[Extent], Span],
+    findings: Findings,
+) -> None:
+    """Checks the literal numbers of a Bernoulli or SampleDiscrete call; expressions are left alone."""
+    arguments = [code[argument.start : argument.end] for argument in call.arguments]
+    if call.name[1] == "Bernoulli" and arguments:
+        probability = _number(arguments[0])
+        if probability is not None and not 0.0 <= probability <= 1.0:
+            span = span_of(call.arguments[0])
+            findings.error("AOS122", f"{probability:g} is no probability", span, "It lies between 0 and 1")
+    elif call.name[1] == "SampleDiscrete" and arguments:
+        weights = _weights(arguments[-1])
+        if weights:
+            size = enum_sizes.get(arguments[0]) if len(arguments) > 1 else None
+            span = span_of(call.arguments[-1])
+            _check_list(weights, size, span, findings, is_normalised=call.name[0] == "AOS")
+
+
+def _check_list(
+    weights: list[float], size: int | None, span: Span, findings: Findings, *, is_normalised: bool
+) -> None:
+    total = sum(weights)
+    if min(weights) < 0.0:
+        findings.error("AOS122", f"{min(weights):g} is no weight", span, "Weights are not negative")
+    elif total == 0.0:
+        findings.error("AOS122", "these weights are all zero", span, "At least one must be above 0")
+    elif size is not None and len(weights) > size:
+        findings.error("AOS122", f"{len(weights)} weights for {size} values", span)
+    elif abs(total - 1.0) > _TOLERANCE and is_normalised:
+        hint = "They are divided by their sum"
+        findings.warning("AOS122", f"these weights add up to {total:.6g}", span, hint)
+    elif abs(total - 1.0) > _TOLERANCE:
+        hint = "AOSUtils does not divide by the sum: a missing part gives -1, a surplus is cut off"
+        findings.warning("AOS122", f"these weights add up to {total:.6g}", span, hint)
+
+
+def _weights(text: str) -> list[float]:
+    """The numbers of a literal list; none where one of them is an expression."""
+    match = _WEIGHT_LIST.fullmatch(text.strip())
+    if match is None:
+        return []
+    numbers = [_number(item) for item in match.group(1).rstrip(", \n").split(",")]
+    return [number for number in numbers if number is not None] if None not in numbers else []
+
+
+def _number(text: str) -> float | None:
+    text = text.strip()
+    return float(text.rstrip("fF")) if _NUMBER.fullmatch(text) else None

@@ -1,0 +1,71 @@
+"""What a reader gives: one document with its identity."""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+
+import msgspec
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import AbstractionMapping, Environment, LowLevelDocument, SkillModel
+from aos_registry.documents.source import Findings, Text
+
+__all__ = ["Document", "DocumentKind", "check_name", "normal_type"]
+
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}|_[A-Za-z0-9][A-Za-z0-9_]{0,62}|_")
+_TYPE_SPELLINGS = {
+    "Bool": "bool",
+    "boolean": "bool",
+    "Int": "int",
+    "integer": "int",
+    "Float": "float",
+    "Double": "double",
+    "String": "string",
+    "str": "string",
+    "std::string": "string",
+    "AnyValue": "anyValue",
+}
+
+
+class DocumentKind(StrEnum):
+    """The kinds, by the name messages give them."""
+
+    ENVIRONMENT = "environment document"
+    SKILL = "skill document"
+    MAPPING = "abstraction mapping"
+    LOW_LEVEL = "low-level document"
+
+
+class Document(msgspec.Struct, frozen=True):
+    """A document as read. What could not be read is empty, and `content` is None where too much of it is."""
+
+    kind: DocumentKind
+    project: str
+    name: str
+    span: Span
+    content: Environment | SkillModel | AbstractionMapping | LowLevelDocument | None
+
+    @property
+    def identity(self) -> tuple[DocumentKind, str]:
+        """What a newer document of the project replaces. There is one environment, whatever its name."""
+        is_single = self.kind in (DocumentKind.ENVIRONMENT, DocumentKind.LOW_LEVEL)
+        return (self.kind, "" if is_single else self.name)
+
+
+def check_name(name: Text, what: str, findings: Findings) -> bool:
+    """Whether a name can stand in C++ and Python; an error where it cannot."""
+    if _IDENTIFIER.fullmatch(name.text):
+        return True
+    hint = "A name is at most 64 letters, digits and underscores, and starts with a letter"
+    findings.error("AOS126", f"{name.text!r} cannot be the name of {what}", name.span, hint)
+    return False
+
+
+def normal_type(name: Text, findings: Findings) -> str:
+    """The type's canonical spelling; a warning where it is another."""
+    canonical = _TYPE_SPELLINGS.get(name.text)
+    if canonical is None:
+        return name.text
+    findings.warning("AOS127", f"the type {name.text}", name.span, f"It is read as {canonical}")
+    return canonical

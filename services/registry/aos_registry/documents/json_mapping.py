@@ -1,0 +1,168 @@
+"""The abstraction mapping in JSON (`Glue`, in the paper `AM`)."""
+
+from __future__ import annotations
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import (
+    AbstractionMapping,
+    Activation,
+    ActivationField,
+    Import,
+    LocalVariable,
+    ResponseRule,
+    Snippet,
+)
+from aos_registry.documents.code import dedented, expression
+from aos_registry.documents.document import check_name, normal_type
+from aos_registry.documents.json_record import Record
+from aos_registry.documents.local_variable import LocalVariableParts, build_local_variable
+from aos_registry.documents.source import Text
+
+__all__ = ["read_mapping"]
+
+
+def read_mapping(record: Record, project: str, name: str, span: Span) -> AbstractionMapping | None:
+    """The mapping; None where the activation cannot be read."""
+    record.ignore("GlueFramework")
+    rules, response_variable = _responses(record)
+    locals_ = [_local_variable(item) for item in record.records("LocalVariablesInitialization", "a variable")]
+    activation = _activation(record)
+    if activation is None:
+        return None
+    return AbstractionMapping(
+        project=project,
+        name=name,
+        span=span,
+        activation=activation,
+        rules=rules,
+        response_variable=response_variable,
+        local_variables=tuple(variable for variable in locals_ if variable is not None),
+    )
+
+
+def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], str]:
+    group = record.record("ModuleResponse", "ModuleResponse")
+    if group is None:
+        return (), ""
+    rules = []
+    for item in group.records("ResponseRules", "a response rule"):
+        response = item.text("Response", required=True)
+        condition = _python_expression(item.code("ConditionCodeWithLocalVariables"))
+        item.ignore("Comment")
+        if item.has("AssignGlobalVariables"):
+            message = "a response rule that assigns low-level values is not supported"
+            record.findings.warning("AOS124", message, item.key_span("AssignGlobalVariables"))
+        item.finish()
+        if response and check_name(response, "a response", record.findings):
+            rules.append(ResponseRule(response.text, condition, response.span))
+    variable = group.text("FromStringLocalVariable")
+    group.ignore("Comment")
+    group.obsolete("EnumResponse", "The response rules name the responses")
+    group.finish()
+    return tuple(rules), variable.text if variable else ""
+
+
+def _activation(record: Record) -> Activation | None:
+    group = record.record("ModuleActivation", "ModuleActivation", required=True)
+    if group is None:
+        return None
+    max_duration_s = group.number("MaxDuration")
+    if max_duration_s is not None and max_duration_s <= 0.0:
+        message = "the longest duration must be above 0 s"
+        record.findings.error("AOS106", message, group.value_span("MaxDuration"))
+    ros = group.record("RosService", "RosService")
+    skill = group.record("Skill", "Skill")
+    group.finish()
+    service = ros or skill
+    if service is None:
+        message = 'ModuleActivation lacks "RosService"'
+        record.findings.error("AOS105", message, group.span, 'Or "Skill", for a skill that is no ROS service')
+        return None
+    path = service.text("ServicePath", required=True)
+    service_type = service.text("ServiceName", required=ros is not None)
+    fields = _fields(service)
+    imports = _imports(service)
+    service.finish()
+    if path is None:
+        return None
+    return Activation(
+        kind="ros_service" if ros is not None else "skill",
+        path=path.text,
+        span=path.span,
+        service_type=service_type.text if service_type else "",
+        fields=fields,
+        imports=imports,
+        max_duration_s=max_duration_s,
+    )
+
+
+def _fields(record: Record) -> tuple[ActivationField, ...]:
+    fields = []
+    for item in record.records("ServiceParameters", "a service parameter"):
+        name = item.text("ServiceFieldName", required=True)
+        value = _python_expression(item.code("AssignServiceFieldCode"))
+        item.ignore("Comment")
+        item.finish()
+        if value is None:
+            message = 'a service parameter lacks "AssignServiceFieldCode"'
+            record.findings.error("AOS105", message, item.span)
+        elif name and check_name(name, "a service field", record.findings):
+            fields.append(ActivationField(name.text, value))
+    return tuple(fields)
+
+
+def _imports(record: Record) -> tuple[Import, ...]:
+    imports = []
+    for item in record.records("ImportCode", "an import"):
+        module = item.text("From")
+        names = item.texts("Import")
+        item.finish()
+        if names:
+            imports.append(
+                Import(module.text if module else "", tuple(name.text for name in names), item.span)
+            )
+        else:
+            record.findings.error("AOS105", 'an import lacks "Import"', item.span)
+    return tuple(imports)
+
+
+def _local_variable(record: Record) -> LocalVariable | None:
+    name = _name(record)
+    parts = LocalVariableParts(
+        name=name,
+        span=record.span,
+        type=_type(record),
+        parameter_path=record.text("FromGlobalVariable"),
+        is_from_service=record.boolean("FromROSServiceResponse"),
+        topic=record.text("RosTopicPath"),
+        message_type=record.text("TopicMessageType"),
+        initial_value=_python_expression(record.code("InitialValue")),
+        code=_python(record.code("AssignmentCode")),
+        imports=_imports(record),
+        is_heavy=record.boolean("IsHeavyVariable"),
+    )
+    record.ignore("Comment")
+    if record.has("RosParameter"):
+        message = "values from the ROS parameter server are not supported"
+        record.findings.error("AOS124", message, record.key_span("RosParameter"))
+    record.finish()
+    return build_local_variable(parts, record.findings)
+
+
+def _name(record: Record) -> Text | None:
+    """`LocalVariableName`, or `InputLocalVariable` for a parameter; the paper has the first for both."""
+    name, input_name = record.text("LocalVariableName"), record.text("InputLocalVariable")
+    return name or input_name
+
+
+def _type(record: Record) -> str:
+    kind = record.text("VariableType")
+    return normal_type(kind, record.findings) if kind else ""
+
+
+def _python(code: Snippet | None) -> Snippet | None:
+    return None if code is None else dedented(code)
+
+
+def _python_expression(code: Snippet | None) -> Snippet | None:
+    return None if code is None else expression(code)

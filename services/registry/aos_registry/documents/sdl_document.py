@@ -1,0 +1,55 @@
+"""An SDL file to a document: its suffix gives the kind, its stem a skill's name."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+
+from aos_registry.documents.document import Document, DocumentKind, check_name
+from aos_registry.documents.sdl_environment import read_environment
+from aos_registry.documents.sdl_mapping import read_mapping
+from aos_registry.documents.sdl_sections import GRAMMARS, Sections, places_of_words
+from aos_registry.documents.sdl_skill import read_skill
+from aos_registry.documents.sdl_text import Section, parse_sdl
+from aos_registry.documents.source import Findings, Source, Text
+
+__all__ = ["read_sdl"]
+
+_KINDS = {".ef": DocumentKind.ENVIRONMENT, ".sd": DocumentKind.SKILL, ".am": DocumentKind.MAPPING}
+
+
+def read_sdl(source: Source, findings: Findings) -> Document:
+    """The document of an SDL file, whatever could be read of it."""
+    path = PurePath(source.name)
+    suffix = path.suffix.lower()
+    kind = _KINDS[suffix]
+    span = source.span()
+    parsed = parse_sdl(source, GRAMMARS[suffix], places_of_words(suffix), findings)
+    sections = Sections(parsed, span, findings)
+    project = _project(parsed, sections, findings)
+    if kind is DocumentKind.ENVIRONMENT:
+        content = read_environment(sections, project, span, findings)
+        return Document(kind, project, "environment", span, content)
+    name = path.stem if check_name(Text(path.stem, span), "a skill", findings) else ""
+    if kind is DocumentKind.SKILL:
+        return Document(kind, project, name, span, read_skill(sections, project, name, span, findings))
+    return Document(kind, project, name, span, read_mapping(sections, project, name, span, findings))
+
+
+def _project(parsed: list[Section], sections: Sections, findings: Findings) -> str:
+    given = sections.all("project")
+    if not given or not given[0].value.text:
+        span = given[0].span if given else sections.span
+        hint = "Start it with `project: <name>`"
+        findings.error("AOS105", "this file does not say its project", span, hint)
+        return ""
+    if parsed[0].word != "project":
+        findings.warning("AOS127", "`project:` should be the first line", given[0].span)
+    first = given[0].value
+    for other in given[1:]:
+        if other.value.text == first.text:
+            hint = "It is skipped; of the sections that repeat, the last counts"
+            findings.warning("AOS125", "`project:` is given again", other.span, hint)
+        else:
+            message = f"this file is of project {first.text}, not of {other.value.text}"
+            findings.error("AOS113", message, other.value.span)
+    return first.text

@@ -1,0 +1,110 @@
+"""The grammar of the three SDL files, and a file's sections by word."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Assignment
+from aos_registry.documents.sdl_text import Body, Grammar, Section, Word, last_of
+from aos_registry.documents.source import Findings
+
+__all__ = ["DEFAULT_DISCOUNT", "GRAMMARS", "Sections", "places_of_words"]
+
+DEFAULT_DISCOUNT = 0.9999
+
+_LINE = Word()
+_CPP = Word(Body.CPP)
+_PYTHON = Word(Body.PYTHON)
+_VARIABLE_PARTS = {"code": _CPP, "ml_max_value": _LINE, "ml_ignore": _LINE}
+
+GRAMMARS: Mapping[str, Grammar] = {
+    ".ef": {
+        "project": _LINE,
+        "horizon": _LINE,
+        "discount": _LINE,
+        "define_type": Word(parts={"variable": _LINE, "enum_members": _LINE}),
+        "state_variable": Word(parts=_VARIABLE_PARTS),
+        "action_parameter": Word(parts=_VARIABLE_PARTS),
+        "initial_belief": _CPP,
+        "reward_code": _CPP,
+        "extrinsic_code": _CPP,
+        "heuristic_code": _CPP,
+    },
+    ".sd": {
+        "project": _LINE,
+        "parameter": _LINE,
+        "available_parameters_code": _CPP,
+        "precondition": _CPP,
+        "violate_penalty": _LINE,
+        "rollout_policy": _CPP,
+        "dynamic_model": _CPP,
+    },
+    ".am": {
+        "project": _LINE,
+        "response": Word(parts={"response_rule": _PYTHON}),
+        "response_local_variable": _LINE,
+        "module_activation": Word(
+            parts={
+                "imports": _LINE,
+                "path": _LINE,
+                "srv": _LINE,
+                "max_duration": _LINE,
+                "parameter": _LINE,
+                "code": _PYTHON,
+            }
+        ),
+        "local_variable": Word(
+            parts={
+                "imports": _LINE,
+                "type": _LINE,
+                "topic": _LINE,
+                "message_type": _LINE,
+                "initial_value": _PYTHON,
+                "action_parameter": _LINE,
+                "from_ros_service_response": _LINE,
+                "from_ros_reservice_response": Word(canonical="from_ros_service_response"),
+                "code": _PYTHON,
+            }
+        ),
+    },
+}
+"""What AOS 2.0 writes; `max_duration` and `module_activation: skill` are ours."""
+
+_KINDS = {".ef": "the environment file (.ef)", ".sd": "a skill document (.sd)", ".am": "a mapping (.am)"}
+
+
+def places_of_words(suffix: str) -> dict[str, str]:
+    """For the words that this kind of file does not know: in which kind they belong."""
+    return {
+        word: f"in {_KINDS[other]}"
+        for other, grammar in GRAMMARS.items()
+        for word in grammar
+        if other != suffix and word not in GRAMMARS[suffix]
+    }
+
+
+class Sections:
+    """A file's sections. `span` is the file's first line."""
+
+    def __init__(self, sections: list[Section], span: Span, findings: Findings) -> None:
+        self.span = span
+        self._sections = sections
+        self._findings = findings
+
+    def of(self, *words: str) -> list[Section]:
+        """The sections of any of these words, in order."""
+        return [section for section in self._sections if section.word in words]
+
+    def all(self, word: str) -> list[Section]:
+        return self.of(word)
+
+    def last(self, word: str) -> Section | None:
+        """The last section of that word; a warning for each before it, which does not count."""
+        return last_of(self.all(word), self._findings)
+
+    def block(self, word: str) -> tuple[Assignment, ...]:
+        """The model code of a section, as the one assignment of a block."""
+        section = self.last(word)
+        code = section.code() if section is not None else None
+        return () if code is None else (Assignment(code.span, code=code),)

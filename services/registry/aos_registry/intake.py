@@ -1,0 +1,80 @@
+"""What becomes of a push: read, merged, checked, stored. Nothing is stored unless all of it is accepted."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, Mapping
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
+from aos_protocol.documents import Project
+from aos_protocol.messages import BundleReport, ProjectRevision
+from aos_registry.catalogue import Catalogue
+from aos_registry.documents.document import DocumentKind
+from aos_registry.documents.source import Findings, did_you_mean, quoted
+from aos_registry.load import load_files, with_excerpts
+from aos_registry.merge import changed_skills, merge, pushed_project
+from aos_registry.reading import read_documents
+from aos_runtime.clock import Clock
+
+__all__ = ["Intake", "ModelCheckPort"]
+
+ModelCheckPort = Callable[[Project], Awaitable[tuple[Diagnostic, ...]]]
+"""Asks the solver whether it can use a project; no diagnostics when there is no solver to ask."""
+
+
+class Intake:
+    """The projects of a catalogue, as typed documents. Pushes come one after another."""
+
+    def __init__(self, catalogue: Catalogue, clock: Clock, check_model: ModelCheckPort) -> None:
+        self._catalogue = catalogue
+        self._clock = clock
+        self._check_model = check_model
+        self.revisions: dict[str, ProjectRevision] = {}
+
+    def recall(self) -> list[BundleReport]:
+        """Takes in what the catalogue holds; a report for each project that does not pass today's checks."""
+        refused = []
+        for entry in self._catalogue.entries():
+            stored = self._catalogue.current(entry.project)
+            loaded = load_files(stored.files if stored else {}, name=entry.project)
+            if loaded.project is None:
+                refused.append(BundleReport(entry.project, False, entry.revision, loaded.diagnostics))
+            else:
+                revision = ProjectRevision(entry.revision, entry.digest, loaded.project)
+                self.revisions[entry.project] = revision
+        return refused
+
+    async def push(self, files: Mapping[str, bytes], source: str) -> tuple[BundleReport, bool]:
+        """What became of the files, and whether there is a new revision. AosError if it cannot be stored."""
+        project = pushed_project(files)
+        current = self._catalogue.current(project)
+        merged = merge(current.files if current else {}, files)
+        loaded = load_files(merged.files, name=source or "bundle")
+        number = current.number if current else 0
+        unknown = () if current else self._unknown_project(project, files)
+        diagnostics = (*unknown, *merged.diagnostics, *loaded.diagnostics)
+        if loaded.project is None or has_errors(diagnostics):
+            return BundleReport(project, False, number, diagnostics, source=source), False
+        if current is not None and current.digest == loaded.digest and project in self.revisions:
+            return BundleReport(project, True, number, diagnostics, source=source), False
+        findings = with_excerpts(await self._check_model(loaded.project), merged.files)
+        diagnostics += findings
+        if has_errors(findings):
+            return BundleReport(project, False, number, diagnostics, source=source), False
+        before = self.revisions.get(project)
+        added, changed = changed_skills(before.project if before else None, loaded.project)
+        names = tuple(skill.name for skill in loaded.project.skills)
+        documents = {name: merged.files[name] for name in loaded.files}
+        number = self._catalogue.store(project, loaded.digest, documents, names, self._clock.now_ns())
+        self.revisions[project] = ProjectRevision(number, loaded.digest, loaded.project)
+        report = BundleReport(project, True, number, diagnostics, added, changed, source)
+        return report, True
+
+    def _unknown_project(self, project: str, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
+        """The error for documents that extend a project which is not there; a misspelt name, most likely."""
+        documents = read_documents(files, Findings()).values()
+        if not project or not self.revisions or any(d.kind is DocumentKind.ENVIRONMENT for d in documents):
+            return ()
+        hint = did_you_mean(project, self.revisions) or f"It holds {quoted(sorted(self.revisions))}"
+        span = next((document.span for document in documents), Span("bundle"))
+        message = f"the catalogue holds no project `{project}` that these documents could extend"
+        return (Diagnostic(Severity.ERROR, "AOS113", message, span, hint),)

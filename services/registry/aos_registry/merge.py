@@ -1,0 +1,70 @@
+"""A push of some files over the files a project has: a document replaces the one of its kind and name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.documents import Project
+from aos_registry.documents.document import Document, DocumentKind
+from aos_registry.documents.source import Findings
+from aos_registry.reading import is_document_name, read_documents
+
+__all__ = ["MergedFiles", "changed_skills", "merge", "pushed_project"]
+
+
+class MergedFiles(msgspec.Struct, frozen=True):
+    """The files a project has after a push, before they are checked."""
+
+    files: dict[str, bytes]
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+def pushed_project(files: Mapping[str, bytes]) -> str:
+    """The project that files belong to: the environment's, else the first named; empty where none is."""
+    documents = [document for document in read_documents(files, Findings()).values() if document.project]
+    leading = [d for d in documents if d.kind is DocumentKind.ENVIRONMENT] or documents
+    return leading[0].project if leading else ""
+
+
+def merge(current: Mapping[str, bytes], new: Mapping[str, bytes]) -> MergedFiles:
+    """`new` over `current`. A file that is new under the name of another document is refused.
+
+    Files that are no documents are left out; documents that cannot be read are kept, so that checking the
+    result reports them.
+    """
+    current_documents = read_documents(current, Findings()) if current else {}
+    new_documents = read_documents(new, Findings()) if new else {}
+    identities = {document.identity for document in new_documents.values() if _has_name(document)}
+    kept = {
+        name: data
+        for name, data in current.items()
+        if name not in current_documents or current_documents[name].identity not in identities
+    }
+    taken = [name for name in new if name in kept and name in new_documents]
+    diagnostics = tuple(_name_taken(name, current_documents[name]) for name in sorted(taken))
+    files = kept | {name: data for name, data in new.items() if is_document_name(name)}
+    return MergedFiles(files, diagnostics)
+
+
+def changed_skills(before: Project | None, after: Project) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The names of the skills that are new, and of those that say something else than before."""
+    old = {skill.name: skill for skill in before.skills} if before is not None else {}
+    added = tuple(skill.name for skill in after.skills if skill.name not in old)
+    changed = tuple(skill.name for skill in after.skills if skill.name in old and old[skill.name] != skill)
+    return added, changed
+
+
+def _has_name(document: Document) -> bool:
+    return bool(document.identity[1]) or document.kind in (
+        DocumentKind.ENVIRONMENT,
+        DocumentKind.LOW_LEVEL,
+    )
+
+
+def _name_taken(name: str, document: Document) -> Diagnostic:
+    title = f"{document.kind.value} {document.name}"
+    message = f"a file of this name holds the {title} already"
+    return Diagnostic(Severity.ERROR, "AOS111", message, Span(name), "Give the new file another name")

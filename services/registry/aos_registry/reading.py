@@ -1,0 +1,58 @@
+"""Files to documents: which reader takes which file, and what a bundle may hold besides documents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import PurePath
+
+from aos_protocol.diagnostics import Span
+from aos_registry.documents.document import Document
+from aos_registry.documents.json_document import read_json
+from aos_registry.documents.sdl_document import read_sdl
+from aos_registry.documents.sdl_sections import GRAMMARS
+from aos_registry.documents.source import Findings, open_source
+
+__all__ = ["MAX_BUNDLE_BYTES", "MAX_BUNDLE_FILES", "is_document_name", "read_documents"]
+
+MAX_BUNDLE_FILES = 1000
+MAX_BUNDLE_BYTES = 8 * 1024 * 1024
+
+
+def is_document_name(name: str) -> bool:
+    """Whether a file of this name is read; hidden files are not."""
+    suffix = PurePath(name).suffix.lower()
+    return not PurePath(name).name.startswith(".") and (suffix == ".json" or suffix in GRAMMARS)
+
+
+def read_documents(files: Mapping[str, bytes], findings: Findings) -> dict[str, Document]:
+    """The documents of the files that are one, by file name and in order of it."""
+    total = sum(map(len, files.values()))
+    if len(files) > MAX_BUNDLE_FILES or total > MAX_BUNDLE_BYTES:
+        limits = f"{MAX_BUNDLE_FILES} files and {MAX_BUNDLE_BYTES} bytes"
+        message = f"{len(files)} files with {total} bytes are too many for a bundle"
+        findings.error("AOS120", message, Span(min(files)), f"The limits are {limits}")
+        return {}
+    documents = {}
+    for name in sorted(files):
+        document = _read(name, files[name], findings)
+        if document is not None:
+            documents[name] = document
+    return documents
+
+
+def _read(name: str, data: bytes, findings: Findings) -> Document | None:
+    path = PurePath(name)
+    if len(path.parts) != 1 or name != path.name or "\\" in name:
+        findings.error("AOS120", f"{name!r} is no plain file name", Span(name))
+        return None
+    if not is_document_name(name):
+        hint = "It is left out; documents end in .ef, .sd, .am or .json"
+        findings.remark("AOS107", "this is not an AOS document", Span(name), hint)
+        return None
+    source = open_source(name, data, findings)
+    if source is None:
+        return None
+    if not source.text.strip():
+        findings.error("AOS104", "this file is empty", Span(name))
+        return None
+    return read_json(source, findings) if path.suffix.lower() == ".json" else read_sdl(source, findings)

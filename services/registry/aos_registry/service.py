@@ -1,0 +1,157 @@
+"""The registry service: bundles come in by question or by folder, projects go out by answer and stream."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from pathlib import Path
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors, render
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError, DocumentError, StorageError
+from aos_protocol.messages import (
+    BundleReport,
+    CatalogueQuery,
+    CheckModel,
+    ModelCheck,
+    ProjectQuery,
+    ProjectRevision,
+    PushBundle,
+)
+from aos_protocol.messages import Catalogue as CatalogueAnswer
+from aos_registry.catalogue import Catalogue
+from aos_registry.documents.source import did_you_mean, quoted
+from aos_registry.intake import Intake
+from aos_registry.load import read_bundle_files
+from aos_registry.settings import Settings
+from aos_registry.watch import watch_for_bundles
+from aos_runtime.lifecycle import Service
+
+__all__ = ["serve"]
+
+_log = logging.getLogger("aos.registry")
+
+
+async def serve(service: Service[Settings]) -> None:
+    """Takes bundles in and answers for them until it is stopped."""
+    run_dir = Path(service.settings.run_dir)
+    catalogue = Catalogue.open(Path(service.settings.catalogue or run_dir / "catalogue.db"))
+    try:
+        await _Registry(service, catalogue).run()
+    finally:
+        catalogue.close()
+
+
+class _Registry:
+    """What the service answers."""
+
+    def __init__(self, service: Service[Settings], catalogue: Catalogue) -> None:
+        self._service = service
+        self._bus = service.bus
+        self._keys = service.keys
+        self._settings = service.settings
+        self._catalogue = catalogue
+        self._intake = Intake(catalogue, service.clock, self._check_model)
+        self._turn = asyncio.Lock()
+
+    async def run(self) -> None:
+        for report in self._intake.recall():
+            _log.error("the stored project %s cannot be used any more", report.project)
+            _log_diagnostics(report)
+        folder = _made(Path(self._settings.watch or Path(self._settings.run_dir) / "drop"))
+        await self._bus.answer(self._keys.push_bundle, PushBundle, self._answer_push)
+        await self._bus.answer(self._keys.project, ProjectQuery, self._answer_project)
+        await self._bus.answer(self._keys.catalogue, CatalogueQuery, self._answer_catalogue)
+        await self._service.ready()
+        await watch_for_bundles(folder, self._take_dropped, quiet_s=self._settings.quiet_s)
+
+    # --- answers ---------------------------------------------------------------------------------------
+
+    async def _answer_push(self, bundle: PushBundle, _: str) -> BundleReport:
+        return await self._push(bundle.files, bundle.source)
+
+    async def _answer_project(self, query: ProjectQuery, _: str) -> ProjectRevision:
+        revisions = self._intake.revisions
+        if query.project in revisions:
+            return revisions[query.project]
+        if not query.project and len(revisions) == 1:
+            return next(iter(revisions.values()))
+        if not revisions:
+            raise DocumentError("the catalogue is empty", code="AOS110", hint="Push a bundle")
+        names = quoted(sorted(revisions))
+        if not query.project:
+            message = f"the catalogue holds {len(revisions)} projects"
+            raise DocumentError(message, code="AOS110", hint=f"Name one of {names}")
+        hint = did_you_mean(query.project, revisions) or f"It holds {names}"
+        raise DocumentError(f"the catalogue holds no project {query.project}", code="AOS110", hint=hint)
+
+    async def _answer_catalogue(self, _: CatalogueQuery, __: str) -> CatalogueAnswer:
+        return CatalogueAnswer(self._catalogue.entries())
+
+    # --- intake ----------------------------------------------------------------------------------------
+
+    async def _take_dropped(self, path: Path) -> None:
+        """Takes a dropped folder; whatever becomes of it is told on the bus."""
+        files, remarks = read_bundle_files(path)
+        if not files and not has_errors(remarks):
+            return
+        if has_errors(remarks):
+            report = BundleReport("", False, 0, tuple(remarks), source=str(path))
+        else:
+            try:
+                report = await self._push(files, path.name)
+            except AosError as error:
+                diagnostic = Diagnostic(
+                    Severity.ERROR, error.code, error.message, Span(path.name), error.hint
+                )
+                report = BundleReport("", False, 0, (diagnostic,), source=path.name)
+        self._bus.tell(self._keys.bundle_report, report)
+
+    async def _push(self, files: dict[str, bytes], source: str) -> BundleReport:
+        async with self._turn:
+            report, is_new = await self._intake.push(files, source)
+            if is_new:
+                self._bus.tell(self._keys.announced, self._intake.revisions[report.project])
+        _log_report(report)
+        return report
+
+    async def _check_model(self, project: Project) -> tuple[Diagnostic, ...]:
+        """What the solver says to a project; nothing when there is no solver yet."""
+        try:
+            answer = await self._bus.ask(
+                self._keys.check_model,
+                CheckModel(project),
+                ModelCheck,
+                timeout_s=self._settings.model_check_timeout_s,
+            )
+        except AosError as error:
+            if error.code == "AOS604":
+                return ()
+            message = f"the solver could not check the model: {error.message}"
+            return (Diagnostic(Severity.ERROR, error.code, message, Span(project.name), error.hint),)
+        return answer.diagnostics
+
+
+def _made(folder: Path) -> Path:
+    """The folder, made if need be, without links in its path; StorageError where that is refused."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        text = f"the watched folder {folder} cannot be made: {error.strerror}"
+        raise StorageError(text, code="AOS701") from error
+    return folder.resolve()
+
+
+def _log_report(report: BundleReport) -> None:
+    if not report.is_accepted:
+        _log.warning("a bundle of project %s is refused (%s)", report.project or "?", report.source)
+    else:
+        new = ", ".join((*report.added, *report.changed)) or "nothing new"
+        _log.info("project %s, revision %d: %s", report.project, report.revision, new)
+    _log_diagnostics(report)
+
+
+def _log_diagnostics(report: BundleReport) -> None:
+    for diagnostic in report.diagnostics:
+        if diagnostic.is_error:
+            _log.warning("%s", render(diagnostic))

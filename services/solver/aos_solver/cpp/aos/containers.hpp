@@ -1,0 +1,168 @@
+// Vectors of fixed storage, with the part of std::vector's interface that documents use.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <iterator>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "aos/fault.hpp"
+
+namespace aos {
+
+[[noreturn]] inline void out_of_range(std::ptrdiff_t index, std::size_t size) {
+  throw ModelFault{"AOS215", "element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
+}
+
+// A vector of up to `Room` elements in place, so that a state stays trivially copyable. Converts from and to
+// std::vector; an index out of range and a push beyond `Room` are ModelFaults.
+template <class T, std::size_t Room>
+class Vector {
+ public:
+  using value_type = T;
+  using size_type = std::size_t;
+  using reference = T&;
+  using const_reference = const T&;
+  using iterator = T*;
+  using const_iterator = const T*;
+
+  Vector() = default;
+  Vector(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
+  explicit Vector(std::size_t size, const T& value = T{}) { assign(size, value); }
+  template <class U>
+  Vector(const std::vector<U>& values) {
+    assign(values.begin(), values.end());
+  }
+  template <class U, std::size_t OtherRoom>
+  Vector(const Vector<U, OtherRoom>& values) {
+    assign(values.begin(), values.end());
+  }
+  template <class Iterator>
+    requires(!std::is_integral_v<Iterator>)
+  Vector(Iterator first, Iterator last) {
+    assign(first, last);
+  }
+  Vector& operator=(std::initializer_list<T> values) {
+    assign(values.begin(), values.end());
+    return *this;
+  }
+
+  template <class U>
+    requires std::is_constructible_v<U, const T&>
+  operator std::vector<U>() const {
+    return std::vector<U>(begin(), end());
+  }
+
+  std::size_t size() const { return size_; }
+  static constexpr std::size_t max_size() { return Room; }
+  static constexpr std::size_t capacity() { return Room; }
+  bool empty() const { return size_ == 0; }
+
+  T& operator[](std::ptrdiff_t index) { return values_[checked(index)]; }
+  const T& operator[](std::ptrdiff_t index) const { return values_[checked(index)]; }
+  T& at(std::ptrdiff_t index) { return (*this)[index]; }
+  const T& at(std::ptrdiff_t index) const { return (*this)[index]; }
+  T& front() { return (*this)[0]; }
+  const T& front() const { return (*this)[0]; }
+  T& back() { return (*this)[last()]; }
+  const T& back() const { return (*this)[last()]; }
+  T* data() { return values_; }
+  const T* data() const { return values_; }
+
+  T* begin() { return values_; }
+  T* end() { return values_ + size_; }
+  const T* begin() const { return values_; }
+  const T* end() const { return values_ + size_; }
+  const T* cbegin() const { return begin(); }
+  const T* cend() const { return end(); }
+  auto rbegin() { return std::reverse_iterator<T*>(end()); }
+  auto rend() { return std::reverse_iterator<T*>(begin()); }
+  auto rbegin() const { return std::reverse_iterator<const T*>(end()); }
+  auto rend() const { return std::reverse_iterator<const T*>(begin()); }
+
+  void push_back(const T& value) {
+    const T copy = value;
+    values_[grown(1)] = copy;
+  }
+  template <class... Arguments>
+  T& emplace_back(Arguments&&... arguments) {
+    push_back(T{std::forward<Arguments>(arguments)...});
+    return back();
+  }
+  void pop_back() {
+    checked(last());
+    --size_;
+  }
+  void clear() { size_ = 0; }
+  void reserve(std::size_t) {}
+  void resize(std::size_t size, const T& value = T{}) {
+    while (size_ < size) push_back(value);
+    size_ = static_cast<std::uint32_t>(size);
+  }
+  void assign(std::size_t size, const T& value) {
+    const T copy = value;
+    clear();
+    resize(size, copy);
+  }
+  void assign(std::initializer_list<T> values) { assign(values.begin(), values.end()); }
+  template <class Iterator>
+    requires(!std::is_integral_v<Iterator>)
+  void assign(Iterator first, Iterator last) {
+    clear();
+    for (; first != last; ++first) values_[grown(1)] = *first;
+  }
+  T* insert(const T* before, const T& value) {
+    const T copy = value;
+    const std::ptrdiff_t position = before - values_;
+    for (std::size_t index = grown(1); index > static_cast<std::size_t>(position); --index) {
+      values_[index] = values_[index - 1];
+    }
+    values_[position] = copy;
+    return values_ + position;
+  }
+  T* erase(const T* position) { return erase(position, position + 1); }
+  T* erase(const T* first, const T* last) {
+    T* to = values_ + (first - values_);
+    for (const T* from = last; from != end(); ++from) *to++ = *from;
+    size_ = static_cast<std::uint32_t>(to - values_);
+    return values_ + (first - values_);
+  }
+  void fill(const T& value) { assign(size_, value); }
+  void swap(Vector& other) { std::swap(*this, other); }
+
+  template <std::size_t OtherRoom>
+  friend bool operator==(const Vector& left, const Vector<T, OtherRoom>& right) {
+    if (left.size() != right.size()) return false;
+    for (std::size_t index = 0; index < left.size(); ++index) {
+      if (!(left.begin()[index] == right.begin()[index])) return false;
+    }
+    return true;
+  }
+  friend bool operator==(const Vector& left, const std::vector<T>& right) { return std::vector<T>(left) == right; }
+
+ private:
+  std::size_t checked(std::ptrdiff_t index) const {
+    if (static_cast<std::size_t>(index) >= size_) out_of_range(index, size_);
+    return static_cast<std::size_t>(index);
+  }
+  std::ptrdiff_t last() const { return static_cast<std::ptrdiff_t>(size_) - 1; }
+  // Makes room for `more` elements; the index of the first.
+  std::size_t grown(std::size_t more) {
+    const std::size_t before = size_;
+    if (before + more > Room) {
+      throw ModelFault{"AOS215", "a vector of " + std::to_string(before + more) + " elements; its state variable holds " +
+                                     std::to_string(Room)};
+    }
+    size_ = static_cast<std::uint32_t>(before + more);
+    return before;
+  }
+
+  T values_[Room] = {};
+  std::uint32_t size_ = 0;
+};
+
+}  // namespace aos

@@ -1,0 +1,14 @@
+// What model code does wrong while it runs.
+#pragma once
+
+#include <string>
+
+namespace aos {
+
+// `code` is one of the codes AOS214 and AOS215 of aos_protocol.errors; the document place comes from blame.hpp.
+struct ModelFault {
+  std::string code;
+  std::string text;
+};
+
+}  // namespace aos

@@ -1,0 +1,150 @@
+// One simulated step as the documents mean it: which phase sees and changes which copy of the state.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "aos/blame.hpp"
+#include "aos/fault.hpp"
+#include "aos/step.hpp"
+
+namespace aos {
+
+inline constexpr const char* no_text_response = "NoStrResponse";
+
+// What the dynamic model of a skill gives besides the next state. Responses count from 1, so that every one of them is
+// true where a document uses it as a condition; 0 is the default observation.
+struct Effect {
+  double reward = 0;
+  int response = 0;
+  std::string text = no_text_response;
+};
+
+// What a skill document leaves out.
+struct SkillDefaults {
+  static constexpr double violation_penalty = 0;
+  static constexpr bool has_text_response = false;
+  static void precondition(const auto&, bool&, const auto&, auto&) {}
+  static void execution_time(const auto&, int&, const auto&, auto&) {}
+  static void next_state(auto&, auto&, auto&, bool, int, Effect&, const auto&, auto&) {}
+  static void rollout_policy(const auto&, double&, const auto&, auto&) {}
+};
+
+// What an environment document leaves out.
+struct EnvironmentDefaults {
+  static constexpr bool is_one_state = false;
+  static constexpr bool has_extrinsic_changes = false;
+  static void initial_belief(auto&, auto&) {}
+  static void extrinsic_changes(auto&, auto&, double&, int, const auto&, auto&) {}
+  static double special_states(auto&, auto&) { return 0; }
+  static void state_heuristic(const auto&, double&, auto&) {}
+};
+
+// A special state on the next state: its reward, once more unless `bit` says that it is used up. The first goal decides
+// how the state ends. `evaluate` sets the reward, whether it is a goal, and whether it is used up now.
+template <class State>
+double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
+  if constexpr (requires { next.__spent; }) {
+    if ((next.__spent & bit) != 0) return 0;
+  }
+  double reward = 0;
+  bool is_goal = false;
+  bool is_used_up = false;
+  evaluate(reward, is_goal, is_used_up);
+  if (is_goal && next.__ending == Ending::running) next.__ending = reward > 0 ? Ending::goal : Ending::failure;
+  if constexpr (requires { next.__spent; }) {
+    if (is_used_up) next.__spent |= static_cast<decltype(next.__spent)>(bit);
+  }
+  return reward;
+}
+
+namespace detail {
+
+template <class Skill>
+Observation observation_of(const Effect& effect) {
+  if constexpr (Skill::has_text_response) {
+    if (effect.text != no_text_response) return text_observation(effect.text);
+  }
+  if (effect.response < 0 || effect.response > static_cast<int>(Skill::response_names.size())) {
+    throw ModelFault{"AOS215", "__moduleResponse is " + std::to_string(effect.response) + ", which is no response"};
+  }
+  return effect.response - 1;
+}
+
+// The phases in their order. In a model with one state all three are the same object.
+template <class Environment, class Skill>
+Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, auto& random) {
+  bool meets_precondition = true;
+  Skill::precondition(state, meets_precondition, parameters, random);
+  int execution_time = -1;
+  Skill::execution_time(state, execution_time, parameters, random);
+
+  double extrinsic_reward = 0;
+  if constexpr (Environment::has_extrinsic_changes) {
+    const typename Environment::Chosen chosen{parameters};
+    Environment::extrinsic_changes(state, state_, extrinsic_reward, execution_time, chosen, random);
+    if constexpr (!Environment::is_one_state) next = state_;
+  }
+
+  Effect effect;
+  Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
+  const double special_reward = Environment::special_states(next, random);
+  const double penalty = meets_precondition ? 0 : Skill::violation_penalty;
+
+  Step step;
+  step.reward = penalty + extrinsic_reward + effect.reward + special_reward;
+  if (!std::isfinite(step.reward)) throw ModelFault{"AOS214", "the reward is " + std::to_string(step.reward)};
+  step.observation = observation_of<Skill>(effect);
+  blame::at(0);
+  return step;
+}
+
+template <class Environment, class Skill, class State>
+Step transition(State& next, const auto& parameters, auto& random) {
+  if constexpr (Environment::is_one_state) {
+    return run_phases<Environment, Skill>(next, next, next, parameters, random);
+  } else if constexpr (Environment::has_extrinsic_changes) {
+    const State state = next;
+    State state_ = next;
+    return run_phases<Environment, Skill>(state, state_, next, parameters, random);
+  } else {
+    const State state = next;
+    return run_phases<Environment, Skill>(state, state, next, parameters, random);
+  }
+}
+
+}  // namespace detail
+
+// Runs a skill in place. An ended state stays as it is and earns nothing; what it lets the robot observe is what the
+// documents give for it, or the default observation where they do not reckon with such a state.
+template <class Environment, class Skill, class State>
+Step step(State& state, const auto& parameters, auto& random) {
+  if (state.__ending == Ending::running) return detail::transition<Environment, Skill>(state, parameters, random);
+  State copy = state;
+  copy.__ending = Ending::running;
+  try {
+    return {0, detail::transition<Environment, Skill>(copy, parameters, random).observation};
+  } catch (const ModelFault&) {
+    return {};
+  }
+}
+
+template <class Skill>
+bool meets_precondition(const auto& state, const auto& parameters, auto& random) {
+  bool meets = true;
+  Skill::precondition(state, meets, parameters, random);
+  blame::at(0);
+  return meets;
+}
+
+// How much the rollout policy prefers the action; never negative.
+template <class Skill>
+double rollout_weight(const auto& state, const auto& parameters, auto& random) {
+  double weight = 0;
+  Skill::rollout_policy(state, weight, parameters, random);
+  blame::at(0);
+  return weight > 0 ? weight : 0;
+}
+
+}  // namespace aos

@@ -1,0 +1,243 @@
+"""The model between documents and C++: what `lower` makes and `emit` writes.
+
+Everything is resolved here: which variables belong to a particle and which are constants, the C++ type of
+each, the document code of each function with the edits it needs. Nothing is laid out.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Snippet
+
+__all__ = [
+    "Axis",
+    "Compound",
+    "DeclaredVariable",
+    "Edit",
+    "Enum",
+    "EnumVariable",
+    "Field",
+    "Loop",
+    "ObjectList",
+    "Parameter",
+    "ParameterValues",
+    "Piece",
+    "Program",
+    "Section",
+    "Skill",
+    "SpecialState",
+    "Statement",
+    "Variable",
+]
+
+
+class Edit(msgspec.Struct, frozen=True):
+    """`removed` characters from a line and column of a snippet on, replaced by `inserted` others."""
+
+    line: int
+    column: int
+    removed: int
+    inserted: int
+
+
+class Piece(msgspec.Struct, frozen=True):
+    """A snippet as it stands in the emitted file: `text` has the snippet's lines, with few edits.
+
+    `number`, from 1, is what blame.hpp stores while the piece runs.
+    """
+
+    number: int
+    snippet: Snippet
+    text: str
+    edits: tuple[Edit, ...] = ()
+
+    def locate(self, line: int, column: int) -> Span:
+        """The document place of a line and column of `text`, both from 1."""
+        shift = 0
+        for edit in (edit for edit in self.edits if edit.line == line):
+            if column < edit.column + shift:
+                break
+            if column < edit.column + shift + edit.inserted:
+                return self.snippet.locate(line, edit.column)
+            shift += edit.inserted - edit.removed
+        return self.snippet.locate(line, column - shift)
+
+
+# --- state ---------------------------------------------------------------------------------------------
+
+
+class Enum(msgspec.Struct, frozen=True):
+    """An enum with the smallest integer type that holds its values."""
+
+    name: str
+    values: tuple[str, ...]
+    storage: str
+
+
+class Field(msgspec.Struct, frozen=True):
+    name: str
+    type: str
+    default: Piece | None = None
+
+
+class Compound(msgspec.Struct, frozen=True):
+    name: str
+    fields: tuple[Field, ...]
+
+
+class Axis(msgspec.Struct, frozen=True):
+    """One key of a map variable: the C++ type of the axis and of its key."""
+
+    type: str
+    key: str
+
+
+class Variable(msgspec.Struct, frozen=True):
+    """A state variable. One that nothing changes is a constant, which no particle holds.
+
+    The default is an expression for the value, or statements over `state.`.
+    """
+
+    name: str
+    type: str
+    is_constant: bool
+    default_value: Piece | None = None
+    default_code: Piece | None = None
+    axes: tuple[Axis, ...] = ()
+
+
+class ObjectList(msgspec.Struct, frozen=True):
+    """`state.<type>Objects`: the variables of one compound type."""
+
+    type: str
+    members: tuple[str, ...]
+
+
+class ParameterValues(msgspec.Struct, frozen=True):
+    """The variables whose values a parameter of this type may take, by name."""
+
+    type: str
+    variables: tuple[str, ...]
+
+
+# --- code ----------------------------------------------------------------------------------------------
+
+
+class EnumVariable(msgspec.Struct, frozen=True):
+    """A temporary variable over an enum of its own, whose name stands for the number before its first."""
+
+    name: str
+    enum_name: str
+    values: tuple[str, ...]
+    kind: str = "enum_variable"
+
+
+class DeclaredVariable(msgspec.Struct, frozen=True):
+    """A temporary variable of a known type."""
+
+    name: str
+    type: str
+    kind: str = "declared_variable"
+
+
+class Loop(msgspec.Struct, frozen=True):
+    """A loop over the variables of a compound type; `inner` runs after the body, under the condition.
+
+    `copy` is the name of the state that it runs over; the item is a copy of the variable unless the block may
+    change that state.
+    """
+
+    type: str
+    item: str
+    copy: str
+    is_reference: bool
+    condition: Piece | None
+    body: Piece | None
+    inner: Loop | None
+    kind: str = "loop"
+
+
+Statement = EnumVariable | DeclaredVariable | Loop | Piece
+
+
+class Section(msgspec.Struct, frozen=True):
+    """The code of one document section: one C++ function. `names` is every variable name that it uses."""
+
+    statements: tuple[Statement, ...]
+    names: frozenset[str]
+
+    def uses(self, name: str) -> bool:
+        return name in self.names
+
+
+class SpecialState(msgspec.Struct, frozen=True):
+    """Form A has a condition, form B a section. `bit` is the flag that uses it up; 0 for those that stay."""
+
+    number: int
+    bit: int
+    condition: Piece | None
+    reward: float
+    is_goal: bool
+    is_one_time: bool
+    section: Section | None
+
+
+# --- skills --------------------------------------------------------------------------------------------
+
+
+class Parameter(msgspec.Struct, frozen=True):
+    name: str
+    type: str
+    values: ParameterValues | None
+
+
+class Skill(msgspec.Struct, frozen=True):
+    """A skill: its responses in the order of the mapping's rules, its parameters, its functions."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    responses: tuple[str, ...]
+    has_text_response: bool
+    violation_penalty: float
+    possible_parameters: Section | None
+    precondition: Section | None
+    execution_time: Section | None
+    dynamic_model: Section | None
+    rollout_policy: Section | None
+
+
+class Program(msgspec.Struct, frozen=True):
+    """A whole model. `pieces[n - 1]` is the piece of number n; `digest` is that of the documents."""
+
+    project: str
+    digest: str
+    horizon: int
+    discount: float
+    is_one_state: bool
+    enums: tuple[Enum, ...]
+    compounds: tuple[Compound, ...]
+    variables: tuple[Variable, ...]
+    low_level_constants: tuple[str, ...]
+    object_lists: tuple[ObjectList, ...]
+    enum_lists: tuple[Enum, ...]
+    value_lists: tuple[ParameterValues, ...]
+    draws_defaults: bool
+    initial_belief: Section | None
+    extrinsic_changes: Section | None
+    state_heuristic: Section | None
+    special_states: tuple[SpecialState, ...]
+    skills: tuple[Skill, ...]
+    standard_headers: tuple[str, ...]
+    pieces: tuple[Piece, ...]
+
+    @property
+    def particle(self) -> tuple[Variable, ...]:
+        """The variables that a particle holds."""
+        return tuple(variable for variable in self.variables if not variable.is_constant)
+
+    @property
+    def constants(self) -> tuple[Variable, ...]:
+        """The variables that no particle holds."""
+        return tuple(variable for variable in self.variables if variable.is_constant)

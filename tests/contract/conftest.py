@@ -1,0 +1,63 @@
+"""A real bus for contract tests: one router process for each test module."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+
+import msgspec
+import pytest
+import pytest_asyncio
+
+from aos_protocol.keys import Keys
+from aos_runtime.bus import Bus
+from aos_runtime.lifecycle import ServiceSettings
+from aos_runtime.parent import PARENT_VARIABLE
+
+
+def free_endpoint() -> str:
+    """An endpoint nobody listens at."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+
+
+@pytest.fixture(scope="module")
+def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Where the module's router listens; clients wait for it by themselves."""
+    folder: Path = tmp_path_factory.mktemp("router")
+    settings = ServiceSettings(
+        robot="test", service="router", endpoint=free_endpoint(), run_dir=str(folder)
+    )
+    path = folder / "router.json"
+    path.write_bytes(msgspec.json.encode(settings))
+    with subprocess.Popen(
+        [sys.executable, "-m", "aos_runtime.router", str(path)],
+        env={**os.environ, PARENT_VARIABLE: str(os.getpid()), "AOS_LOG": "WARNING"},
+    ) as router:
+        yield settings.endpoint
+        router.terminate()
+
+
+@pytest.fixture
+def keys() -> Keys:
+    """The keys of the robot `test`."""
+    return Keys("test")
+
+
+@pytest_asyncio.fixture
+async def bus(endpoint: str) -> AsyncIterator[Bus]:
+    """A client of the module's router, named `client`."""
+    async with await Bus.open(endpoint, sender="client") as client:
+        yield client
+
+
+@pytest_asyncio.fixture
+async def other(endpoint: str) -> AsyncIterator[Bus]:
+    """A second client, named `other`: what services are on the bus for."""
+    async with await Bus.open(endpoint, sender="other") as client:
+        yield client

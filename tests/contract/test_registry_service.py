@@ -1,0 +1,233 @@
+"""The registry service on the real bus: pushing, asking, dropping, and what a crash leaves."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import shutil
+import signal
+import sqlite3
+import sys
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import msgspec
+import pytest
+import pytest_asyncio
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
+from aos_protocol.errors import DocumentError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    BundleReport,
+    Catalogue,
+    CatalogueQuery,
+    CheckModel,
+    ModelCheck,
+    ProjectQuery,
+    ProjectRevision,
+    PushBundle,
+)
+from aos_registry.load import read_bundle_files
+from aos_registry.settings import Settings
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+
+TIMEOUT_S = 8.0
+
+
+@asynccontextmanager
+async def running_registry(run_dir: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Child]:
+    """A registry process, from ready to stopped."""
+    run_dir.mkdir(exist_ok=True)
+    settings = Settings(
+        robot="test", service="registry", endpoint=endpoint, run_dir=str(run_dir), quiet_s=0.1
+    )
+    path = run_dir / "registry.json"
+    path.write_bytes(msgspec.json.encode(settings))
+    async with asyncio.timeout(TIMEOUT_S), bus.presence(keys.live("registry")) as presence:
+        child = await Child.start(
+            [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "INFO"}
+        )
+        async for _, is_alive in presence:
+            if is_alive:
+                break
+    try:
+        yield child
+    finally:
+        await child.stop(5.0)
+
+
+@pytest_asyncio.fixture
+async def registry(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Path]:
+    """The run directory of a running registry."""
+    async with running_registry(tmp_path / "run", endpoint, bus, keys):
+        yield tmp_path / "run"
+
+
+@pytest.fixture
+def finer(bundles: Path) -> dict[str, bytes]:
+    return read_bundle_files(bundles / "armadillo-finer")[0]
+
+
+async def push(bus: Bus, keys: Keys, files: dict[str, bytes]) -> BundleReport:
+    return await bus.ask(keys.push_bundle, PushBundle(files, "test"), BundleReport, timeout_s=TIMEOUT_S)
+
+
+async def current(bus: Bus, keys: Keys, project: str = "armadillo") -> ProjectRevision:
+    return await bus.ask(keys.project, ProjectQuery(project), ProjectRevision, timeout_s=TIMEOUT_S)
+
+
+async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    async with asyncio.timeout(TIMEOUT_S), bus.listen(keys.announced, ProjectRevision) as announced:
+        report = await push(bus, keys, finer)
+        assert report.is_accepted
+        assert report.revision == 1
+        assert set(report.added) == {
+            "navigate",
+            "observe_arm_outstretched",
+            "observe_holding",
+            "pick",
+            "serve",
+        }
+        async for _, revision in announced:
+            assert revision == await current(bus, keys)
+            assert revision == await current(bus, keys, project="")
+            break
+    catalogue = await bus.ask(keys.catalogue, CatalogueQuery(), Catalogue, timeout_s=TIMEOUT_S)
+    (entry,) = catalogue.entries
+    assert (entry.project, entry.revision, entry.skills) == ("armadillo", 1, tuple(sorted(report.added)))
+
+
+async def test_the_same_content_again_is_accepted_and_makes_no_revision(
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    first = await push(bus, keys, finer)
+    again = await push(bus, keys, finer)
+    assert (again.is_accepted, again.revision, again.added) == (True, first.revision, ())
+
+
+async def test_a_skill_can_be_pushed_on_its_own_and_a_better_document_replaces_the_old_one(
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes], bundles: Path
+) -> None:
+    observe = {name: finer.pop(name) for name in list(finer) if name.startswith("observe_holding")}
+    await push(bus, keys, finer)
+    report = await push(bus, keys, observe)
+    assert (report.is_accepted, report.revision, report.added) == (True, 2, ("observe_holding",))
+    rough_pick = (bundles / "armadillo-rough" / "pick.sd").read_bytes()
+    report = await push(bus, keys, {"pick.sd": rough_pick})
+    assert (report.revision, report.added, report.changed) == (3, (), ("pick",))
+    assert len((await current(bus, keys)).project.skills) == 5
+
+
+async def test_a_bad_bundle_changes_nothing_and_says_where(
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    await push(bus, keys, finer)
+    before = await current(bus, keys)
+    broken = finer["pick.sd"].replace(b"__reward = -2;", b"__reward = (-2;")
+    report = await push(bus, keys, {"pick.sd": broken})
+    assert (report.is_accepted, report.revision) == (False, 1)
+    (error,) = [diagnostic for diagnostic in report.diagnostics if diagnostic.is_error]
+    assert str(error.span) == "pick.sd:28:12"
+    assert await current(bus, keys) == before
+
+
+async def test_the_solver_is_asked_and_its_complaint_refuses_the_bundle(
+    registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    complaint = Diagnostic(Severity.ERROR, "AOS201", "no such function", Span("pick.sd", 28, 1))
+
+    async def refuse(question: CheckModel, key: str) -> ModelCheck:
+        assert question.project.name == "armadillo"
+        return ModelCheck((complaint,))
+
+    await other.answer(keys.check_model, CheckModel, refuse)
+    report = await push(bus, keys, finer)
+    assert not report.is_accepted
+    errors = [diagnostic for diagnostic in report.diagnostics if diagnostic.is_error]
+    assert [render(error) for error in errors] == [
+        "pick.sd:28:1: error[AOS201]: no such function\n  28 | __reward = -2;\n     | ^"
+    ]
+    with pytest.raises(DocumentError, match="the catalogue is empty"):
+        await current(bus, keys)
+
+
+async def test_a_skill_of_an_unknown_project_is_refused_with_the_nearest_name(
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    await push(bus, keys, finer)
+    files = {name: finer[name].replace(b"armadillo", b"armadilo") for name in ("pick.sd", "pick.am")}
+    report = await push(bus, keys, files)
+    assert not report.is_accepted
+    assert any("Did you mean `armadillo`?" in diagnostic.hint for diagnostic in report.diagnostics)
+
+
+async def test_an_unknown_project_is_an_error_that_names_the_known_ones(
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    await push(bus, keys, finer)
+    with pytest.raises(DocumentError) as error:
+        await current(bus, keys, "armadilo")
+    assert error.value.code == "AOS110"
+    assert error.value.hint == "Did you mean `armadillo`?"
+
+
+async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
+    registry: Path, bus: Bus, keys: Keys, bundles: Path
+) -> None:
+    async with asyncio.timeout(TIMEOUT_S), bus.listen(keys.bundle_report, BundleReport) as reports:
+        shutil.copytree(bundles / "armadillo-finer", registry / "drop" / "armadillo")
+        async for _, report in reports:
+            assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo")
+            break
+        (registry / "drop" / "armadillo" / "pick.sd").write_text("project: armadillo\nprecondition:\nx = (;\n")
+        async for _, report in reports:
+            assert (report.is_accepted, report.revision) == (False, 1)
+            assert {d.code for d in report.diagnostics if d.is_error} == {"AOS105", "AOS108"}
+            break
+
+
+async def test_the_catalogue_survives_a_restart(
+    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    async with running_registry(tmp_path / "run", endpoint, bus, keys):
+        await push(bus, keys, finer)
+        before = await current(bus, keys)
+    async with running_registry(tmp_path / "run", endpoint, bus, keys):
+        assert await current(bus, keys) == before
+
+
+async def test_sigkill_while_a_bundle_is_pushed_leaves_the_old_or_the_new_revision(
+    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    run_dir = tmp_path / "run"
+    async with running_registry(run_dir, endpoint, bus, keys):
+        first = await push(bus, keys, finer)
+    for delay_s in (0.0, 0.02, 0.04, 0.08):
+        files = {"pick.sd": finer["pick.sd"] + b"// " + str(delay_s).encode()}
+        async with running_registry(run_dir, endpoint, bus, keys) as child:
+            before = await current(bus, keys)
+            question = asyncio.ensure_future(push(bus, keys, files))
+            await asyncio.wait({question}, timeout=delay_s)
+            os.kill(child.pid, signal.SIGKILL)
+            (answer,) = await asyncio.gather(question, return_exceptions=True)
+        revisions = stored_revisions(run_dir / "catalogue.db")
+        assert revisions[-1] in (before.revision, before.revision + 1)
+        assert all(count == len(finer) for count in files_of_revisions(run_dir / "catalogue.db"))
+        if isinstance(answer, BundleReport):
+            assert revisions[-1] == answer.revision
+    assert first.revision == 1
+
+
+def stored_revisions(path: Path) -> list[int]:
+    with sqlite3.connect(path) as db:
+        return [number for (number,) in db.execute("SELECT number FROM revision ORDER BY number")]
+
+
+def files_of_revisions(path: Path) -> list[int]:
+    with sqlite3.connect(path) as db:
+        return [count for (count,) in db.execute("SELECT count(*) FROM file GROUP BY number")]

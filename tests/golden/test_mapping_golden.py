@@ -1,0 +1,62 @@
+"""The generated Python of whole bundles, compared text by text.
+
+`AOS_PROMOTE=1 pytest tests/golden` takes what is generated now as what is expected.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from mapping_documents import project_in
+
+from aos_middleware.mappings import emit_project
+
+EXPECTED = Path(__file__).parent / "python"
+
+
+def compare(folder: Path, expected: Path) -> None:
+    generated = {each.file_name: each.python for each in emit_project(project_in(folder))}
+    if os.environ.get("AOS_PROMOTE"):
+        expected.mkdir(parents=True, exist_ok=True)
+        for name, text in generated.items():
+            (expected / name).write_text(text, encoding="utf-8")
+    stored = {path.name: path.read_text(encoding="utf-8") for path in expected.glob("*.py")}
+    assert generated == stored
+
+
+def test_our_armadillo_mappings_are_generated_as_stored(bundles: Path) -> None:
+    compare(bundles / "armadillo-finer", EXPECTED / "armadillo")
+
+
+def test_the_two_armadillo_bundles_share_their_mappings(bundles: Path) -> None:
+    rough, finer = (project_in(bundles / f"armadillo-{name}") for name in ("rough", "finer"))
+    assert [each.python for each in emit_project(rough)] == [each.python for each in emit_project(finer)]
+
+
+def test_a_json_mapping_with_every_construct_is_generated_as_stored() -> None:
+    compare(EXPECTED / "valves", EXPECTED / "valves")
+
+
+def test_generating_twice_gives_the_same_bytes(bundles: Path) -> None:
+    first, second = (emit_project(project_in(bundles / "armadillo-finer")) for _ in range(2))
+    assert first == second
+
+
+@pytest.mark.corpus
+def test_every_mapping_of_the_original_bundles_is_generated(corpus: Path) -> None:
+    folders = [path for path in sorted(corpus.iterdir()) if path.is_dir() and path.name != "bad"]
+    counts = {folder.name: len(emit_project(project_in(folder))) for folder in folders}
+    assert counts == {
+        "armadillo-finer": 5,
+        "armadillo-rough": 5,
+        "paper-example-json": 1,
+        "paper-example-sdl": 1,
+        "sampling-rate": 3,
+        "sarsop-simple": 2,
+        "tic-tac-toe-json": 2,
+        "tic-tac-toe-sdl": 2,
+        "turtlebot-visit": 1,
+        "wildfire": 2,
+    }

@@ -1,0 +1,40 @@
+"""Abstraction mappings for tests, written as a user writes them and read by the registry's reader."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+from aos_middleware.emit import EmittedMapping, emit_mapping
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Project, Skill, SkillModel
+from aos_registry.documents.source import Findings
+from aos_registry.load import load_bundle
+from aos_registry.reading import read_documents
+
+
+def mapping_of(text: str, file: str = "look.am") -> AbstractionMapping:
+    """The mapping in a document's text, which is not checked further."""
+    findings = Findings()
+    documents = read_documents({file: dedent(text).encode()}, findings)
+    mapping = documents[file].content
+    assert isinstance(mapping, AbstractionMapping), findings.sorted()
+    return mapping
+
+
+def skill_of(text: str, file: str = "look.am") -> Skill:
+    """A skill with a mapping from text; its model is not used."""
+    mapping = mapping_of(text, file)
+    return Skill(SkillModel(mapping.project, mapping.name, Span(file)), mapping)
+
+
+def emitted(text: str, low_level: LowLevelDocument | None = None) -> EmittedMapping:
+    """The generated module of a mapping's text."""
+    return emit_mapping(skill_of(text), low_level)
+
+
+def project_in(folder: Path) -> Project:
+    """The project of a bundle without errors."""
+    bundle = load_bundle(folder)
+    assert bundle.project is not None, bundle.diagnostics
+    return bundle.project

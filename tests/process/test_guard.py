@@ -1,0 +1,140 @@
+"""The guard around commands: their ending is passed on, and nothing of them stays behind."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+from aos_runtime.children import PIPE, Child, Limits, guarded
+
+SLEEPERS = "sleep 1000 & setsid sleep 1000 & echo $$; {tail}"
+
+
+def is_running(pid: int) -> bool:
+    """Whether a process does anything still; a zombie does not."""
+    try:
+        status = Path(f"/proc/{pid}/stat").read_text()
+    except FileNotFoundError:
+        return False
+    return status.rpartition(")")[2].split()[0] != "Z"
+
+
+def descendants(pid: int) -> list[int]:
+    """All processes below a process, wherever their group and session."""
+    below: list[int] = []
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        for child in (task / "children").read_text().split():
+            below += [int(child), *descendants(int(child))]
+    return below
+
+
+async def none_left(pids: list[int]) -> None:
+    """Returns once none of them runs."""
+    async with asyncio.timeout(10):
+        while any(is_running(pid) for pid in pids):
+            await asyncio.sleep(0.01)  # noqa: ASYNC110 (a strange process cannot be waited for)
+
+
+async def start(script: str, limits: Limits | None = None) -> Child:
+    command = guarded(["sh", "-c", script], limits)
+    return await Child.start(command, stdin=PIPE, stdout=PIPE, stderr=PIPE)
+
+
+@pytest.mark.parametrize(
+    ("script", "status"),
+    [("exit 0", 0), ("exit 3", 3), ("kill -SEGV $$", -signal.SIGSEGV), ("kill -KILL $$", -signal.SIGKILL)],
+)
+async def test_the_guard_ends_as_its_command_ends(script: str, status: int) -> None:
+    child = await start(script)
+    assert await child.wait() == status
+
+
+async def test_input_and_output_are_the_commands(tmp_path: Path) -> None:
+    child = await start("read line; echo got $line; echo oops >&2")
+    child.stdin.write(b"hello\n")
+    assert (await child.stdout.readline(), await child.stderr.readline()) == (b"got hello\n", b"oops\n")
+    await child.wait()
+
+
+async def test_a_command_that_does_not_exist_is_named() -> None:
+    child = await Child.start(guarded(["no-such-compiler"]), stderr=PIPE)
+    assert await child.wait() == 127
+    assert b"cannot start no-such-compiler: No such file" in await child.stderr.read()
+
+
+async def test_what_a_command_leaves_running_is_ended_with_it() -> None:
+    child = await start(SLEEPERS.format(tail="read line"))
+    await child.stdout.readline()
+    below = descendants(child.pid)
+    assert len(below) == 3
+    child.stdin.write(b"end\n")
+    assert await child.wait() == 0
+    await none_left(below)
+
+
+async def test_stopping_the_guard_ends_everything_below_it() -> None:
+    child = await start(SLEEPERS.format(tail="wait"))
+    await child.stdout.readline()
+    below = descendants(child.pid)
+    assert await child.stop() == -signal.SIGTERM
+    await none_left(below)
+
+
+async def test_a_command_that_ignores_sigterm_is_killed_after_the_grace() -> None:
+    child = await start("trap '' TERM; echo up; while true; do sleep 1000; done", Limits(grace_s=0.1))
+    await child.stdout.readline()
+    below = descendants(child.pid)
+    assert await child.stop(grace_s=5) == -signal.SIGKILL
+    await none_left(below)
+
+
+START_GUARDED = f"""
+import asyncio, sys
+from aos_runtime.children import Child, PIPE, guarded
+async def main():
+    child = await Child.start(guarded(["sh", "-c", {SLEEPERS.format(tail="wait")!r}]), stdout=PIPE)
+    await child.stdout.readline()
+    print("up", flush=True)
+    await child.wait()
+asyncio.run(main())
+"""
+
+
+async def test_grandchildren_end_when_the_parent_is_killed() -> None:
+    parent = await Child.start([sys.executable, "-c", START_GUARDED], stdout=PIPE)
+    await parent.stdout.readline()
+    below = descendants(parent.pid)
+    assert len(below) == 4
+    os.kill(parent.pid, signal.SIGKILL)
+    await parent.wait()
+    await none_left(below)
+
+
+async def test_the_command_ends_when_the_guard_itself_is_killed() -> None:
+    child = await start("echo up; read line")
+    await child.stdout.readline()
+    below = descendants(child.pid)
+    os.kill(child.pid, signal.SIGKILL)
+    await child.wait()
+    await none_left(below)
+
+
+@pytest.mark.parametrize(
+    ("limits", "code", "status"),
+    [
+        (Limits(address_space_bytes=300_000_000), "bytearray(2 * 10**9)", 1),
+        (Limits(cpu_s=1), "while True: pass", -signal.SIGKILL),
+        (Limits(file_bytes=1000), "open('out', 'wb').write(bytes(10**6))", 1),
+    ],
+    ids=["memory", "processor time", "file size"],
+)
+async def test_limits_hold(limits: Limits, code: str, status: int, tmp_path: Path) -> None:
+    child = await Child.start(guarded([sys.executable, "-c", code], limits), cwd=tmp_path, stderr=PIPE)
+    assert await child.wait() == status
+    if (tmp_path / "out").exists():
+        assert (tmp_path / "out").stat().st_size == 1000

@@ -1,0 +1,109 @@
+"""The journal: what was appended stays, in order, and nothing but appending is possible."""
+
+from __future__ import annotations
+
+import sqlite3
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from aos_protocol.errors import StorageError
+from aos_protocol.messages import Cancel, MissionState
+from aos_runtime.journal import Journal
+
+
+class StoppedClock:
+    def now_ns(self) -> int:
+        return 1_700_000_000_000_000_000
+
+    def monotonic_s(self) -> float:
+        return 0.0
+
+
+def test_rows_come_back_as_they_were_appended(tmp_path: Path) -> None:
+    with Journal.open(tmp_path / "journal.db", clock=StoppedClock()) as journal:
+        assert [journal.append("cancel", Cancel(reason)) for reason in ("first", "second")] == [1, 2]
+        rows = journal.rows()
+
+    assert [msgspec.json.decode(row.payload, type=Cancel).reason for row in rows] == ["first", "second"]
+    assert [(row.seq, row.kind, row.stamp_ns) for row in rows] == [
+        (1, "cancel", 1_700_000_000_000_000_000),
+        (2, "cancel", 1_700_000_000_000_000_000),
+    ]
+
+
+def test_rows_can_be_asked_by_kind_and_from_a_number(tmp_path: Path) -> None:
+    with Journal.open(tmp_path / "journal.db") as journal:
+        for number in range(6):
+            journal.append("even" if number % 2 == 0 else "odd", Cancel(str(number)))
+
+        assert [row.seq for row in journal.rows("odd")] == [2, 4, 6]
+        assert [row.seq for row in journal.rows("even", since=3)] == [3, 5]
+        assert journal.rows("none") == []
+
+
+def test_a_journal_goes_on_where_it_ended(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    for expected in (1, 2, 3):
+        with Journal.open(path) as journal:
+            assert journal.append("cancel", Cancel()) == expected
+
+
+def test_rows_cannot_be_changed_or_removed(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    with Journal.open(path) as journal:
+        journal.append("cancel", Cancel("true"))
+    database = sqlite3.connect(path)
+    with pytest.raises(sqlite3.IntegrityError, match="append-only"):
+        database.execute("UPDATE entries SET payload = '{}'")
+    with pytest.raises(sqlite3.IntegrityError, match="append-only"):
+        database.execute("DELETE FROM entries")
+    database.close()
+
+
+def test_a_reader_sees_what_the_writer_appended_and_cannot_write(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    with Journal.open(path) as writer, Journal.read(path) as reader:
+        writer.append("mission", MissionState("m", "waiting", 0, 0.0))
+        assert len(reader.rows("mission")) == 1
+        with pytest.raises(StorageError, match="readonly") as caught:
+            reader.append("mission", Cancel())
+    assert caught.value.code == "AOS701"
+
+
+@pytest.mark.parametrize("content", [b"", b"not a database, but long enough to be taken for one" * 50])
+def test_a_file_that_is_no_journal_is_refused(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "journal.db"
+    path.write_bytes(content)
+    with pytest.raises(StorageError) as caught:
+        Journal.read(path)
+    assert caught.value.code == "AOS702"
+    assert str(path) in caught.value.message
+
+
+def test_a_journal_of_another_version_is_left_alone(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    database = sqlite3.connect(path)
+    database.execute("PRAGMA user_version = 7")
+    database.close()
+    with pytest.raises(StorageError, match="not a journal of this version"):
+        Journal.open(path)
+
+
+def test_a_missing_folder_is_a_clear_error(tmp_path: Path) -> None:
+    with pytest.raises(StorageError, match="unable to open") as caught:
+        Journal.open(tmp_path / "absent" / "journal.db")
+    assert caught.value.code == "AOS701"
+    with pytest.raises(StorageError, match="there is no journal"):
+        Journal.read(tmp_path / "absent" / "journal.db")
+
+
+def test_a_full_disk_is_an_error_and_the_rows_before_it_stay(tmp_path: Path) -> None:
+    with Journal.open(tmp_path / "journal.db") as journal:
+        journal.append("cancel", Cancel("kept"))
+        journal._connection.execute("PRAGMA max_page_count = 8")
+        with pytest.raises(StorageError, match="full") as caught:
+            journal.append("cancel", Cancel("x" * 100_000))
+        assert caught.value.code == "AOS701"
+        assert len(journal.rows()) == 1

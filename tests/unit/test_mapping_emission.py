@@ -1,0 +1,330 @@
+"""What is generated from a mapping, and what is said about one that is not Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from mapping_documents import emitted, mapping_of, project_in, skill_of
+from msgspec.structs import replace
+
+from aos_middleware.emit import emit_mapping
+from aos_middleware.mappings import emit_project
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import (
+    AbstractionMapping,
+    ActivationField,
+    Import,
+    LowLevelConstant,
+    LowLevelDocument,
+    LowLevelType,
+    Parameter,
+    Snippet,
+)
+from aos_protocol.errors import DocumentError
+from aos_registry.documents.source import Findings
+from aos_registry.reading import read_documents
+
+HEAD = """\
+project: garden
+module_activation: skill
+path: /look
+"""
+
+
+def mistakes(text: str) -> list[tuple[str, str]]:
+    """(place, message) of each mistake that keeps a mapping from being generated."""
+    with pytest.raises(DocumentError) as refusal:
+        emitted(text)
+    assert refusal.value.code == "AOS121"
+    return [(str(each.span), each.message) for each in refusal.value.diagnostics]
+
+
+def refusal_of(mapping: AbstractionMapping) -> DocumentError:
+    """Why a mapping made by hand cannot be generated."""
+    with pytest.raises(DocumentError) as refusal:
+        emit_mapping(replace(skill_of(HEAD), mapping=mapping))
+    return refusal.value
+
+
+def function(python: str, name: str) -> str:
+    """The text of one generated function."""
+    start = python.index(f"def {name}(")
+    return python[start:].split("\n\n\n")[0].rstrip()
+
+
+def test_a_function_names_only_the_local_variables_that_it_reads() -> None:
+    python = emitted(
+        HEAD
+        + """\
+parameter: limit
+code:
+bound * 2
+response: full
+response_rule: level > 3
+local_variable: bound
+action_parameter: bound
+local_variable: level
+topic: /level
+message_type: Level
+code:
+return __input.level
+"""
+    ).python
+    assert "def request(bound):" in python
+    assert "def level_from_topic(__input):" in python
+    assert "def observe(level):" in python
+
+
+def test_falling_off_the_end_of_a_topics_code_keeps_the_value() -> None:
+    python = emitted(
+        HEAD
+        + """\
+local_variable: has_arrived
+topic: /log
+message_type: Log
+initial_value: False
+code:
+if __input.text == 'arrived':
+    return True
+"""
+    ).python
+    assert function(python, "has_arrived_from_topic").splitlines()[2:] == [
+        "    if __input.text == 'arrived':",
+        "        return True",
+        "    return has_arrived",
+    ]
+
+
+def test_code_that_always_returns_gets_no_second_return() -> None:
+    python = emitted(
+        HEAD
+        + """\
+local_variable: side
+topic: /log
+message_type: Log
+code:
+if __input.x > 0:
+    return 'left'
+else:
+    return 'right'
+"""
+    ).python
+    assert function(python, "side_from_topic").endswith("return 'right'")
+
+
+def test_rules_become_one_condition_each_up_to_the_one_that_is_always_true() -> None:
+    python = emitted(
+        HEAD
+        + """\
+response: a
+response_rule: one or two
+response: b
+response_rule: one
+response: c
+response_rule: True
+response: d
+response_rule: two
+local_variable: one
+action_parameter: one
+local_variable: two
+action_parameter: two
+"""
+    ).python
+    assert function(python, "observe").splitlines()[2:] == [
+        "    if one or two:",
+        '        return "a"',
+        "    if one:",
+        '        return "b"',
+        '    return "c"',
+    ]
+
+
+def test_a_mapping_without_rules_has_the_default_observation() -> None:
+    assert 'return "DefaultObservation"' in emitted(HEAD).python
+
+
+def test_a_response_variable_is_answered_as_text_whatever_the_rules_say() -> None:
+    python = emitted(
+        HEAD
+        + """\
+local_variable: board
+from_ros_service_response: true
+code:
+board = __input.state
+response_local_variable: board
+"""
+    ).python
+    assert "return None if board is None else str(board)" in python
+
+
+def test_indentation_inside_a_text_is_left_alone() -> None:
+    python = emitted(
+        HEAD
+        + """\
+local_variable: word
+topic: /log
+message_type: Log
+code:
+\tknown = '''one
+  two'''
+\tif __input.text in known:
+\t\treturn __input.text
+"""
+    ).python
+    lines = function(python, "word_from_topic").splitlines()
+    assert lines[2:5] == ["    known = '''one", "  two'''", "    if __input.text in known:"]
+
+
+def test_an_import_stands_in_for_what_is_not_installed() -> None:
+    python = emitted(HEAD.replace("path:", "imports: from: geometry_msgs.msg import: Point\npath:")).python
+    assert "    from geometry_msgs.msg import Point\nexcept ImportError:\n" in python
+    assert '    Point = stand_in("Point", "geometry_msgs.msg")' in python
+
+
+def test_what_an_unknown_star_import_has_to_bring_is_what_the_code_calls() -> None:
+    python = emitted(
+        HEAD.replace("path:", "imports: from: robot.srv import: *\npath:")
+        + "parameter: goal\ncode:\nGoal(x=float(x), y=str(len(y)))\n"
+    ).python
+    assert 'if "Goal" not in globals():\n    Goal = stand_in("Goal", "robot.srv")' in python
+    assert python.count("stand_in(") == 1
+
+
+def test_low_level_constants_are_left_out_where_no_parameter_can_bring_one() -> None:
+    span = Span("environment.json", 3, 1)
+    low_level = LowLevelDocument(
+        "garden",
+        span,
+        (LowLevelType("Place", (Parameter("x", "float", span),), span),),
+        (LowLevelConstant("___door", "Place", Snippet("___door.x = 1.0", (span,)), span),),
+    )
+    with_parameter = HEAD + "local_variable: place\naction_parameter: goal.place\n"
+    assert "___door = Place()\n___door.x = 1.0\n" in emitted(with_parameter, low_level).python
+    assert "___door" not in emitted(HEAD, low_level).python
+
+
+def test_document_text_never_becomes_template_or_comment_source() -> None:
+    text = HEAD + "parameter: a\ncode:\n'{{ 7 * 7 }} {% raw %}'\n"
+    skill = skill_of(text)
+    activation = replace(skill.mapping.activation, path='x"""\nimport os')
+    mapping = replace(skill.mapping, project="p\nimport os", activation=activation)
+    python = emit_mapping(replace(skill, mapping=mapping)).python
+    assert "'{{ 7 * 7 }} {% raw %}'" in python
+    assert "\nimport os" not in python
+
+
+# --- places ---------------------------------------------------------------------------------------------
+
+
+def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path) -> None:
+    project = project_in(bundles / "armadillo-finer")
+    mapping = next(each for each in emit_project(project) if each.skill == "observe_holding")
+    source = (bundles / "armadillo-finer" / "observe_holding.am").read_text().splitlines()
+    lines = mapping.python.splitlines()
+    generated = lines.index("    return min(__input.left_force_n, __input.right_force_n)")
+    span = mapping.locate(generated + 1, lines[generated].index("min") + 1)
+    assert span.file == "observe_holding.am"
+    assert source[span.line - 1][span.column - 1 :].startswith("min(__input.left_force_n")
+
+
+def test_each_line_of_a_snippet_knows_its_line_and_column_in_a_json_document() -> None:
+    folder = Path(__file__).parents[1] / "golden" / "python" / "valves"
+    (mapping,) = emit_project(project_in(folder))
+    source = (folder / "inspect_valve glue.json").read_text().splitlines()
+    lines = mapping.python.splitlines()
+    for code in ("sizes if drop", "number=number)", "or alarm_text", "LEAK", "math.atan2"):
+        generated = next(index for index, line in enumerate(lines) if code in line)
+        span = mapping.locate(generated + 1, lines[generated].index(code) + 1)
+        assert source[span.line - 1][span.column - 1 :].startswith(code)
+
+
+def test_generated_lines_stand_for_the_document_part_that_made_them() -> None:
+    mapping = emitted(HEAD + "local_variable: level\naction_parameter: tank.level\n")
+    line = mapping.python.splitlines().index('        "level": parameters["tank"]["level"],') + 1
+    assert str(mapping.locate(line)).startswith("look.am:4")
+
+
+def test_a_line_that_no_document_part_made_stands_for_the_mapping() -> None:
+    mapping = emitted(HEAD)
+    assert mapping.locate(1) == mapping.locate(10_000) == mapping.mapping.span
+
+
+# --- mistakes -------------------------------------------------------------------------------------------
+
+
+def test_every_mistake_of_a_mapping_is_found_in_one_run() -> None:
+    found = mistakes(
+        HEAD
+        + """\
+parameter: a
+code:
+1 +
+response: full
+response_rule: level >
+local_variable: level
+topic: /level
+message_type: Level
+initial_value: (1
+code:
+if __input.x:
+return 3
+"""
+    )
+    assert [place.rsplit(":", 1)[0] for place, _ in found] == [f"look.am:{line}" for line in (6, 8, 12, 15)]
+
+
+def test_a_mistake_in_a_json_document_is_found_at_its_line_and_column() -> None:
+    folder = Path(__file__).parents[1] / "golden" / "python" / "valves"
+    files = {path.name: path.read_bytes() for path in folder.glob("*.json")}
+    name = "inspect_valve glue.json"
+    files[name] = files[name].replace(b"is_done and drops == 0", b"is_done and and drops == 0")
+    mapping = read_documents(files, Findings())[name].content
+    assert isinstance(mapping, AbstractionMapping)
+    (mistake,) = refusal_of(mapping).diagnostics
+    source = files[name].decode().splitlines()
+    assert source[mistake.span.line - 1][mistake.span.column - 1 :].startswith("and drops")
+
+
+def test_what_only_shows_in_the_whole_module_is_found_too() -> None:
+    found = mistakes(
+        HEAD
+        + """\
+local_variable: level
+topic: /level
+message_type: Level
+code:
+global level
+level = 1
+"""
+    )
+    assert found == [("look.am:8:1", "this is not valid Python: name 'level' is parameter and global")]
+
+
+@pytest.mark.parametrize("code", ["yield 1", "x = [(yield)]", "return 1) + (2", "def f(:"])
+def test_code_that_is_no_function_body_is_refused(code: str) -> None:
+    assert mistakes(HEAD + f"local_variable: level\ntopic: /level\nmessage_type: Level\ncode:\n{code}\n")
+
+
+@pytest.mark.parametrize("code", ["a = 1", "1)(", "print(1); print(2)", "yield", "x for x in", "\u0000"])
+def test_what_is_no_expression_is_refused(code: str) -> None:
+    mapping = mapping_of(HEAD)
+    field = ActivationField("a", Snippet(code, (Span("look.am", 6, 1),)))
+    refusal = refusal_of(replace(mapping, activation=replace(mapping.activation, fields=(field,))))
+    assert [each.code for each in refusal.diagnostics] == ["AOS121"]
+
+
+def test_names_that_would_break_the_module_are_refused() -> None:
+    mapping = mapping_of(HEAD + "local_variable: level\naction_parameter: level\n")
+    (variable,) = mapping.local_variables
+    for name in ("class", "__input", "parameters", "a b", "x\n"):
+        refusal = refusal_of(replace(mapping, local_variables=(replace(variable, name=name),)))
+        assert refusal.diagnostics[0].code == "AOS126"
+
+
+def test_an_import_that_is_none_is_refused() -> None:
+    mapping = mapping_of(HEAD)
+    for module, name in (("os; import sys", "x"), ("os", "x\nimport sys"), ("", "1")):
+        bad = Import(module, (name,), Span("look.am", 2, 1))
+        refusal = refusal_of(replace(mapping, activation=replace(mapping.activation, imports=(bad,))))
+        assert [each.span for each in refusal.diagnostics] == [bad.span]

@@ -1,0 +1,427 @@
+"""What a generated mapping does in one activation: sources of local variables, order, rules.
+
+The module runs in this process; tests/process runs it where it belongs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mapping_documents import emitted, project_in
+
+from aos_middleware.emit import EmittedMapping
+from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised, Take
+from aos_middleware.mappings import emit_project
+from aos_middleware.worker import LoadedMapping
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import LowLevelConstant, LowLevelDocument, Snippet
+
+VALVES = Path(__file__).parents[1] / "golden" / "python" / "valves"
+
+HEAD = """\
+project: garden
+module_activation: skill
+path: /look
+"""
+
+Messages = Iterable[tuple[str, dict[str, Any]]]
+
+
+def loaded(mapping: EmittedMapping, allowed_imports: tuple[str, ...] | None = None) -> LoadedMapping:
+    return LoadedMapping(Load(mapping.python, mapping.file_name, 60.0, 60.0, allowed_imports))
+
+
+def fields(mapping: LoadedMapping, parameters: dict[str, Any]) -> dict[str, Any]:
+    answer = mapping.answer(Begin(parameters))
+    assert isinstance(answer, Begun), answer
+    return answer.fields
+
+
+def observed(
+    mapping: LoadedMapping, parameters: dict[str, Any], messages: Messages, result: dict[str, Any]
+) -> Observed:
+    """The outcome of a whole activation that raises nothing."""
+    fields(mapping, parameters)
+    taken = mapping.answer(Take(list(messages)))
+    assert not isinstance(taken, Raised), taken
+    answer = mapping.answer(Finish(result))
+    assert isinstance(answer, Observed), answer
+    return answer
+
+
+def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
+    project = project_in(corpus / bundle)
+    return loaded(next(each for each in emit_project(project) if each.skill == skill))
+
+
+# --- sources of local variables -------------------------------------------------------------------------
+
+
+def test_parameters_reach_the_call_through_dotted_paths(bundles: Path) -> None:
+    project = project_in(bundles / "armadillo-finer")
+    navigate = next(each for each in emit_project(project) if each.skill == "navigate")
+    parameters = {"destination": {"place": "EasyTable", "x": 0.5, "y": 2.0, "yaw": 1.57}}
+    assert fields(loaded(navigate), parameters) == {"x": 0.5, "y": 2.0, "yaw": 1.57}
+
+
+def test_the_result_of_the_call_gives_service_variables() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+response: done
+response_rule: success
+response: not_done
+response_rule: not success
+local_variable: success
+from_ros_service_response: true
+code:
+success = __input.success
+"""
+        )
+    )
+    assert observed(mapping, {}, [], {"success": True}).response == "done"
+    assert observed(mapping, {}, [], {"success": False}).response == "not_done"
+
+
+def test_topic_messages_are_evaluated_in_the_order_in_which_they_came() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+response: three
+response_rule: seen == [1, 2, 3]
+local_variable: seen
+topic: /n
+message_type: Int
+initial_value: []
+code:
+return seen + [__input.data]
+"""
+        )
+    )
+    messages = [("/n", {"data": number}) for number in (1, 2, 3)]
+    assert observed(mapping, {}, messages, {}).response == "three"
+
+
+def test_one_message_updates_its_variables_in_the_documents_order() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+local_variable: first
+topic: /n
+message_type: Int
+code:
+return __input.data
+local_variable: second
+topic: /n
+message_type: Int
+code:
+return first * 10
+"""
+        )
+    )
+    assert observed(mapping, {}, [("/n", {"data": 4})], {}).local_variables == {
+        "first": "4",
+        "second": "40",
+    }
+
+
+def test_the_result_is_evaluated_after_all_topic_messages() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+local_variable: total
+from_ros_service_response: true
+code:
+total = __input.offset + last
+local_variable: last
+topic: /n
+message_type: Int
+code:
+return __input.data
+"""
+        )
+    )
+    variables = observed(mapping, {}, [("/n", {"data": 4})], {"offset": 1}).local_variables
+    assert variables["total"] == "5"
+
+
+def test_every_service_variable_is_evaluated_and_may_read_those_before_it() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+local_variable: a
+from_ros_service_response: true
+code:
+a = __input.x
+local_variable: b
+from_ros_service_response: true
+code:
+b = a + 1
+"""
+        )
+    )
+    assert observed(mapping, {}, [], {"x": 1}).local_variables == {"a": "1", "b": "2"}
+
+
+def test_messages_of_topics_that_the_mapping_does_not_name_change_nothing() -> None:
+    mapping = loaded(emitted(HEAD))
+    assert observed(mapping, {}, [("/other", {"x": 1})], {}).response == "DefaultObservation"
+
+
+def test_initial_values_are_evaluated_anew_for_each_activation() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+response: one
+response_rule: len(seen) == 1
+local_variable: seen
+topic: /n
+message_type: Int
+initial_value: []
+code:
+seen.append(__input.data)
+"""
+        )
+    )
+    for _ in range(2):
+        assert observed(mapping, {}, [("/n", {"data": 1})], {}).response == "one"
+
+
+def test_a_topic_that_says_nothing_in_this_activation_keeps_no_value_of_the_last() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+response: heard
+response_rule: level is not None
+response: silent
+response_rule: True
+local_variable: level
+topic: /level
+message_type: Level
+code:
+return __input.data
+"""
+        )
+    )
+    assert observed(mapping, {}, [("/level", {"data": 1})], {}).response == "heard"
+    assert observed(mapping, {}, [], {}).response == "silent"
+
+
+@pytest.mark.parametrize(("code", "value"), [("pass", '"old"'), ("return", "null"), ("return None", "null")])
+def test_a_topic_value_becomes_none_only_by_an_explicit_return(code: str, value: str) -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + f"""\
+local_variable: text
+topic: /n
+message_type: Int
+initial_value: 'old'
+code:
+{code}
+"""
+        )
+    )
+    assert observed(mapping, {}, [("/n", {})], {}).local_variables == {"text": value}
+
+
+# --- rules ----------------------------------------------------------------------------------------------
+
+
+def test_the_first_rule_that_holds_wins_also_with_an_or_in_a_later_one() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+response: low
+response_rule: level < 3
+response: any
+response_rule: level > 5 or level < 4
+local_variable: level
+from_ros_service_response: true
+code:
+level = __input.level
+"""
+        )
+    )
+    answers = [observed(mapping, {}, [], {"level": level}).response for level in (1, 3, 6, 4)]
+    assert answers == ["low", "any", "any", None]
+
+
+def test_a_response_variable_without_a_value_is_no_response() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+response_local_variable: board
+local_variable: board
+from_ros_service_response: true
+code:
+board = __input.state
+"""
+        )
+    )
+    assert observed(mapping, {}, [], {"state": "XO?"}).response == "XO?"
+    assert observed(mapping, {}, [], {"state": None}).response is None
+
+
+# --- imports and low-level values -----------------------------------------------------------------------
+
+
+def test_the_name_of_a_low_level_constant_reaches_the_mapping_as_its_value() -> None:
+    (emission,) = emit_project(project_in(VALVES))
+    parameters = {"oStand": {"number": 2, "place": "___place_a"}}
+    assert fields(loaded(emission), parameters) == {
+        "goal": {"x": 1.5, "y": 3.0, "z": 0.0},
+        "heading_rad": pytest.approx(1.1071487),
+        "options": {"lamp": True, "number": 2},
+    }
+
+
+def test_what_one_activation_does_to_a_constant_does_not_reach_the_next() -> None:
+    span = Span("environment.json", 1, 1)
+    door = LowLevelConstant("___door", "Door", Snippet("___door.x = 1", (span,)), span)
+    low_level = LowLevelDocument("garden", span, constants=(door,))
+    text = "parameter: x\ncode:\nplace.__dict__.update(x=place.x + 1) or place.x\n"
+    text += "local_variable: place\naction_parameter: goal\n"
+    mapping = loaded(emitted(HEAD + text, low_level))
+    for _ in range(2):
+        assert fields(mapping, {"goal": "___door"}) == {"x": 2}
+
+
+def test_a_module_that_is_installed_is_used_itself() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD.replace("path:", "imports: from: fractions import: Fraction\npath:")
+            + "parameter: half\ncode:\nstr(Fraction(2, 4))\n"
+        )
+    )
+    assert fields(mapping, {}) == {"half": "1/2"}
+
+
+def test_an_import_that_the_deployment_does_not_allow_is_refused_and_nothing_stands_in() -> None:
+    mapping = emitted(HEAD.replace("path:", "imports: from: socket import: socket\npath:"))
+    with pytest.raises(Exception, match="does not allow mappings to import socket"):
+        loaded(mapping, allowed_imports=("math",))
+    loaded(mapping, allowed_imports=("socket",))
+
+
+# --- faults ---------------------------------------------------------------------------------------------
+
+
+def test_an_exception_is_placed_at_the_innermost_line_of_the_mapping() -> None:
+    emission = emitted(
+        HEAD
+        + """\
+local_variable: level
+topic: /level
+message_type: Level
+code:
+def of(value):
+    return value.levle
+return of(__input)
+"""
+    )
+    mapping = loaded(emission)
+    fields(mapping, {})
+    answer = mapping.answer(Take([("/level", {"level": 1})]))
+    assert isinstance(answer, Raised)
+    assert answer.error == "AttributeError: no field 'levle'; did you mean 'level'?"
+    assert str(emission.locate(answer.line, answer.column)) == "look.am:9:12"
+
+
+def test_columns_count_characters_not_bytes() -> None:
+    emission = emitted(HEAD + "parameter: a\ncode:\n'äöü' + nothing\n")
+    answer = loaded(emission).answer(Begin({}))
+    assert isinstance(answer, Raised)
+    assert str(emission.locate(answer.line, answer.column)) == "look.am:6:9"
+
+
+def test_a_rule_over_a_silent_topic_says_which_variable_has_no_value() -> None:
+    mapping = loaded(
+        emitted(
+            HEAD
+            + """\
+response: high
+response_rule: level > 3
+local_variable: level
+topic: /level
+message_type: Level
+code:
+return __input.data
+"""
+        )
+    )
+    fields(mapping, {})
+    answer = mapping.answer(Finish({}))
+    assert isinstance(answer, Raised)
+    assert answer.unset == ("level",)
+    assert answer.local_variables == {"level": "null"}
+
+
+def test_a_service_variable_that_is_never_assigned_is_an_error_at_its_place() -> None:
+    emission = emitted(
+        HEAD
+        + """\
+local_variable: success
+from_ros_service_response: true
+code:
+succes = __input.success
+"""
+    )
+    mapping = loaded(emission)
+    fields(mapping, {})
+    answer = mapping.answer(Finish({"success": True}))
+    assert isinstance(answer, Raised)
+    assert "success" in answer.error
+    assert emission.locate(answer.line).line == 4
+
+
+def test_leaving_the_program_ends_only_the_evaluation() -> None:
+    mapping = loaded(emitted(HEAD + "parameter: a\ncode:\n__import__('sys').exit(3)\n"))
+    for _ in range(2):
+        answer = mapping.answer(Begin({}))
+        assert isinstance(answer, Raised)
+        assert answer.error == "SystemExit: 3"
+
+
+# --- original bundles -----------------------------------------------------------------------------------
+
+
+@pytest.mark.corpus
+def test_the_papers_navigation_hears_its_topic(corpus: Path) -> None:
+    for bundle in ("paper-example-sdl", "paper-example-json"):
+        mapping = original(corpus, bundle, "navigate")
+        place = {"oDesiredLocation": {"x": 1.0, "y": 2.0, "z": 0.0}}
+        assert fields(mapping, place) == {"goal": {"x": 1.0, "y": 2.0, "z": 0.0}}
+        reached = [("/rosout", {"msg": "Goal reached"}), ("/rosout", {"msg": "idle"})]
+        assert observed(mapping, place, reached, {"success": True}).response == "eSuccess"
+        assert observed(mapping, place, [], {"success": True}).response == "eFailed"
+        assert observed(mapping, place, reached, {"success": False}).response == "eFailed"
+
+
+@pytest.mark.corpus
+def test_the_original_armadillo_drives_to_a_low_level_constant(corpus: Path) -> None:
+    mapping = original(corpus, "armadillo-finer", "navigate")
+    parameters = {
+        "oDesiredLocation": {"discrete_location": "eCorridor", "actual_location": "___locationCorridor"}
+    }
+    assert fields(mapping, parameters) == {"goal": {"x": 5.641, "y": 1.576, "z": 0.0}, "yaw": -2.779}
+    assert observed(mapping, parameters, [], {"success": True}).response == "eSuccess"
+
+
+@pytest.mark.corpus
+def test_the_board_of_tic_tac_toe_is_answered_as_text(corpus: Path) -> None:
+    for bundle, skill in (("tic-tac-toe-sdl", "detect"), ("tic-tac-toe-json", "detect_board_state")):
+        mapping = original(corpus, bundle, skill)
+        assert observed(mapping, {}, [], {"state": "??X?O????"}).response == "??X?O????"

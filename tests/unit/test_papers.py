@@ -1,0 +1,173 @@
+"""The project's papers say what is there: commands, links, tables, locked dependencies."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import msgspec
+import pytest
+from packaging.requirements import Requirement
+
+from aos_protocol import keys, messages
+from aos_protocol.errors import CODES
+from aos_protocol.keys import Keys
+
+LOCKS = ("build", "runtime", "dev", "compiler")
+FIRST_SCREEN_LINES = 30
+
+
+def requirements(lock: Path) -> dict[str, list[str]]:
+    """Each pinned line of a lock file, as name -> hashes."""
+    entries = re.split(r"\n(?=[a-z])", lock.read_text(encoding="utf-8").replace("\\\n", " "))
+    return {
+        Requirement(entry.split("--hash")[0]).name: re.findall(r"--hash=(\S+)", entry) for entry in entries
+    }
+
+
+def pages(root: Path) -> list[Path]:
+    return [*root.glob("*.md"), *root.glob("docs/**/*.md")]
+
+
+def test_readme_shows_exactly_two_commands_on_its_first_screen(root: Path) -> None:
+    first_screen = (root / "README.md").read_text(encoding="utf-8").splitlines()[:FIRST_SCREEN_LINES]
+    commands = [line for line in first_screen if line.startswith("./setup.sh")]
+    assert commands == [
+        "./setup.sh && .venv/bin/aos-up deploy/armadillo.yaml",
+        "./setup.sh --dev && tests/check.sh",
+    ]
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_scripts_find_each_command_in_readme(root: Path, number: int) -> None:
+    script = [str(root / "tests" / "readme_command.sh"), str(number)]
+    found = subprocess.run(script, capture_output=True, text=True, check=True).stdout
+    assert found.startswith("./setup.sh")
+    assert found.count("\n") == 1
+
+
+@pytest.mark.parametrize("script", ["setup.sh", "tests/check.sh", "tests/newcomer.sh", ".ci/run"])
+def test_scripts_can_be_run(root: Path, script: str) -> None:
+    assert (root / script).stat().st_mode & 0o111
+
+
+def test_generated_pages_are_current(root: Path) -> None:
+    command = [sys.executable, str(root / "docs" / "write_reference.py"), "--check"]
+    check = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert check.returncode == 0, check.stderr
+
+
+def test_the_table_of_keys_holds_every_key_that_can_be_built() -> None:
+    robot = Keys("ROBOT")
+    built = {robot.live("SERVICE"), robot.activate("SKILL"), robot.call("PATH"), robot.topic("PATH")}
+    built |= {getattr(robot, name) for name, kind in vars(Keys).items() if isinstance(kind, property)}
+    stand_ins = [("ROBOT", "<robot>"), ("SERVICE", "<service>"), ("SKILL", "<skill>"), ("PATH", "<path>")]
+    documented = set(re.findall(r"^ +(aos/\S+)", keys.__doc__ or "", re.MULTILINE))
+    for key in built:
+        if key.endswith("*"):
+            continue
+        for actual, shown in stand_ins:
+            key = key.replace(actual, shown)
+        assert key in documented
+        documented.discard(key)
+    assert not documented
+
+
+def test_every_message_in_the_table_of_keys_exists() -> None:
+    said = re.findall(r"\b[A-Z]\w+$|\b[A-Z]\w+(?= ->)", keys.__doc__ or "", re.MULTILINE)
+    assert said
+    for name in said:
+        assert issubclass(getattr(messages, name), messages.Message)
+
+
+def test_every_error_code_that_is_used_has_a_meaning(root: Path) -> None:
+    sources = [
+        *(root / "protocol").rglob("*.py"),
+        *(root / "services").rglob("*.?pp"),
+        *(root / "deploy").rglob("*.py"),
+    ]
+    sources += (root / "services").rglob("*.py")
+    used = {
+        code for path in sources for code in re.findall(r"\bAOS\d{3}\b", path.read_text(encoding="utf-8"))
+    }
+    assert used <= CODES.keys()
+
+
+def test_links_between_pages_lead_somewhere(root: Path) -> None:
+    dead = []
+    for page in pages(root):
+        text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        targets = re.findall(r"\]\(([^)#\s]+)", text)
+        inside = [target for target in targets if "://" not in target]
+        dead += [f"{page.name}: {target}" for target in inside if not (page.parent / target).exists()]
+    assert not dead
+
+
+def test_every_decision_is_listed(root: Path) -> None:
+    folder = root / "docs" / "decisions"
+    listed = re.findall(r"\((\d{4}-[\w-]+\.md)\)", (folder / "README.md").read_text(encoding="utf-8"))
+    assert listed == sorted(path.name for path in folder.glob("[0-9]*.md"))
+
+
+def test_the_table_of_deadlines_has_the_values_of_the_sources(root: Path) -> None:
+    table = (root / "docs" / "architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"\| ([\d.]+) \| `(aos_[\w.]+)` \|", table)
+    assert rows
+    for seconds, place in rows:
+        assert value_at(place) == float(seconds), place
+
+
+def value_at(place: str) -> object:
+    """The value of `module.CONSTANT`, or the default of `module.Struct.field`."""
+    parts = place.split(".")
+    if parts[-2][0].isupper():
+        struct = getattr(importlib.import_module(".".join(parts[:-2])), parts[-2])
+        return next(field.default for field in msgspec.structs.fields(struct) if field.name == parts[-1])
+    return getattr(importlib.import_module(".".join(parts[:-1])), parts[-1])
+
+
+def test_the_changelog_knows_the_version(root: Path) -> None:
+    version = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert version in (root / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", LOCKS)
+def test_locks_pin_by_hash_and_hold_no_address(root: Path, name: str) -> None:
+    lock = root / "deploy" / "lock" / f"{name}.txt"
+    assert "://" not in lock.read_text(encoding="utf-8")
+    for package, hashes in requirements(lock).items():
+        assert hashes, f"{package} has no hash"
+
+
+def test_locks_hold_every_dependency(root: Path) -> None:
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    needed = {"runtime": project["dependencies"], "dev": extras["dev"], "compiler": extras["compiler"]}
+    for name, lines in needed.items():
+        pinned = pins(root / "deploy" / "lock" / f"{name}.txt")
+        for line in lines:
+            wanted = Requirement(line)
+            assert pinned[canonical(wanted.name)] in wanted.specifier, f"{line} in {name}.txt"
+
+
+def test_the_development_lock_holds_the_runtime_one(root: Path) -> None:
+    runtime, dev = (pins(root / "deploy" / "lock" / f"{name}.txt") for name in ("runtime", "dev"))
+    assert runtime.items() <= dev.items()
+
+
+def pins(lock: Path) -> dict[str, str]:
+    """Package -> version, for this Python."""
+    found = {}
+    for line in re.findall(r"^([a-z][^\\\n]*)", lock.read_text(encoding="utf-8"), re.MULTILINE):
+        pinned = Requirement(line.strip())
+        if pinned.marker is None or pinned.marker.evaluate():
+            found[canonical(pinned.name)] = next(iter(pinned.specifier)).version
+    return found
+
+
+def canonical(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
