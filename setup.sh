@@ -74,12 +74,17 @@ apt_install() { # apt_install PACKAGE...: whether they could be installed
         { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "$@" >/dev/null; }
 }
 
+version_of() { "$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null; }
+
+has_usable_venv() {
+    is_python "$VENV/bin/python" 'v >= (3, 11)' && "$VENV/bin/python" -m pip --version >/dev/null 2>&1 || return 1
+    [ -z "${AOS_PYTHON:-}" ] || [ "$(version_of "$AOS_PYTHON")" = "$(version_of "$VENV/bin/python")" ]
+}
+
 make_venv() {
-    if is_python "$VENV/bin/python" 'v >= (3, 11)' && "$VENV/bin/python" -m pip --version >/dev/null 2>&1; then
-        return
-    fi
+    if has_usable_venv; then return; fi
     find_python
-    version=$("$PYTHON" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    version=$(version_of "$PYTHON")
     if ! has_venv "$PYTHON"; then
         apt_install "python$version-venv" || fail "Python $version has no venv module" \
             "sudo apt-get install python$version-venv, then run this again"
@@ -126,13 +131,15 @@ has_pybullet() { "$VENV/bin/python" -c 'import importlib.util as u, sys; sys.exi
 prepare_to_build_pybullet() { # prepare_to_build_pybullet REQUIREMENTS
     python=$VENV/bin/python
     if ! find_compiler >/dev/null || ! has_headers "$python"; then
-        version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
-        apt_install g++ "python$version-dev" || fail \
-            "pybullet has no ready package for Python $version, and a C++ compiler or Python's headers are missing to build it" \
-            "Do one of these, then run this again:" \
-            "  sudo apt-get install g++ python$version-dev      (it is then built here, about 8 minutes, once) " \
-            "  install Python 3.11                               (it is found on PATH, in pyenv's and in uv's folder)" \
-            "  AOS_PYTHON=/path/to/python3.11 $0"
+        version=$(version_of "$python")
+        if ! apt_install g++ "python$version-dev"; then
+            # The next attempt may find another Python.
+            rm -rf "$VENV"
+            fail "pybullet has no ready package for Python $version; to build it here, a C++ compiler or Python's headers are missing" \
+                "Do one of these, then run this again:" \
+                "  sudo apt-get install g++ python$version-dev    (it is then built, about 8 minutes, once)" \
+                "  install Python 3.11    (it is found on PATH, in pyenv's and in uv's folder, or named by AOS_PYTHON)"
+        fi
     fi
     say "building pybullet for this Python, which has no ready package: about 8 minutes on two cores, once"
     # It looks for numpy when it is built, and hands pictures over slowly without it.

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
+from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_protocol import errors, keys, messages
 
 DOCS = Path(__file__).resolve().parent
@@ -26,17 +27,20 @@ SECTION = re.compile(r"# --- (.+?) -+")
 
 
 def errors_page() -> str:
-    """Every code under the exception that carries it; the classes come from the drawing in `errors`."""
+    """Every code under the exception that carries it, by the drawing in `errors`; then the exit codes."""
     lines = [
         "# Error codes",
         "",
         "Every fault and every finding about a document has a code. The code crosses the bus and stands in",
         "the journal; the exception class is local to Python. Messages name the file and line where there is",
-        "one, and say what to do. This page is written by `make docs` from `aos_protocol.errors.CODES`.",
+        "one, and say what to do. This page is written by `make docs` from `aos_protocol.errors.CODES` and",
+        "`aos_deploy.exit_codes`.",
     ]
     for digit, (name, situation) in error_classes().items():
         lines += ["", f"## {name}: {situation}", "", "| Code | Meaning |", "| --- | --- |"]
         lines += [f"| {code} | {text} |" for code, text in errors.CODES.items() if code[3] == digit]
+    lines += ["", "## Exit codes of aos and aos-up", "", "| Code | Meaning |", "| --- | --- |"]
+    lines += [f"| {code} | {text} |" for code, text in exit_codes()]
     return "\n".join(lines) + "\n"
 
 
@@ -44,6 +48,11 @@ def error_classes() -> dict[str, tuple[str, str]]:
     """First digit of a code -> class name and what it is for."""
     drawn = re.findall(r"^ +(\w+) +AOS(\d)xx  (.+)$", errors.__doc__ or "", re.MULTILINE)
     return {digit: (name, situation) for name, digit, situation in drawn}
+
+
+def exit_codes() -> list[tuple[str, str]]:
+    """(number, meaning), as the commands' help texts tell them."""
+    return re.findall(r"(\d+) (.+?)(?=, \d+ |\.$)", EXIT_CODES_TEXT)
 
 
 # --- keys ----------------------------------------------------------------------------------------------

@@ -7,22 +7,32 @@ its line and column. Paths in it are relative to its own folder.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Literal
 
 import msgspec
 
+from aos_deploy.typed import nearest, read_structure
+from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
 from aos_protocol.diagnostics import Span, has_errors
 from aos_protocol.errors import DeployError
-from aos_deploy.typed import nearest, read_structure
-from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlScalar, read_yaml
 
-__all__ = ["BusPart", "Deployment", "DeployFile", "MissionPart", "SolverPart", "read_deploy_file"]
+__all__ = [
+    "BusPart",
+    "DeployFile",
+    "Deployment",
+    "MissionPart",
+    "SolverPart",
+    "check_endpoint",
+    "read_deploy_file",
+    "skill_of_file",
+]
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
 Seconds = Annotated[float, msgspec.Meta(gt=0)]
 Count = Annotated[int, msgspec.Meta(ge=1)]
-Seed = Annotated[int, msgspec.Meta(ge=0, lt=2**63)]
+Seed = Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)]
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _ENDPOINT = re.compile(r"tcp/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):\d{1,5}")
@@ -35,7 +45,7 @@ class BusPart(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MissionPart(msgspec.Struct, frozen=True, kw_only=True):
-    """When a mission ends. `stop_below_value` is an expected return; without it nothing is too poor to try."""
+    """When a mission ends. `stop_below_value` is an expected return; without one nothing is too poor."""
 
     goal_probability: Probability = 0.9
     step_limit: Count = 30
@@ -60,9 +70,9 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     """The file as it is written; what is not required has the defaults given here.
 
     `project` is the project that the bundles' documents name, by default the robot's name. `leave_out` names
-    skills of the bundles that are not there at the start. `watch` is the folder whose sub-folders the registry
-    takes as bundles, by default `drop` in the run directory. `bind` says which adapter serves which activation
-    path of the abstraction mappings. `runs` is where run directories go.
+    skills whose documents (`<skill>.*`) are kept back at the start. `watch` is the folder whose sub-folders
+    the registry takes as bundles, by default `drop` in the run directory. `bind` says which adapter serves
+    which activation path of the abstraction mappings. `runs` is where run directories go.
     """
 
     aos: Literal[1]
@@ -109,6 +119,16 @@ def read_deploy_file(path: Path) -> Deployment:
     return deployment
 
 
+def check_endpoint(endpoint: str) -> None:
+    """DeployError AOS801 unless it is one of this machine alone: everything else needs protection first."""
+    if not _ENDPOINT.fullmatch(endpoint):
+        raise DeployError(
+            f"{endpoint!r} is not an endpoint of this machine",
+            code="AOS801",
+            hint="Write it as tcp/127.0.0.1:7447, with port 0 for any free one",
+        )
+
+
 def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) -> Deployment:
     """The paths made absolute, and what the schema alone cannot see checked."""
     folder = path.parent
@@ -116,13 +136,10 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         if not _NAME.fullmatch(name):
             hint = "Use letters, digits, - and _"
             findings.error("AOS106", f"{name!r} is not a {key} name", _place(node, key), hint)
-    if not _ENDPOINT.fullmatch(file.bus.listen):
-        findings.error(
-            "AOS106",
-            f"{file.bus.listen!r} is not an endpoint of this machine",
-            _place(node, "bus", "listen"),
-            "Write it as tcp/127.0.0.1:7447, with port 0 for any free one",
-        )
+    try:
+        check_endpoint(file.bus.listen)
+    except DeployError as error:
+        findings.error("AOS106", error.message, _place(node, "bus", "listen"), error.hint)
     if file.solver.simulations is not None and file.solver.time_s is not None:
         where = _place(node, "solver", "time_s")
         findings.error("AOS106", "solver has both simulations and time_s", where, "Keep one of them")
@@ -142,26 +159,39 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
 
 
 def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) -> tuple[Path, ...]:
+    if not file.bundles:
+        findings.error("AOS105", "bundles names none", _place(node, "bundles"), "Name a bundle's folder")
+    for name, where in _texts(node, "bundles"):
+        if not (folder / name).is_dir():
+            findings.error("AOS101", f"there is no bundle folder {folder / name}", where)
     bundles = tuple((folder / name).resolve() for name in file.bundles)
-    if not bundles:
-        findings.error("AOS105", "bundles is empty", _place(node, "bundles"), "Name a bundle's folder")
-    for index, bundle in enumerate(bundles):
-        if not bundle.is_dir():
-            findings.error("AOS101", f"there is no bundle folder {bundle}", _place(node, "bundles", index))
-    skills = {document.stem for bundle in bundles if bundle.is_dir() for document in bundle.iterdir()}
-    for index, skill in enumerate(file.leave_out):
+    skills = {
+        skill_of_file(document.name) for bundle in bundles if bundle.is_dir() for document in bundle.iterdir()
+    }
+    for skill, where in _texts(node, "leave_out"):
         if skill not in skills:
-            where = _place(node, "leave_out", index)
             findings.error("AOS110", f"no bundle has a skill {skill}", where, nearest(skill, skills))
     return bundles
 
 
-def _place(node: YamlMap, *path: str | int) -> Span:
-    """Where a value stands; of the nearest there is, if it is not in the file."""
-    found: YamlMap | YamlList | YamlScalar = node
-    for step in path:
-        if isinstance(found, YamlMap) and step in found.entries:
-            found = found.entries[str(step)]
-        elif isinstance(found, YamlList) and isinstance(step, int):
-            found = found.items[step]
+def skill_of_file(name: str) -> str:
+    """The skill a document of a bundle is about, by its file name."""
+    return name.partition(".")[0]
+
+
+def _texts(node: YamlMap, key: str) -> Iterator[tuple[str, Span]]:
+    """The texts of a list and where each stands."""
+    listed = node.entries.get(key)
+    for item in listed.items if isinstance(listed, YamlList) else ():
+        if isinstance(item, YamlScalar) and isinstance(item.value, str):
+            yield item.value, item.span
+
+
+def _place(node: YamlMap, *path: str) -> Span:
+    """Where a value stands; where the file begins, if it is not in the file."""
+    found: YamlNode = node
+    for key in path:
+        if not isinstance(found, YamlMap) or key not in found.entries:
+            return node.span
+        found = found.entries[key]
     return found.span

@@ -9,9 +9,10 @@ from collections.abc import Iterable
 from typing import Any, TypeVar
 
 import msgspec
+from msgspec import UNSET
 
-from aos_protocol.diagnostics import Span
 from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlNode, YamlScalar
+from aos_protocol.diagnostics import Span
 
 __all__ = ["nearest", "read_structure"]
 
@@ -21,10 +22,11 @@ _KINDS = {str: "a text", int: "a whole number", float: "a number", bool: "true o
 
 
 def read_structure(node: YamlMap, kind: type[S], findings: Findings, prefix: str = "") -> S | None:
-    """An instance of `kind`, whose fields are the keys; None if that is not possible, with findings why.
+    """An instance of `kind`, whose fields are the keys.
 
-    Understands scalars with `msgspec.Meta` limits, literals, optional values, structures, tuples and mappings
-    of such. `prefix` is the dotted path of the node, for the messages.
+    What is wrong is found, and left at its default, so that the rest can be checked on; None where a required
+    value is missing or wrong. Understands scalars with `msgspec.Meta` limits, literals, optional values,
+    structures, and tuples and mappings of such. `prefix` is the dotted path of the node, for the messages.
     """
     fields = {field.name: field for field in msgspec.structs.fields(kind)}
     hints = typing.get_type_hints(kind, include_extras=True)
@@ -32,16 +34,16 @@ def read_structure(node: YamlMap, kind: type[S], findings: Findings, prefix: str
         if key not in fields:
             findings.error("AOS102", f"unknown key {prefix}{key}", where, nearest(key, fields))
     values: dict[str, Any] = {}
-    is_whole = True
     for name, field in fields.items():
         if name in node.entries:
-            value, is_good = _read(node.entries[name], hints[name], findings, f"{prefix}{name}")
-            values[name] = value
-            is_whole &= is_good
+            value = _read(node.entries[name], hints[name], findings, f"{prefix}{name}")
+            if value is not UNSET:
+                values[name] = value
         elif field.required:
             findings.error("AOS105", f"the key {prefix}{name} is missing", node.span)
-            is_whole = False
-    return kind(**values) if is_whole else None
+    if any(field.required and name not in values for name, field in fields.items()):
+        return None
+    return kind(**values)
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -51,55 +53,50 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f"Did you mean {close[0]}?" if close else f"Known are {', '.join(known)}"
 
 
-def _read(node: YamlNode, kind: Any, findings: Findings, path: str) -> tuple[Any, bool]:
-    """The value, and whether it is good."""
+def _read(node: YamlNode, kind: Any, findings: Findings, path: str) -> Any:
+    """The value, or UNSET where it is wrong as a whole; wrong items of a collection are left out."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin in (types.UnionType, typing.Union):
         if isinstance(node, YamlScalar) and node.value is None:
-            return None, True
+            return None
         (kind,) = (argument for argument in arguments if argument is not types.NoneType)
         return _read(node, kind, findings, path)
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
-        if isinstance(node, YamlMap):
-            structure = read_structure(node, kind, findings, f"{path}.")
-            return structure, structure is not None
-        return _refuse(findings, path, "a mapping of keys to values", node.span)
+        if not isinstance(node, YamlMap):
+            return _refuse(findings, path, "a mapping of keys to values", node.span)
+        structure = read_structure(node, kind, findings, f"{path}.")
+        return UNSET if structure is None else structure
     if origin is tuple:
-        if isinstance(node, YamlList):
-            read = [_read(item, arguments[0], findings, f"{path}[{i}]") for i, item in enumerate(node.items)]
-            return tuple(value for value, _ in read), all(is_good for _, is_good in read)
-        return _refuse(findings, path, "a list", node.span)
+        if not isinstance(node, YamlList):
+            return _refuse(findings, path, "a list", node.span)
+        items = (_read(item, arguments[0], findings, f"{path}[{i}]") for i, item in enumerate(node.items))
+        return tuple(item for item in items if item is not UNSET)
     if origin is dict:
-        if isinstance(node, YamlMap):
-            entries = {
-                key: _read(item, arguments[1], findings, f"{path}.{key}")
-                for key, item in node.entries.items()
-            }
-            values = {key: value for key, (value, _) in entries.items()}
-            return values, all(is_good for _, is_good in entries.values())
-        return _refuse(findings, path, "a mapping of keys to values", node.span)
+        if not isinstance(node, YamlMap):
+            return _refuse(findings, path, "a mapping of keys to values", node.span)
+        values = {
+            key: _read(item, arguments[1], findings, f"{path}.{key}") for key, item in node.entries.items()
+        }
+        return {key: value for key, value in values.items() if value is not UNSET}
     return _read_scalar(node, kind, findings, path)
 
 
-def _read_scalar(node: YamlNode, kind: Any, findings: Findings, path: str) -> tuple[Any, bool]:
+def _read_scalar(node: YamlNode, kind: Any, findings: Findings, path: str) -> Any:
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    value = node.value if isinstance(node, YamlScalar) else UNSET
     if origin is typing.Literal:
-        expected = " or ".join(str(argument) for argument in arguments)
-        if isinstance(node, YamlScalar) and node.value in arguments:
-            return node.value, True
-        return _refuse(findings, path, expected, node.span)
+        if any(type(value) is type(argument) and value == argument for argument in arguments):
+            return value
+        return _refuse(findings, path, " or ".join(str(argument) for argument in arguments), node.span)
     base = arguments[0] if origin is typing.Annotated else kind
-    if not isinstance(node, YamlScalar):
-        return _refuse(findings, path, _KINDS[base], node.span)
     try:
-        return msgspec.convert(node.value, kind), True
+        return msgspec.convert(value, kind)
     except msgspec.ValidationError as error:
-        limit = str(error).rpartition("`")[2].strip()
-        is_limit = isinstance(node.value, int | float if base is float else base) and limit
-        expected = f"{_KINDS[base]} {limit}" if is_limit else _KINDS[base]
-        return _refuse(findings, path, expected, node.span)
+        # "Expected `int` >= 1" for what is beyond a limit, "Expected `int`, got `str`" for another type.
+        limit = str(error).rpartition("`")[2].strip() if ", got " not in str(error) else ""
+        return _refuse(findings, path, f"{_KINDS[base]} {limit}".strip(), node.span)
 
 
-def _refuse(findings: Findings, path: str, expected: str, where: Span) -> tuple[None, bool]:
+def _refuse(findings: Findings, path: str, expected: str, where: Span) -> msgspec.UnsetType:
     findings.error("AOS106", f"{path} is not {expected}", where)
-    return None, False
+    return UNSET

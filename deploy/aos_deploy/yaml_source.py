@@ -97,7 +97,7 @@ def _node(node: Node, findings: Findings) -> YamlNode:
     if isinstance(node, SequenceNode):
         items = tuple(_node(item, findings) for item in node.value)
         return YamlList(items, findings.span(node.start_mark))
-    return _scalar(node, findings)
+    return _scalar(str(node.value), str(node.tag), findings.span(node.start_mark), findings)
 
 
 def _map(node: MappingNode, findings: Findings) -> YamlMap:
@@ -119,10 +119,8 @@ def _map(node: MappingNode, findings: Findings) -> YamlMap:
     return YamlMap(entries, keys, findings.span(node.start_mark))
 
 
-def _scalar(node: ScalarNode, findings: Findings) -> YamlScalar:
-    where = findings.span(node.start_mark)
-    text = str(node.value)
-    match str(node.tag).rpartition(":")[2]:
+def _scalar(text: str, tag: str, where: Span, findings: Findings) -> YamlScalar:
+    match tag.rpartition(":")[2]:
         case "str":
             return YamlScalar(text, where)
         case "null":
@@ -131,9 +129,8 @@ def _scalar(node: ScalarNode, findings: Findings) -> YamlScalar:
             return YamlScalar(text.lower() == "true", where)
         case "int" | "float":
             return YamlScalar(_number(text), where)
-        case tag:
-            findings.error("AOS104", f"the tag {tag} is not used here", where)
-            return YamlScalar(None, where)
+    findings.error("AOS104", f"the tag {tag} is not used here", where)
+    return YamlScalar(None, where)
 
 
 def _number(text: str) -> int | float | str:

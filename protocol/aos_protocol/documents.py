@@ -78,6 +78,7 @@ class EnumType(msgspec.Struct, frozen=True):
     name: str
     values: tuple[str, ...]
     span: Span
+    value_spans: tuple[Span, ...] = ()
 
 
 class Field(msgspec.Struct, frozen=True):
@@ -255,6 +256,7 @@ class LocalVariable(msgspec.Struct, frozen=True):
     code: Snippet | None = None
     imports: tuple[Import, ...] = ()
     is_heavy: bool = False
+    parameter_span: Span | None = None
 
 
 class ActivationField(msgspec.Struct, frozen=True):
@@ -289,6 +291,7 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     rules: tuple[ResponseRule, ...] = ()
     response_variable: str = ""
     local_variables: tuple[LocalVariable, ...] = ()
+    response_variable_span: Span | None = None
 
 
 class Skill(msgspec.Struct, frozen=True):

@@ -243,6 +243,9 @@ class Bus:
         request: type[M],
         handler: Callable[[M, str], Awaitable[Message]],
     ) -> None:
+        if self._is_closed:
+            query.drop()  # type: ignore[no-untyped-call]
+            return
         task = self._loop.create_task(self._answer_one(query, request, handler))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)

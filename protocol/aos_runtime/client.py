@@ -13,6 +13,7 @@ from contextlib import asynccontextmanager
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
+    BundleReport,
     DecisionRecord,
     History,
     HistoryQuery,
@@ -56,26 +57,35 @@ class AosClient:
         Who joins late gets what was before, and a gap in the stream is filled from the solver's history. If
         the solver is not there yet, waits for it; ends when it goes.
         """
+        async for event in self.follow():
+            if isinstance(event, DecisionRecord):
+                yield event
+
+    async def follow(self) -> AsyncIterator[DecisionRecord | MissionState | BundleReport]:
+        """As `decisions`, with each change of the mission's state, and what becomes of dropped bundles."""
         keys = self.keys
         feed = DecisionFeed()
         stream = merged(
             self.bus.listen(keys.decisions, DecisionRecord),
             self.bus.listen(keys.mission_state, MissionState),
+            self.bus.listen(keys.bundle_report, BundleReport),
             self.bus.presence(keys.live("solver")),
         )
         async with stream:
             async for _, event in stream:
-                is_over = event is False
-                if isinstance(event, DecisionRecord):
-                    for record in feed.take(event):
-                        yield record
-                elif isinstance(event, MissionState):
-                    is_over = event.phase == "ended"
+                state = await self._state_if_there() if event is True else None
+                if isinstance(event, MissionState):
+                    state = event
+                is_over = event is False or (state is not None and state.phase == "ended")
+                ready = feed.take(event) if isinstance(event, DecisionRecord) else []
                 if feed.has_gap or event is True or is_over:
-                    for record in feed.take_history(await self._history(feed.next_sequence)):
-                        yield record
-                if event is True:
-                    is_over = await self._has_ended()
+                    ready += feed.take_history(await self._history(feed.next_sequence))
+                for record in ready:
+                    yield record
+                if state is not None:
+                    yield state
+                if isinstance(event, BundleReport):
+                    yield event
                 if is_over:
                     return
 
@@ -88,11 +98,11 @@ class AosClient:
         except BusError:
             return History("", ())
 
-    async def _has_ended(self) -> bool:
+    async def _state_if_there(self) -> MissionState | None:
         try:
-            return (await self.mission_state()).phase == "ended"
+            return await self.mission_state()
         except BusError:
-            return True
+            return None
 
 
 class DecisionFeed:

@@ -139,7 +139,7 @@ class _Brackets:
             return []
         if not self._open:
             return [Fault(FaultKind.BRACKET, f"this {spelling} closes nothing", extent)]
-        opening, place = self._open[-1]
+        opening, _ = self._open[-1]
         if opening == _PARTNER[bracket]:
             self._open.pop()
             return []
@@ -147,8 +147,7 @@ class _Brackets:
             faults = self._drop_to(_PARTNER[bracket])
             self._open.pop()
             return faults
-        where = f"the {opening} of line {place.line}"
-        return [Fault(FaultKind.BRACKET, f"this {spelling} does not fit {where}", extent)]
+        return [Fault(FaultKind.BRACKET, f"this {spelling} does not fit the {opening} before it", extent)]
 
     def still_open(self) -> list[Fault]:
         return [_never_closed(opening, extent) for opening, extent in self._open]
@@ -165,8 +164,8 @@ def _never_closed(opening: str, extent: Extent) -> Fault:
 
 
 def _directive(text: str, extent: Extent) -> Fault:
-    word = text.strip().split(maxsplit=1)[0]
-    return Fault(FaultKind.PREPROCESSOR, f"a preprocessor line ({word})", extent)
+    words = text.strip().removeprefix("%:").removeprefix("#").split(maxsplit=1)
+    return Fault(FaultKind.PREPROCESSOR, f"a preprocessor line (#{words[0] if words else ''})", extent)
 
 
 def _end_of_line(code: str, position: int) -> int:

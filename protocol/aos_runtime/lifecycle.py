@@ -26,7 +26,7 @@ from aos_runtime.bus import Bus
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.parent import die_with_parent
 
-__all__ = ["Service", "ServiceSettings", "fault_path", "run_process", "run_service"]
+__all__ = ["Service", "ServiceSettings", "fault_path", "root_cause", "run_process", "run_service"]
 
 
 class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
@@ -130,14 +130,14 @@ async def _until_told_to_stop(work: Coroutine[Any, Any, None]) -> None:
         if not is_stopping:
             raise
     except BaseExceptionGroup as group:
-        raise _cause(group) from group
+        raise root_cause(group) from group
 
 
-def _cause(error: BaseException) -> BaseException:
-    """The first AosError inside nested task groups, else the first exception."""
+def root_cause(error: BaseException) -> BaseException:
+    """The first AosError inside nested task groups, else the first exception; any other error itself."""
     if not isinstance(error, BaseExceptionGroup):
         return error
-    causes = [_cause(inner) for inner in error.exceptions]
+    causes = [root_cause(inner) for inner in error.exceptions]
     return next((cause for cause in causes if isinstance(cause, AosError)), causes[0])
 
 

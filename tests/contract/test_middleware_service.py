@@ -461,8 +461,9 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
     assert len(system.adapter.calls) == 1
 
 
-async def test_an_activation_cut_off_by_a_crash_is_unknown_and_not_run_again(
-    system: System, endpoint: str
+@pytest.mark.parametrize("ending", ["killed", "stopped"])
+async def test_an_activation_cut_off_with_the_service_is_unknown_and_not_run_again(
+    system: System, endpoint: str, ending: str
 ) -> None:
     never = asyncio.Event()
 
@@ -471,13 +472,15 @@ async def test_an_activation_cut_off_by_a_crash_is_unknown_and_not_run_again(
         return {}
 
     await system.adapter.serve("/pick", hang)
+    assert system.child is not None
     async with asyncio.TaskGroup() as tasks:
         cut_off = tasks.create_task(_error_of(system.activate("pick")))
         await system.adapter.is_called.wait()
-        assert system.child is not None
-        system.child.kill()
-        await system.child.wait()
-    assert cut_off.result().code in ("AOS604", "AOS601")
+        if ending == "killed":
+            system.child.kill()
+        status = await system.child.stop(5.0)
+    assert status == (-9 if ending == "killed" else 0)
+    assert cut_off.result().code in ("AOS601", "AOS604", "AOS606")
     await system.start(endpoint)
     await system.state(1)
     outcome = await system.activate("pick")

@@ -34,7 +34,7 @@ from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 
-TIMEOUT_S = 8.0
+TIMEOUT_S = 20.0
 
 
 @asynccontextmanager
@@ -48,7 +48,7 @@ async def running_registry(run_dir: Path, endpoint: str, bus: Bus, keys: Keys) -
     path.write_bytes(msgspec.json.encode(settings))
     async with asyncio.timeout(TIMEOUT_S), bus.presence(keys.live("registry")) as presence:
         child = await Child.start(
-            [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "INFO"}
+            [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
         )
         async for _, is_alive in presence:
             if is_alive:

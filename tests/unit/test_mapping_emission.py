@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from mapping_documents import emitted, mapping_of, project_in, skill_of
 from msgspec.structs import replace
 
@@ -328,3 +331,41 @@ def test_an_import_that_is_none_is_refused() -> None:
         bad = Import(module, (name,), Span("look.am", 2, 1))
         refusal = refusal_of(replace(mapping, activation=replace(mapping.activation, imports=(bad,))))
         assert [each.span for each in refusal.diagnostics] == [bad.span]
+
+
+BRACKETS = ["(", ")", "[", "]", "{", "}", '"""', "#", ",", ":", "=", "\\"]
+BLANKS = ["\n", "\n    ", "\t", " ", "\r", "\x0c"]
+WORDS = ["x", "1", "'a'", "é", "if x", "return", "yield", "lambda: 0", "def f()", "global x", "__input"]
+CODE = st.lists(st.sampled_from([*BRACKETS, *BLANKS, *WORDS]), max_size=12).map("".join)
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(CODE, CODE)
+def test_any_text_is_either_refused_or_becomes_a_module_with_a_place_for_each_line(
+    expression: str, body: str
+) -> None:
+    mapping = mapping_of(HEAD + "local_variable: x\ntopic: /t\nmessage_type: T\ncode:\npass\n")
+
+    def snippet(code: str) -> Snippet:
+        return Snippet(code, tuple(Span("look.am", line + 1, 1) for line in range(code.count("\n") + 1)))
+
+    field = ActivationField("a", snippet(expression))
+    variable = replace(mapping.local_variables[0], code=snippet(body))
+    mapping = replace(
+        mapping, activation=replace(mapping.activation, fields=(field,)), local_variables=(variable,)
+    )
+    try:
+        emission = emit_mapping(replace(skill_of(HEAD), mapping=mapping))
+    except DocumentError as error:
+        places = [each.span.file for each in error.diagnostics]
+    else:
+        places = [emission.locate(line).file for line in range(1, emission.python.count("\n") + 2)]
+        assert len(places) == len(emission.origins)
+        functions = [each for each in ast.parse(emission.python).body if isinstance(each, ast.FunctionDef)]
+        assert [each.name for each in functions] == [
+            "local_variables",
+            "request",
+            "x_from_topic",
+            "observe",
+        ]
+    assert set(places) == {"look.am"}

@@ -33,7 +33,7 @@ from aos_middleware.frames import (
 )
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import LocalSource
-from aos_protocol.errors import MappingError
+from aos_protocol.errors import MappingError, StorageError
 from aos_runtime.children import PIPE, Child, Limits, guarded
 
 __all__ = ["EvaluationLimits", "Evaluator", "MappingFault"]
@@ -97,22 +97,11 @@ class Evaluator:
         if self._child is not None and self._child.returncode is None:
             return
         await self.close()
-        self._log_path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            self._child = await self._start_worker()
+        except OSError as error:
+            raise StorageError(f"the log {self._log_path}: {error}", code="AOS701") from error
         limits = self._limits
-        command = [sys.executable, "-I", "-m", "aos_middleware.worker"]
-        with self._log_path.open("ab") as log:
-            self._log_start_bytes = log.tell()
-            self._child = await Child.start(
-                guarded(
-                    command,
-                    Limits(address_space_bytes=limits.address_space_bytes, file_bytes=limits.file_bytes),
-                ),
-                name=f"mapping of {self.emitted.skill}",
-                cwd="/",
-                stdin=PIPE,
-                stdout=PIPE,
-                stderr=log,
-            )
         load = Load(
             self.emitted.python,
             self.emitted.file_name,
@@ -148,14 +137,30 @@ class Evaluator:
         if child is not None:
             await child.stop()
 
+    async def _start_worker(self) -> Child:
+        limits = self._limits
+        command = guarded(
+            [sys.executable, "-I", "-m", "aos_middleware.worker"],
+            Limits(address_space_bytes=limits.address_space_bytes, file_bytes=limits.file_bytes),
+        )
+        self._log_path.parent.mkdir(parents=True, exist_ok=True)
+        with self._log_path.open("ab") as log:
+            self._log_start_bytes = log.tell()
+            name = f"mapping of {self.emitted.skill}"
+            return await Child.start(command, name=name, cwd="/", stdin=PIPE, stdout=PIPE, stderr=log)
+
     async def _ask(self, question: Question, expected: type[A], timeout_s: float) -> A:
         child = self._child
         if child is None:
             raise self._fault("AOS401", "the worker has ended", None)
+        try:
+            frame = pack(question)
+        except (ValueError, TypeError, OverflowError) as error:
+            raise self._fault("AOS401", f"this cannot be handed to the mapping: {error}", None) from error
         is_answered = False
         try:
             async with asyncio.timeout(timeout_s + _MARGIN_S):
-                child.stdin.write(pack(question))
+                child.stdin.write(frame)
                 await child.stdin.drain()
                 size = int.from_bytes(await child.stdout.readexactly(4), "big")
                 if size > MAX_FRAME_BYTES:

@@ -79,8 +79,9 @@ class _Middleware:
                     tasks.create_task(self._mappings.adopt(revision))
 
     async def close(self) -> None:
-        await self._mappings.close()
+        # The ledger first: what an activation makes of its vanishing worker is no outcome to remember.
         self._ledger.close()
+        await self._mappings.close()
 
     async def _adopt_current(self) -> None:
         """Takes what the registry holds already; without it the announcement will come."""

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import Protocol
 
 import msgspec
-from aos_runtime.clock import Clock
 
 from aos_protocol.errors import AosError
 from aos_protocol.messages import (
@@ -23,8 +22,9 @@ from aos_protocol.messages import (
     MissionState,
     Outcome,
 )
+from aos_runtime.clock import Clock
+from aos_solver.answers import BeliefUpdate, Plan
 from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
-from aos_solver.engine import BeliefUpdate, Plan
 from aos_solver.hot_plug import RunningModel
 
 __all__ = ["Mission", "Ports", "Search"]
@@ -155,6 +155,7 @@ class Mission:
             decision.skill,
             decision.parameters,
             self._activation_timeout_s,
+            decision.revision,
         )
         self._ports.journal("intended", request)
         outcome = await self._ports.activate(request)

@@ -97,12 +97,14 @@ class Axis(msgspec.Struct, frozen=True):
 class Variable(msgspec.Struct, frozen=True):
     """A state variable. One that nothing changes is a constant, which no particle holds.
 
-    The default is an expression for the value, or statements over `state.`.
+    `is_parameter_value`: actions may take it as a parameter. The default is an expression for the value, or
+    statements over `state.`.
     """
 
     name: str
     type: str
     is_constant: bool
+    is_parameter_value: bool = False
     default_value: Piece | None = None
     default_code: Piece | None = None
     axes: tuple[Axis, ...] = ()
@@ -194,9 +196,13 @@ class Parameter(msgspec.Struct, frozen=True):
 
 
 class Skill(msgspec.Struct, frozen=True):
-    """A skill: its responses in the order of the mapping's rules, its parameters, its functions."""
+    """A skill: its responses in the order of the mapping's rules, its parameters, its functions.
+
+    `document` is the file that describes it.
+    """
 
     name: str
+    document: str
     parameters: tuple[Parameter, ...]
     responses: tuple[str, ...]
     has_text_response: bool

@@ -11,9 +11,6 @@ import asyncio
 import logging
 from pathlib import Path
 
-from aos_runtime.journal import Journal
-from aos_runtime.lifecycle import Service
-
 from aos_protocol.errors import AosError
 from aos_protocol.messages import (
     Activate,
@@ -31,6 +28,8 @@ from aos_protocol.messages import (
     ProjectRevision,
     StartMission,
 )
+from aos_runtime.journal import Journal
+from aos_runtime.lifecycle import Service
 from aos_solver.build import BuiltModel
 from aos_solver.endings import MissionLimits
 from aos_solver.engine import Engine

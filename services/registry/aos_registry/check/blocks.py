@@ -22,12 +22,16 @@ class Role(msgspec.Struct, frozen=True):
 
 
 class Block(msgspec.Struct, frozen=True):
-    """One snippet in its role. `names` are the typed names around it: parameters, items, temporaries."""
+    """One snippet in its role. `names` are the typed names around it: `constants`, items, temporaries.
+
+    `constants` are the skill's parameters, which no code may write.
+    """
 
     role: Role
     snippet: Snippet
     is_expression: bool = False
     names: Mapping[str, str] = {}
+    constants: Mapping[str, str] = {}
 
 
 DEFAULT = Role("the default of a variable", ("state",), ("state",), may_set_parameter_values=True)
@@ -77,28 +81,31 @@ def skill_blocks(model: SkillModel) -> Iterator[Block]:
 
 
 def assignment_blocks(
-    role: Role, assignments: tuple[Assignment, ...], names: Mapping[str, str] | None = None
+    role: Role, assignments: tuple[Assignment, ...], parameters: Mapping[str, str] | None = None
 ) -> Iterator[Block]:
     """The snippets of a block's assignments; a temporary is visible in those after it too."""
-    visible = dict(names or {})
+    constants = dict(parameters or {})
+    visible = dict(constants)
     for assignment in assignments:
         if assignment.temporary is not None:
             visible[assignment.temporary.name] = _temporary_type(assignment.temporary)
         for loops in (assignment.over_previous, assignment.over_next):
-            yield from _loop_blocks(role, loops, visible)
+            yield from _loop_blocks(role, loops, visible, constants)
         if assignment.code is not None:
-            yield Block(role, assignment.code, names=dict(visible))
+            yield Block(role, assignment.code, names=dict(visible), constants=constants)
 
 
 def _temporary_type(temporary: TemporaryVariable) -> str:
     return temporary.enum_name or temporary.type
 
 
-def _loop_blocks(role: Role, loops: tuple[Iteration, ...], names: Mapping[str, str]) -> Iterator[Block]:
+def _loop_blocks(
+    role: Role, loops: tuple[Iteration, ...], names: Mapping[str, str], constants: Mapping[str, str]
+) -> Iterator[Block]:
     inner = dict(names)
     for loop in loops:
         inner[loop.item] = loop.type
         if loop.condition is not None:
-            yield Block(role, loop.condition, is_expression=True, names=dict(inner))
+            yield Block(role, loop.condition, True, dict(inner), constants)
         if loop.body is not None:
-            yield Block(role, loop.body, names=dict(inner))
+            yield Block(role, loop.body, False, dict(inner), constants)

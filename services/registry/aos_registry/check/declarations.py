@@ -30,7 +30,7 @@ def check_environment_names(environment: Environment, scope: Scope, findings: Fi
     """Types, enum values and variables of the environment."""
     types = [(enum.name, enum.span) for enum in environment.enums]
     types += [(compound.name, compound.span) for compound in environment.compounds]
-    values = [(value, enum.span) for enum in environment.enums for value in enum.values]
+    values = [pair for enum in environment.enums for pair in zip(enum.values, enum.value_spans, strict=True)]
     _check_unique([*types, *values], "a type or an enum value", findings)
     _check_unique([(v.name, v.span) for v in environment.variables], "a variable", findings)
     for compound in environment.compounds:

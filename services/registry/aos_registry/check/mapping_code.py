@@ -8,6 +8,7 @@ import keyword
 import warnings
 from collections.abc import Iterable
 
+from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
     AbstractionMapping,
     LocalSource,
@@ -43,7 +44,8 @@ def check_mapping(
     local_names = [variable.name for variable in mapping.local_variables]
     if mapping.response_variable and mapping.response_variable not in local_names:
         message = f"unknown local variable `{mapping.response_variable}`"
-        findings.error("AOS110", message, mapping.span, _hint(mapping.response_variable, local_names))
+        span = mapping.response_variable_span or mapping.span
+        findings.error("AOS110", message, span, _hint(mapping.response_variable, local_names))
 
 
 def check_low_level(document: LowLevelDocument, findings: Findings) -> None:
@@ -146,18 +148,22 @@ def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
     for rule in rules:
         truth = _constant_truth(rule.condition)
         key = rule.condition.code if rule.condition is not None else "True"
-        span = rule.condition.span if rule.condition is not None else rule.span
+        span = _condition_span(rule)
         if always is not None:
-            hint = f"The rule on line {always.span.line} always holds"
+            hint = f"The rule on line {_condition_span(always).line} always holds"
             findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
         elif truth is False:
             findings.warning("AOS118", f"the rule for {rule.response} never fires", span)
         elif key in seen:
-            hint = f"The rule on line {seen[key].span.line} has the same condition"
+            hint = f"The rule on line {_condition_span(seen[key]).line} has the same condition"
             findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
         if always is None and truth is True:
             always = rule
         seen.setdefault(key, rule)
+
+
+def _condition_span(rule: ResponseRule) -> Span:
+    return rule.condition.span if rule.condition is not None else rule.span
 
 
 def _constant_truth(condition: Snippet | None) -> bool | None:
@@ -174,10 +180,11 @@ def _constant_truth(condition: Snippet | None) -> bool | None:
 
 def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, findings: Findings) -> None:
     name, *fields = variable.parameter_path.split(".")
+    span = variable.parameter_span or variable.span
     parameters = {parameter.name: parameter.type for parameter in model.parameters}
     if name not in parameters:
         message = f"the skill {model.name} has no parameter `{name}`"
-        findings.error("AOS110", message, variable.span, _hint(name, parameters))
+        findings.error("AOS110", message, span, _hint(name, parameters))
         return
     kind = parameters[name]
     for field in fields:
@@ -185,12 +192,12 @@ def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, f
         if compound is None:
             if scope.has_environment and not scope.unknown_type_name(kind):
                 message = f"`{field}` of a {kind}, which has no fields"
-                findings.error("AOS110", message, variable.span)
+                findings.error("AOS110", message, span)
             return
         types = {inner.name: inner.type for inner in compound.fields}
         if field not in types:
             message = f"the type {kind} has no field `{field}`"
-            findings.error("AOS110", message, variable.span, _hint(field, types))
+            findings.error("AOS110", message, span, _hint(field, types))
             return
         kind = types[field]
 

@@ -181,11 +181,11 @@ class _BlockCheck:
             return
         span = self._span(mention.root)
         if root not in role.reads:
-            hint = f"It sees {quoted(role.reads)} only"
-            self._findings.error("AOS123", f"{role.title} has no `{root}`", span, hint)
+            hint = f"Only {quoted(role.reads)} can be read there"
+            self._findings.error("AOS123", f"there is no `{root}` in {role.title}", span, hint)
         elif is_write and root not in role.writes:
-            hint = f"It may write {quoted(role.writes)}" if role.writes else "It may not change the state"
-            self._findings.error("AOS123", f"{role.title} writes `{mention.text}`", span, hint)
+            hint = f"Only {quoted(role.writes)} may change there" if role.writes else "It may only be read"
+            self._findings.error("AOS123", f"`{mention.text}` is written in {role.title}", span, hint)
 
     def _check_state_path(self, mention: Mention) -> None:
         if len(mention.path) == 1 or not self._scope.has_environment:
@@ -203,13 +203,17 @@ class _BlockCheck:
         is_write = mention.access in (Access.WRITE, Access.UPDATE)
         is_constant = variable is not None and variable.is_parameter_value
         if is_constant and is_write and not self._block.role.may_set_parameter_values:
-            message = f"{self._block.role.title} writes {name}, which is a value of an action parameter"
-            hint = "Such values are constants; set them where they are declared"
-            self._findings.error("AOS128", message, self._span(mention.extent), hint)
+            hint = "Values of action parameters are constants; set them where they are declared"
+            self._constant_written(mention, name, hint)
 
     def _check_named_path(self, mention: Mention, root: str) -> None:
-        kind = self._block.names[root]
-        self._check_fields(mention, ValueType(kind), start=1)
+        if root in self._block.constants and mention.access in (Access.WRITE, Access.UPDATE):
+            self._constant_written(mention, root, "A parameter is what the skill was called with")
+        self._check_fields(mention, ValueType(self._block.names[root]), start=1)
+
+    def _constant_written(self, mention: Mention, name: str, hint: str) -> None:
+        message = f"{name} is written in {self._block.role.title}"
+        self._findings.error("AOS128", message, self._span(mention.extent), hint)
 
     def _check_action_path(self, mention: Mention, root: str) -> None:
         parameters = {p.name: p.type for p in self._scope.skills[root].parameters}

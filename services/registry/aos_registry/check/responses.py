@@ -37,7 +37,7 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
         if rule.response in scope.enum_values:
             message = f"the response {rule.response} has the name of an enum value"
             findings.warning("AOS126", message, rule.span, "In the skill's code it is the response")
-        if rule.response not in mentioned and not mapping.response_variable:
+        if rule.response not in mentioned and model.dynamic_model and not mapping.response_variable:
             message = f"the skill document of {model.name} never produces the response {rule.response}"
             hint = "When it comes, the belief has no explanation for it"
             findings.warning("AOS117", message, rule.span, hint)
@@ -66,7 +66,7 @@ def _check_text_response(
         findings.warning("AOS116", message, span, hint)
     if mapping.response_variable and not writes and model.dynamic_model:
         message = f"the skill document of {model.name} never sets __moduleResponseStr"
-        findings.warning("AOS117", message, mapping.span)
+        findings.warning("AOS117", message, mapping.response_variable_span or mapping.span)
 
 
 def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Mention]]:

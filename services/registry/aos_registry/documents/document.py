@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from enum import StrEnum
 
 import msgspec
 
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import AbstractionMapping, Environment, LowLevelDocument, SkillModel
+from aos_protocol.documents import AbstractionMapping, EnumType, Environment, LowLevelDocument, SkillModel
 from aos_registry.documents.source import Findings, Text
 
-__all__ = ["Document", "DocumentKind", "check_name", "normal_type"]
+__all__ = ["Document", "DocumentKind", "check_name", "enum_type", "normal_type"]
 
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}|_[A-Za-z0-9][A-Za-z0-9_]{0,62}|_")
 _TYPE_SPELLINGS = {
@@ -60,6 +61,13 @@ def check_name(name: Text, what: str, findings: Findings) -> bool:
     hint = "A name is at most 64 letters, digits and underscores, and starts with a letter"
     findings.error("AOS126", f"{name.text!r} cannot be the name of {what}", name.span, hint)
     return False
+
+
+def enum_type(name: Text, values: Iterable[Text], findings: Findings) -> EnumType:
+    """The enum of these values; an error for each that cannot be a name."""
+    good = [value for value in values if check_name(value, "an enum value", findings)]
+    texts, spans = tuple(value.text for value in good), tuple(value.span for value in good)
+    return EnumType(name.text, texts, name.span, spans)
 
 
 def normal_type(name: Text, findings: Findings) -> str:

@@ -94,6 +94,7 @@ def _read(record: Record, header_key: str, source: Source, findings: Findings) -
         hint = f"Did you mean {close}?" if close else f"It is one of {', '.join(_KINDS)}"
         findings.error("AOS106", f"unknown kind of document {kind_name.text!r}", kind_name.span, hint)
         return None
+    record.what = f"the {kind.value}"
     document = _document(record, kind, project, name or _skill_name(header, kind, findings), findings)
     record.ignore("Comment")
     record.finish()

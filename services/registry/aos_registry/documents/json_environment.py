@@ -19,7 +19,7 @@ from aos_protocol.documents import (
     StateVariable,
 )
 from aos_registry.documents.code import dedented
-from aos_registry.documents.document import check_name, normal_type
+from aos_registry.documents.document import check_name, enum_type, normal_type
 from aos_registry.documents.json_blocks import read_block
 from aos_registry.documents.json_record import Record
 
@@ -103,10 +103,9 @@ def _types(record: Record) -> tuple[tuple[EnumType, ...], tuple[CompoundType, ..
         if name is None or kind is None or not check_name(name, "a type", record.findings):
             continue
         if kind.text == "enum":
-            enum_values = [v.text for v in values if check_name(v, "an enum value", record.findings)]
             if not values:
                 record.findings.error("AOS105", f"the enum {name.text} has no values", name.span)
-            enums.append(EnumType(name.text, tuple(enum_values), name.span))
+            enums.append(enum_type(name, values, record.findings))
         elif kind.text == "compound":
             compounds.append(CompoundType(name.text, tuple(f for f in fields if f), name.span))
         else:

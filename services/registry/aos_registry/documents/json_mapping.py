@@ -24,7 +24,7 @@ __all__ = ["read_mapping"]
 def read_mapping(record: Record, project: str, name: str, span: Span) -> AbstractionMapping | None:
     """The mapping; None where the activation cannot be read."""
     record.ignore("GlueFramework")
-    rules, response_variable = _responses(record)
+    rules, variable = _responses(record)
     locals_ = [_local_variable(item) for item in record.records("LocalVariablesInitialization", "a variable")]
     activation = _activation(record)
     if activation is None:
@@ -35,15 +35,16 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> Abstrac
         span=span,
         activation=activation,
         rules=rules,
-        response_variable=response_variable,
-        local_variables=tuple(variable for variable in locals_ if variable is not None),
+        response_variable=variable.text if variable else "",
+        local_variables=tuple(local for local in locals_ if local is not None),
+        response_variable_span=variable.span if variable else None,
     )
 
 
-def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], str]:
+def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], Text | None]:
     group = record.record("ModuleResponse", "ModuleResponse")
     if group is None:
-        return (), ""
+        return (), None
     rules = []
     for item in group.records("ResponseRules", "a response rule"):
         response = item.text("Response", required=True)
@@ -59,7 +60,7 @@ def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], str]:
     group.ignore("Comment")
     group.obsolete("EnumResponse", "The response rules name the responses")
     group.finish()
-    return tuple(rules), variable.text if variable else ""
+    return tuple(rules), variable
 
 
 def _activation(record: Record) -> Activation | None:

@@ -54,6 +54,7 @@ def build_local_variable(parts: LocalVariableParts, findings: Findings) -> Local
         code=parts.code,
         imports=parts.imports,
         is_heavy=parts.is_heavy,
+        parameter_span=parts.parameter_path.span if parts.parameter_path else None,
     )
 
 

@@ -15,7 +15,7 @@ from aos_protocol.documents import (
     StateVariable,
 )
 from aos_registry.documents.code import expression
-from aos_registry.documents.document import check_name
+from aos_registry.documents.document import check_name, enum_type
 from aos_registry.documents.sdl_declaration import read_declaration, read_number
 from aos_registry.documents.sdl_sections import DEFAULT_DISCOUNT, Sections
 from aos_registry.documents.sdl_text import Part, Section
@@ -95,21 +95,21 @@ def _type(section: Section, findings: Findings) -> EnumType | CompoundType | Non
         message = f"the type {name.text} is an enum or has variables, not both"
         findings.error("AOS106", message, members.span)
     if members is not None:
-        return EnumType(name.text, _enum_values(members.value, findings), name.span)
+        return enum_type(name, _enum_values(members.value, findings), findings)
     if not fields:
         hint = "Add `enum_members:` or `variable:` lines"
         findings.error("AOS105", f"the type {name.text} is empty", name.span, hint)
     return CompoundType(name.text, tuple(field for field in fields if field is not None), name.span)
 
 
-def _enum_values(text: Text, findings: Findings) -> tuple[str, ...]:
+def _enum_values(text: Text, findings: Findings) -> list[Text]:
     pieces = [text.after(match.start()) for match in re.finditer(r"(?<![^,])[^,]*", text.text)]
     values = [Text(piece.text.split(",")[0], piece.span).strip() for piece in pieces]
     if values and not values[-1].text:  # A comma at the end.
         values.pop()
     if not values:
         findings.error("AOS105", "`enum_members:` needs names between commas", text.span)
-    return tuple(value.text for value in values if check_name(value, "an enum value", findings))
+    return values
 
 
 def _field(part: Part, findings: Findings) -> Field | None:

@@ -48,6 +48,7 @@ def read_mapping(
         rules=tuple(rule for rule in rules if rule is not None),
         response_variable=text_response.value.text if text_response is not None else "",
         local_variables=tuple(variable for variable in variables if variable is not None),
+        response_variable_span=text_response.value.span if text_response is not None else None,
     )
 
 

@@ -141,10 +141,10 @@ def open_source(name: str, data: bytes, findings: Findings) -> Source | None:
     has_mark = text.startswith(_BYTE_ORDER_MARK)
     text = text.removeprefix(_BYTE_ORDER_MARK).replace("\r\n", "\n").replace("\r", "\n")
     source = Source(name, text)
-    findings.add_source(source)
     if "\0" in text:
         findings.error("AOS101", "this file holds NUL characters", source.span(text.index("\0")))
         return None
+    findings.add_source(source)
     if has_mark:
         findings.warning("AOS127", "a byte order mark at the start", source.span(), "It is skipped")
     return source

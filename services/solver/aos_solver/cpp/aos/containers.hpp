@@ -14,6 +14,12 @@
 
 namespace aos {
 
+// The value at a place in a list: what a draw over an enum with numbers of its own gives.
+template <class E>
+E nth(std::initializer_list<E> values, int index) {
+  return values.begin()[index];
+}
+
 [[noreturn]] inline void out_of_range(std::ptrdiff_t index, std::size_t size) {
   throw ModelFault{"AOS215", "element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
 }

@@ -16,6 +16,7 @@
 #include "aos/grounding.hpp"
 #include "aos/json.hpp"
 #include "aos/reflection.hpp"
+#include "aos/state_text.hpp"
 #include "aos/step.hpp"
 #include "aos/text.hpp"
 #include "aos/transition.hpp"

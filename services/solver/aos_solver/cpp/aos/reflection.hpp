@@ -5,6 +5,7 @@
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -25,6 +26,13 @@ concept Sequence = requires(const T& value) {
 } && !std::same_as<T, Text>;
 template <class T>
 concept Mapping = requires { typename T::mapped_type; };
+
+// The name of an enum's value; null for a number that has none.
+template <class E>
+const char* name_in(std::initializer_list<const char*> names, E value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < names.size() ? names.begin()[index] : nullptr;
+}
 
 // The text of a single value: enums by name, `true` and `false`, the shortest decimal that reads back.
 template <class T>

@@ -23,6 +23,9 @@ struct Effect {
 
 // What a skill document leaves out.
 struct SkillDefaults {
+  struct Parameters {
+    static void __fields(auto&, auto&&) {}
+  };
   static constexpr double violation_penalty = 0;
   static constexpr bool has_text_response = false;
   static void precondition(const auto&, bool&, const auto&, auto&) {}

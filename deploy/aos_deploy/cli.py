@@ -1,0 +1,75 @@
+"""The command line: puts the sub-commands together, and turns faults into one message and an exit code."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from typing import Any, NoReturn
+
+import typer
+
+from aos_deploy.exit_codes import exit_code_of_error
+from aos_protocol.diagnostics import render
+from aos_protocol.errors import AosError
+
+__all__ = ["main", "up_main"]
+
+_COMMANDS = {
+    "up": ("up",),
+    "decisions": ("decisions",),
+    "bundle": ("bundle", "lint", "inspect"),
+    "plan": ("plan", "simulate", "rate"),
+    "machine": ("doctor", "version"),
+}
+"""The modules in `commands`, in the order of the help, with what each registers."""
+
+_STYLE: dict[str, Any] = {
+    "add_completion": False,
+    "pretty_exceptions_enable": False,
+    # Rich would keep the line breaks of the docstrings, and takes a fifth of a second to import.
+    "rich_markup_mode": None,
+}
+
+
+def main() -> NoReturn:
+    """`aos`."""
+    app = typer.Typer(
+        name="aos",
+        no_args_is_help=True,
+        help="Task-level autonomy for robots: documents in, decisions out.",
+        epilog="Example: aos plan deploy/bundles/armadillo-finer --exact",
+        **_STYLE,
+    )
+    app.callback()(_no_options)
+    for module in _needed_modules(sys.argv[1:]):
+        import_module(f"aos_deploy.commands.{module}").register(app)
+    _run(app, "aos")
+
+
+def up_main() -> NoReturn:
+    """`aos-up`."""
+    app = typer.Typer(**_STYLE)
+    import_module("aos_deploy.commands.up").register(app)
+    _run(app, "aos-up")
+
+
+def _needed_modules(arguments: list[str]) -> list[str]:
+    """Only the module of the command that is called, so that others' imports cost nothing."""
+    called = [module for module, names in _COMMANDS.items() if arguments and arguments[0] in names]
+    return called or list(_COMMANDS)
+
+
+def _no_options() -> None:
+    """Without a callback typer would take a lone command for the whole program."""
+
+
+def _run(app: typer.Typer, name: str) -> NoReturn:
+    """Runs the command and ends the process: an AosError as its diagnostics and one line on stderr."""
+    try:
+        app(prog_name=name)
+    except AosError as error:
+        for diagnostic in error.diagnostics:
+            typer.echo(render(diagnostic), err=True)
+        typer.echo(f"{name}: {error}", err=True)
+        sys.exit(exit_code_of_error(error))
+    sys.exit(0)

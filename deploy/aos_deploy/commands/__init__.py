@@ -1,0 +1,1 @@
+"""The sub-commands of `aos`; each module has `register(app)`."""

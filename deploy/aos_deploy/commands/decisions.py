@@ -1,0 +1,97 @@
+"""`aos decisions`: follows a mission from another terminal, or reads one that is over."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from aos_deploy.run_directory import RunDirectory
+from aos_deploy.views.lines import lines_of
+from aos_protocol.errors import DeployError, StorageError
+from aos_protocol.messages import DecisionRecord, History, HistoryQuery, MissionState
+from aos_runtime.client import AosClient
+from aos_runtime.journal import Journal
+
+__all__ = ["register"]
+
+_ANSWER_TIMEOUT_S = 5.0
+
+Show = Callable[[DecisionRecord | MissionState], None]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos decisions --json | jq .action")(decisions)
+
+
+def decisions(
+    connect: Annotated[
+        str, typer.Option(metavar="ENDPOINT", help="Where the system's bus listens; else the last run's")
+    ] = "",
+    robot: Annotated[str, typer.Option(help="The robot's name; else that of the last run")] = "",
+    run: Annotated[Path | None, typer.Option(metavar="DIR", help="A run directory, else the last")] = None,
+    runs: Annotated[Path, typer.Option(metavar="DIR", help="Where the run directories are")] = Path("runs"),
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON decision record a line")] = False,
+    follow: Annotated[bool, typer.Option(help="Go on until the mission ends")] = True,
+) -> None:
+    """Print every decision of a mission from its first step: what was chosen, why, and what came of it.
+
+    While the mission runs the decisions come from the bus, afterwards from the run directory's journal.
+    """
+
+    def show(event: DecisionRecord | MissionState) -> None:
+        if as_json:
+            if isinstance(event, DecisionRecord):
+                typer.echo(msgspec.json.encode(event))
+        else:
+            typer.echo("\n".join(lines_of(event)))
+
+    if connect and not robot:
+        raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
+    directory = None
+    if not connect:
+        directory = RunDirectory(run) if run is not None else RunDirectory.latest(runs)
+    if directory is not None and not directory.is_running:
+        for event in _journaled(directory):
+            show(event)
+        return
+    if directory is not None:
+        record = directory.read_record()
+        connect, robot = record.endpoint, record.robot
+    asyncio.run(_stream(connect, robot, show, is_following=follow))
+
+
+def _journaled(directory: RunDirectory) -> list[DecisionRecord | MissionState]:
+    """The decisions of a mission that is over, and how it ended."""
+    events: list[DecisionRecord | MissionState] = []
+    try:
+        with Journal.read(directory.path / "journal.db") as journal:
+            for row in journal.rows():
+                if row.kind == "decision":
+                    events.append(msgspec.json.decode(row.payload, type=DecisionRecord))
+                elif row.kind == "mission":
+                    state = msgspec.json.decode(row.payload, type=MissionState)
+                    events += [state] if state.phase == "ended" else []
+    except msgspec.MsgspecError as error:
+        raise StorageError(f"the journal in {directory.path}: {error}", code="AOS702") from error
+    return events
+
+
+async def _stream(connect: str, robot: str, show: Show, *, is_following: bool) -> None:
+    async with AosClient.connect(connect, robot) as aos:
+        if not is_following:
+            key = aos.keys.decision_history
+            history = await aos.bus.ask(key, HistoryQuery(), History, timeout_s=_ANSWER_TIMEOUT_S)
+            for record in history.records:
+                show(record)
+            return
+        async for event in aos.follow():
+            if isinstance(event, DecisionRecord) or (
+                isinstance(event, MissionState) and event.phase == "ended"
+            ):
+                show(event)

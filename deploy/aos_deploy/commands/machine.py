@@ -1,0 +1,173 @@
+"""`aos doctor` and `aos version`: what this machine has, and what it lacks."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import platform
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+import typer
+
+from aos_deploy.exit_codes import ExitCode
+from aos_deploy.program import cache_dir
+
+__all__ = ["Finding", "examine_machine", "register"]
+
+_PACKAGES = ("eclipse-zenoh", "msgspec", "numpy", "pybullet", "tree-sitter", "rich")
+_SUGGESTED_MEMORY_GB = 2.0
+_VERSION_TIMEOUT_S = 60.0
+
+
+class Finding(msgspec.Struct, frozen=True):
+    """One thing a system needs (`missing` if it is not there) or can use (`absent`), and what to do."""
+
+    subject: str
+    state: Literal["ok", "absent", "missing"]
+    found: str
+    advice: str = ""
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the commands to `aos`."""
+    app.command(epilog="Example: aos doctor")(doctor)
+    app.command(epilog="Example: aos version")(version)
+
+
+def doctor(
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+) -> None:
+    """Say what this machine has, what it lacks, and what to do about it.
+
+    Exit code 0: a mission can run here. 3: something is missing.
+    """
+    findings = examine_machine()
+    if as_json:
+        typer.echo(msgspec.json.format(msgspec.json.encode(findings), indent=2))
+    else:
+        marks = {"ok": "ok     ", "absent": "-      ", "missing": "MISSING"}
+        for finding in findings:
+            typer.echo(f"{marks[finding.state]}  {finding.subject:14}  {finding.found}")
+            if finding.advice:
+                typer.echo(f"{'':25}{finding.advice}")
+    if any(finding.state == "missing" for finding in findings):
+        raise typer.Exit(ExitCode.NOT_STARTED)
+
+
+def version() -> None:
+    """Print the version of AOS, and of what it stands on."""
+    typer.echo(f"aos {importlib.metadata.version('aos')}")
+    typer.echo(f"python {platform.python_version()}")
+    for package in _PACKAGES:
+        typer.echo(f"{package} {_version_of(package) or 'not installed'}")
+
+
+def examine_machine() -> list[Finding]:
+    """Everything a mission on this machine needs or can use."""
+    return [
+        _python(),
+        *(_package(name) for name in _PACKAGES),
+        _compiler(),
+        _loopback(),
+        _processors(),
+        _memory(),
+        _cache(),
+        _sandbox(),
+    ]
+
+
+def _python() -> Finding:
+    found = f"{platform.python_version()} at {sys.executable}"
+    if sys.platform != "linux":
+        return Finding("system", "missing", sys.platform, "AOS runs on Linux")
+    return Finding("python", "ok", f"{found}, {platform.system()} {platform.release()}")
+
+
+def _package(name: str) -> Finding:
+    found = _version_of(name)
+    if found is None:
+        return Finding(name, "missing", "not installed", "Run ./setup.sh")
+    return Finding(name, "ok", found)
+
+
+def _version_of(package: str) -> str | None:
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def _compiler() -> Finding:
+    """The first of $CXX, g++, clang++ that says its version, else the ziglang wheel."""
+    for name in (os.environ.get("CXX", ""), "g++", "clang++"):
+        path = shutil.which(name.split()[0]) if name.split() else None
+        line = _first_line([path, "--version"]) if path else ""
+        if path and line:
+            return Finding("C++ compiler", "ok", f"{line} at {path}")
+    ziglang = _version_of("ziglang")
+    if ziglang is not None:
+        return Finding("C++ compiler", "ok", f"ziglang {ziglang}, from the Python package")
+    advice = "Install g++ (apt-get install g++), or run ./setup.sh, which then takes the ziglang wheel"
+    return Finding("C++ compiler", "missing", "none of $CXX, g++, clang++, ziglang", advice)
+
+
+def _first_line(command: list[str]) -> str:
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=_VERSION_TIMEOUT_S)
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return done.stdout.partition("\n")[0] if done.returncode == 0 else ""
+
+
+def _loopback() -> Finding:
+    try:
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            port = server.getsockname()[1]
+    except OSError as error:
+        advice = "The bus needs a TCP port on 127.0.0.1"
+        return Finding("loopback", "missing", f"cannot listen: {error.strerror}", advice)
+    return Finding("loopback", "ok", f"can listen, port {port} was free")
+
+
+def _processors() -> Finding:
+    cores = len(os.sched_getaffinity(0))
+    advice = "" if cores > 1 else "It works, but the planner and the world share the one"
+    return Finding("processors", "ok", str(cores), advice)
+
+
+def _memory() -> Finding:
+    try:
+        text = Path("/proc/meminfo").read_text(encoding="ascii")
+    except OSError:
+        return Finding("memory", "absent", "unknown")
+    fields = dict(line.split(":", 1) for line in text.splitlines())
+    available_gb = int(fields["MemAvailable"].split()[0]) / 2**20
+    advice = "" if available_gb >= _SUGGESTED_MEMORY_GB else "The simulated world needs about 1 GB"
+    return Finding("memory", "ok", f"{available_gb:.1f} GB available", advice)
+
+
+def _cache() -> Finding:
+    folder = cache_dir()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        advice = "Name another folder with AOS_CACHE_DIR"
+        return Finding("cache", "missing", f"{folder}: {error.strerror}", advice)
+    return Finding("cache", "ok", str(folder))
+
+
+def _sandbox() -> Finding:
+    path = shutil.which("bwrap")
+    line = _first_line([path, "--version"]) if path else ""
+    if not line:
+        return Finding("bubblewrap", "absent", "not installed", "Not used yet; apt-get install bubblewrap")
+    return Finding("bubblewrap", "ok", f"{line} at {path}")

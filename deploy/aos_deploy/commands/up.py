@@ -1,0 +1,72 @@
+"""`aos-up`, also `aos up`: brings a whole system up and runs its mission."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from aos_deploy.exit_codes import EXIT_CODES_TEXT
+
+__all__ = ["register", "up"]
+
+_EPILOG = (
+    "Example: aos-up deploy/armadillo.yaml --seed 7. Another terminal can follow with `aos decisions`. "
+    + EXIT_CODES_TEXT
+)
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`, or makes it the whole of `aos-up`."""
+    app.command(epilog=_EPILOG)(up)
+
+
+def up(
+    deploy: Annotated[Path, typer.Argument(metavar="DEPLOY", help="The deploy file")],
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed of the planner and of the world, in place of the file's")
+    ] = None,
+    listen: Annotated[
+        str | None,
+        typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one"),
+    ] = None,
+    runs: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where the run directory goes", file_okay=False)
+    ] = None,
+    plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
+) -> None:
+    """Bring a robot's system up, run its mission, and stop everything.
+
+    Starts the bus router, registry, middleware, skills and solver as processes of their own, gives the
+    registry the documents, and shows what the robot decides until the mission ends. Ctrl-C stops all of it in
+    order, a second Ctrl-C at once. The run directory keeps the journal, the logs and the pictures.
+    """
+    # For --help, and for a word about a wrong option, none of this is needed.
+    import asyncio
+
+    from aos_deploy.deploy_file import check_endpoint, read_deploy_file
+    from aos_deploy.mission_run import MissionRun, run_until_interrupted
+    from aos_deploy.views import make_view
+    from aos_runtime.clock import SystemClock
+
+    clock = SystemClock()
+    begun_s = clock.monotonic_s()
+    deployment = read_deploy_file(deploy)
+    file = deployment.file
+    if seed is not None:
+        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
+    if listen is not None:
+        check_endpoint(listen)
+        file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=listen))
+    deployment = msgspec.structs.replace(
+        deployment, file=file, runs=runs.resolve() if runs is not None else deployment.runs
+    )
+    title = f"{file.robot} · {deploy.name}"
+    view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
+    with view:
+        code = asyncio.run(run_until_interrupted(MissionRun(deployment, view, clock, begun_s)))
+    raise typer.Exit(code)

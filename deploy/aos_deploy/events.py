@@ -1,0 +1,45 @@
+"""What aos-up tells while a mission runs: to the live view, as plain lines, or as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
+
+__all__ = ["Event", "Report", "ServiceChanged", "Told", "event_json"]
+
+
+class ServiceChanged(msgspec.Struct, frozen=True):
+    """A service is now `starting`, `ready`, `stopping` or `ended`; `after_s` counts from aos-up's start."""
+
+    service: str
+    state: str
+    after_s: float
+    detail: str = ""
+
+
+class Told(msgspec.Struct, frozen=True):
+    """A line for people: what is being waited for, where things are."""
+
+    text: str
+
+
+Event = ServiceChanged | Told | MissionState | DecisionRecord | BundleReport
+Report = Callable[[Event], None]
+
+_NAMES: dict[type[Any], str] = {
+    ServiceChanged: "service",
+    Told: "remark",
+    MissionState: "mission",
+    DecisionRecord: "decision",
+    BundleReport: "bundle",
+}
+
+
+def event_json(event: Event) -> str:
+    """One line: an object whose `event` names the kind, with the event's own fields beside it."""
+    fields = msgspec.to_builtins(event, builtin_types=())
+    return msgspec.json.encode({"event": _NAMES[type(event)], **fields}).decode()

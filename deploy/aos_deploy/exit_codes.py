@@ -1,0 +1,62 @@
+"""How aos-up and aos end: one number that says what happened."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from aos_protocol.errors import AosError
+from aos_protocol.messages import MissionState
+
+__all__ = ["EXIT_CODES_TEXT", "ExitCode", "exit_code_of_error", "exit_code_of_mission"]
+
+
+class ExitCode(IntEnum):
+    GOAL_REACHED = 0
+    DOCUMENTS_WRONG = 1
+    USAGE = 2
+    NOT_STARTED = 3
+    MISSION_FAILED = 4
+    NOTHING_WORTHWHILE = 5
+    STEP_LIMIT = 6
+    FAULT = 7
+    INTERRUPTED = 130
+
+
+_MEANINGS = {
+    ExitCode.GOAL_REACHED: "the goal was reached",
+    ExitCode.DOCUMENTS_WRONG: "documents or the deploy file have errors",
+    ExitCode.USAGE: "the command was used wrongly",
+    ExitCode.NOT_STARTED: "the machine lacks something, or a service could not start",
+    ExitCode.MISSION_FAILED: "the mission ended without its goal",
+    ExitCode.NOTHING_WORTHWHILE: "no action was worth taking any more",
+    ExitCode.STEP_LIMIT: "the step limit was reached",
+    ExitCode.FAULT: "a fault while the mission ran",
+    ExitCode.INTERRUPTED: "interrupted",
+}
+
+EXIT_CODES_TEXT = "Exit codes: " + ", ".join(f"{code:d} {text}" for code, text in _MEANINGS.items()) + "."
+
+_BY_ENDING = {
+    "goal": ExitCode.GOAL_REACHED,
+    "failure": ExitCode.MISSION_FAILED,
+    "nothing_worthwhile": ExitCode.NOTHING_WORTHWHILE,
+    "step_limit": ExitCode.STEP_LIMIT,
+    "cancelled": ExitCode.INTERRUPTED,
+    "fault": ExitCode.FAULT,
+}
+
+
+def exit_code_of_mission(state: MissionState) -> ExitCode:
+    """The exit code of a mission that has ended."""
+    return _BY_ENDING.get(state.ending, ExitCode.FAULT)
+
+
+def exit_code_of_error(error: AosError, *, has_started: bool = False) -> ExitCode:
+    """The exit code of a fault; `has_started` says that the mission already ran."""
+    if has_started:
+        return ExitCode.FAULT
+    if error.code.startswith("AOS1") or error.code in ("AOS201", "AOS801"):
+        return ExitCode.DOCUMENTS_WRONG
+    if error.code.startswith(("AOS6", "AOS8")) or error.code in ("AOS202", "AOS203", "AOS701"):
+        return ExitCode.NOT_STARTED
+    return ExitCode.FAULT

@@ -1,0 +1,233 @@
+"""One run of a system: services up, documents in, the mission to its end, everything down."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from datetime import UTC, datetime
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.deploy_file import Deployment, skill_of_file
+from aos_deploy.events import Event, Report, Told
+from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
+from aos_deploy.program import programs_of_deployment
+from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
+from aos_deploy.supervisor import Supervisor, free_endpoint, supervised
+from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.errors import AosError, DeployError, DocumentError
+from aos_protocol.messages import (
+    BundleReport,
+    DecisionRecord,
+    MissionState,
+    PushBundle,
+    StartMission,
+)
+from aos_runtime.client import AosClient
+from aos_runtime.clock import Clock
+from aos_runtime.lifecycle import ServiceSettings, root_cause
+
+__all__ = ["MissionRun", "run_until_interrupted"]
+
+_END_NOTICE_S = 5.0
+_BUILD_TIMEOUT_S = 600.0
+"""The first build with a compiler that has to build its own library takes a minute on a quick machine."""
+
+
+class MissionRun:
+    """Runs a deployment once. `report` is told what happens, as it happens."""
+
+    def __init__(self, deployment: Deployment, report: Report, clock: Clock, begun_s: float) -> None:
+        """`begun_s` is when the user started aos-up, on the clock's monotonic scale."""
+        self._deployment = deployment
+        self._report = report
+        self._clock = clock
+        self._begun_s = begun_s
+        self._started = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
+        self._supervisor: Supervisor | None = None
+        self._state: MissionState | None = None
+        self._steps: dict[int, DecisionRecord] = {}
+        self._services_ready_s: float | None = None
+        self._first_decision_s: float | None = None
+
+    async def run(self) -> Summary:
+        """Until the mission has ended and every process with it.
+
+        AosError for whatever kept it from ending by itself; cancelling it stops everything too. In every case
+        the run directory holds a summary.
+        """
+        deployment = self._deployment
+        run = RunDirectory.create(deployment.runs, deployment.file.robot, self._clock.now_ns())
+        self._report(Told(f"run directory {run.path}"))
+        ending, remark, code = "fault", "", ExitCode.FAULT
+        try:
+            state = await self._run_in(run)
+            ending, remark, code = state.ending, state.remark, exit_code_of_mission(state)
+        except asyncio.CancelledError:
+            ending, remark, code = "cancelled", "interrupted", ExitCode.INTERRUPTED
+            raise
+        except AosError as error:
+            remark, code = str(error), exit_code_of_error(error, has_started=self._has_started)
+            raise
+        finally:
+            summary = self._summary(ending, remark, code)
+            run.write_summary(summary)
+        return summary
+
+    @property
+    def _has_started(self) -> bool:
+        return bool(self._steps)
+
+    @property
+    def _has_ended(self) -> bool:
+        return self._state is not None and self._state.phase == "ended"
+
+    def kill(self) -> None:
+        """Ends every process without waiting for it."""
+        if self._supervisor is not None:
+            self._supervisor.kill()
+
+    async def _run_in(self, run: RunDirectory) -> MissionState:
+        deployment = self._deployment
+        endpoint = free_endpoint(deployment.file.bus.listen)
+        base = ServiceSettings(
+            robot=deployment.file.robot, service="", endpoint=endpoint, run_dir=str(run.path)
+        )
+        programs = programs_of_deployment(deployment)
+        try:
+            async with supervised(programs, base, run, self._report, self._clock) as supervisor:
+                self._supervisor = supervisor
+                await supervisor.start()
+                self._write_record(run, endpoint, supervisor)
+                async with asyncio.TaskGroup() as tasks:
+                    tasks.create_task(self._follow(supervisor))
+                    await self._start_mission(supervisor)
+                if not self._has_ended:
+                    # Its process ends in a moment, and the supervision with the reason.
+                    await supervisor.until_ended("solver", timeout_s=_END_NOTICE_S)
+        except BaseExceptionGroup as group:
+            raise root_cause(group) from group
+        if self._state is None or not self._has_ended:
+            raise DeployError("the solver left before the mission ended", code="AOS804")
+        return self._state
+
+    async def _start_mission(self, supervisor: Supervisor) -> None:
+        await supervisor.until_ready("registry")
+        for bundle in self._deployment.bundles:
+            await self._push(supervisor, bundle)
+        await supervisor.until_ready()
+        self._services_ready_s = self._elapsed_s()
+        await supervisor.bus.ask(
+            supervisor.keys.start_mission, StartMission(), MissionState, timeout_s=_BUILD_TIMEOUT_S
+        )
+
+    async def _push(self, supervisor: Supervisor, bundle: Path) -> None:
+        """Brings a bundle into the registry; DocumentError with all diagnostics if it is refused."""
+        files = await asyncio.to_thread(_files_of_bundle, bundle, self._deployment.file.leave_out)
+        report = await supervisor.bus.ask(
+            supervisor.keys.push_bundle,
+            PushBundle(files, str(bundle)),
+            BundleReport,
+            timeout_s=_BUILD_TIMEOUT_S,
+        )
+        if not report.is_accepted:
+            found = tuple(_with_folder(diagnostic, bundle) for diagnostic in report.diagnostics)
+            raise DocumentError(f"the bundle {bundle} is refused", code="AOS120", diagnostics=found)
+        self._report(report)
+        if report.project != self._deployment.project:
+            raise DeployError(
+                f"{bundle} holds the project {report.project}, not {self._deployment.project}",
+                code="AOS801",
+                hint=f"Write `project: {report.project}` into {self._deployment.path}",
+            )
+
+    async def _follow(self, supervisor: Supervisor) -> None:
+        client = AosClient(supervisor.bus, self._deployment.file.robot)
+        async for event in client.follow():
+            self._take(event)
+            self._report(event)
+
+    def _take(self, event: Event) -> None:
+        if isinstance(event, MissionState):
+            self._state = event
+        elif isinstance(event, DecisionRecord):
+            if self._first_decision_s is None:
+                self._first_decision_s = self._elapsed_s()
+            self._steps[event.step] = event
+
+    def _write_record(self, run: RunDirectory, endpoint: str, supervisor: Supervisor) -> None:
+        run.write_record(
+            RunRecord(
+                robot=self._deployment.file.robot,
+                endpoint=endpoint,
+                deploy_file=str(self._deployment.path),
+                seed=self._deployment.file.solver.seed,
+                started=self._started,
+                pid=os.getpid(),
+                pids=supervisor.pids,
+            )
+        )
+
+    def _summary(self, ending: str, remark: str, code: ExitCode) -> Summary:
+        steps = [self._steps[number] for number in sorted(self._steps)]
+        return Summary(
+            robot=self._deployment.file.robot,
+            deploy_file=str(self._deployment.path),
+            seed=self._deployment.file.solver.seed,
+            started=self._started,
+            ending=ending,
+            remark=remark,
+            exit_code=int(code),
+            steps=len(steps),
+            goal_probability=steps[-1].belief.goal_probability if steps else 0.0,
+            actions=tuple(step.action for step in steps),
+            responses=tuple(step.outcome.response if step.outcome else "" for step in steps),
+            services_ready_s=self._services_ready_s,
+            first_decision_s=self._first_decision_s,
+            duration_s=self._elapsed_s(),
+        )
+
+    def _elapsed_s(self) -> float:
+        return round(self._clock.monotonic_s() - self._begun_s, 3)
+
+
+async def run_until_interrupted(mission: MissionRun) -> int:
+    """The exit code. The first signal stops everything in order, any further one at once."""
+    loop = asyncio.get_running_loop()
+    work = loop.create_task(mission.run())
+    has_interrupted = False
+
+    def interrupt() -> None:
+        nonlocal has_interrupted
+        if has_interrupted:
+            mission.kill()
+        has_interrupted = True
+        work.cancel()
+
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        loop.add_signal_handler(number, interrupt)
+    try:
+        return (await work).exit_code
+    except asyncio.CancelledError:
+        return ExitCode.INTERRUPTED
+
+
+def _with_folder(diagnostic: Diagnostic, bundle: Path) -> Diagnostic:
+    """The diagnostic with a file name that leads to the file from here."""
+    folder = bundle.relative_to(Path.cwd()) if bundle.is_relative_to(Path.cwd()) else bundle
+    span = msgspec.structs.replace(diagnostic.span, file=str(folder / diagnostic.span.file))
+    return msgspec.structs.replace(diagnostic, span=span)
+
+
+def _files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
+    """The bundle's files by name, without hidden ones and those of skills that are left out."""
+    try:
+        return {
+            path.name: path.read_bytes()
+            for path in sorted(bundle.iterdir())
+            if path.is_file() and not path.name.startswith(".") and skill_of_file(path.name) not in leave_out
+        }
+    except OSError as error:
+        raise DocumentError(f"{error.filename}: {error.strerror}", code="AOS101") from error

@@ -1,0 +1,167 @@
+"""The directory of one run: where every service writes, and what remains of a mission.
+
+runs/20260105T101500Z-armadillo/
+  run.json         what runs here: endpoint, robot, deploy file, seed, process ids
+  settings/        what each service was started with
+  logs/            what each service said
+  faults/          why a service ended, if it ended by a fault
+  journal.db       the mission: decisions and outcomes
+  summary.json     how it ended; its absence means that it runs, or was killed
+"""
+
+from __future__ import annotations
+
+import os
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from aos_protocol.errors import BusError, DeployError
+from aos_protocol.messages import Fault
+from aos_runtime.lifecycle import fault_path
+
+__all__ = ["RunDirectory", "RunRecord", "Summary"]
+
+_LATEST = "latest"
+
+
+class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """`run.json`. `pid` is that of aos-up."""
+
+    robot: str
+    endpoint: str
+    deploy_file: str
+    seed: int
+    started: str
+    pid: int
+    pids: dict[str, int] = {}
+
+
+class Summary(msgspec.Struct, frozen=True, kw_only=True):
+    """`summary.json`: how a run ended. Times in seconds, `first_decision_s` since aos-up was called."""
+
+    robot: str
+    deploy_file: str
+    seed: int
+    started: str
+    ending: str
+    remark: str
+    exit_code: int
+    steps: int
+    goal_probability: float
+    actions: tuple[str, ...]
+    responses: tuple[str, ...]
+    services_ready_s: float | None
+    first_decision_s: float | None
+    duration_s: float
+
+
+class RunDirectory:
+    """Paths of one run, and what aos-up itself keeps there."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    @classmethod
+    def create(cls, runs: Path, robot: str, now_ns: int) -> RunDirectory:
+        """A new directory below `runs`, which `latest` then names; DeployError AOS805 if that cannot be."""
+        stamp = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
+        try:
+            path = _made(runs, f"{stamp}-{robot}")
+            for folder in ("settings", "logs", "faults"):
+                (path / folder).mkdir()
+            link = runs / f".{_LATEST}-{path.name}"
+            link.symlink_to(path.name)
+            link.replace(runs / _LATEST)
+        except OSError as error:
+            raise DeployError(
+                f"no run directory can be made in {runs}: {error.strerror}",
+                code="AOS805",
+                hint="Name another folder with --runs",
+            ) from error
+        return cls(path)
+
+    @classmethod
+    def latest(cls, runs: Path) -> RunDirectory:
+        """The newest run below `runs`; BusError AOS605 if there is none."""
+        if not (runs / _LATEST / "run.json").is_file():
+            raise BusError(
+                f"there is no run in {runs}",
+                code="AOS605",
+                hint="Start one with aos-up, or name a run directory or an endpoint",
+            )
+        return cls((runs / _LATEST).resolve())
+
+    def write_settings(self, service: str, settings: dict[str, Any]) -> Path:
+        """Where the service finds its settings."""
+        path = self.path / "settings" / f"{service}.json"
+        path.write_bytes(_pretty(settings))
+        return path
+
+    def log(self, service: str) -> Path:
+        return self.path / "logs" / f"{service}.log"
+
+    def last_log_lines(self, service: str, count: int = 8) -> list[str]:
+        """The end of a service's log."""
+        try:
+            text = self.log(service).read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            return []
+        return text.splitlines()[-count:]
+
+    def fault(self, service: str) -> Fault | None:
+        """The fault a service has left, if it has."""
+        try:
+            return msgspec.json.decode(fault_path(self.path, service).read_bytes(), type=Fault)
+        except (OSError, msgspec.MsgspecError):
+            return None
+
+    def write_record(self, record: RunRecord) -> None:
+        (self.path / "run.json").write_bytes(_pretty(record))
+
+    def read_record(self) -> RunRecord:
+        """DeployError AOS801 if this is not a run directory."""
+        path = self.path / "run.json"
+        try:
+            return msgspec.json.decode(path.read_bytes(), type=RunRecord)
+        except (OSError, msgspec.MsgspecError) as error:
+            raise DeployError(f"{self.path} is not a run directory: {error}", code="AOS801") from error
+
+    def write_summary(self, summary: Summary) -> None:
+        (self.path / "summary.json").write_bytes(_pretty(summary))
+
+    def read_summary(self) -> Summary | None:
+        """None while the mission runs, or if aos-up was killed."""
+        try:
+            return msgspec.json.decode((self.path / "summary.json").read_bytes(), type=Summary)
+        except (OSError, msgspec.MsgspecError):
+            return None
+
+    @property
+    def is_running(self) -> bool:
+        """Whether the aos-up of this run is still there."""
+        if self.read_summary() is not None:
+            return False
+        try:
+            os.kill(self.read_record().pid, 0)
+        except OSError:
+            return False
+        return True
+
+
+def _made(runs: Path, name: str) -> Path:
+    runs.mkdir(parents=True, exist_ok=True)
+    for number in range(1, 1000):
+        path = runs / (name if number == 1 else f"{name}-{number}")
+        try:
+            path.mkdir()
+        except FileExistsError:
+            continue
+        return path
+    raise FileExistsError(17, f"too many runs named {name}")
+
+
+def _pretty(structure: Any) -> bytes:
+    return msgspec.json.format(msgspec.json.encode(structure), indent=2) + b"\n"

@@ -1,0 +1,271 @@
+"""Starts the services of a system, notices when one ends, and stops them all.
+
+All processes start at once, because a Python interpreter takes longer to start than a service to get ready;
+each waits for the bus by itself. Readiness, a liveliness token on the bus, is then awaited in the order of
+the programs. They are stopped in the reverse order, the router last.
+
+A service that ends before it is told to ends the supervision with the fault it left. Restarting one belongs
+into `_watch`, the only place that sees a service end.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+
+from aos_deploy.events import Report, ServiceChanged
+from aos_deploy.program import Program, settings_of
+from aos_deploy.run_directory import RunDirectory
+from aos_protocol.errors import AosError, BusError, DeployError, error_from_code
+from aos_protocol.keys import Keys
+from aos_protocol.messages import Cancel, Cancelled
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+from aos_runtime.clock import Clock
+from aos_runtime.lifecycle import ServiceSettings
+
+__all__ = ["ROUTER", "Supervisor", "free_endpoint", "supervised"]
+
+ROUTER = Program(name="router", module="aos_runtime.router", start_s=10.0)
+
+_CANCEL_TIMEOUT_S = 1.0
+
+
+class _Running:
+    """A program's process."""
+
+    def __init__(self, program: Program, child: Child) -> None:
+        self.program = program
+        self.child = child
+        self.ready = asyncio.Event()
+
+
+@asynccontextmanager
+async def supervised(
+    programs: tuple[Program, ...],
+    base: ServiceSettings,
+    run: RunDirectory,
+    report: Report,
+    clock: Clock,
+) -> AsyncIterator[Supervisor]:
+    """A supervisor whose processes are gone when the block ends, however it ends.
+
+    When a service ends by itself the block is cancelled, and an exception group with the reason comes out of
+    it. `base` says robot, endpoint and run directory; its service name is not used.
+    """
+    async with asyncio.TaskGroup() as tasks:
+        supervisor = Supervisor(programs, base, run, report, clock, tasks)
+        try:
+            yield supervisor
+        finally:
+            await supervisor.stop()
+
+
+class Supervisor:
+    """The processes of one system; `bus` is there once `start` has returned."""
+
+    bus: Bus
+
+    def __init__(
+        self,
+        programs: tuple[Program, ...],
+        base: ServiceSettings,
+        run: RunDirectory,
+        report: Report,
+        clock: Clock,
+        tasks: asyncio.TaskGroup,
+    ) -> None:
+        self.keys = Keys(base.robot)
+        self._programs = programs
+        self._base = base
+        self._run = run
+        self._report = report
+        self._clock = clock
+        self._tasks = tasks
+        self._started_s = clock.monotonic_s()
+        self._running: dict[str, _Running] = {}
+        self._is_stopping = False
+        self._bus: Bus | None = None
+        self._presence: asyncio.Task[None] | None = None
+
+    @property
+    def pids(self) -> dict[str, int]:
+        """Process ids by service."""
+        return {name: running.child.pid for name, running in self._running.items()}
+
+    # --- starting ------------------------------------------------------------------------------------------
+
+    async def start(self) -> None:
+        """Starts every process and connects to the bus; does not wait until the services are ready.
+
+        DeployError AOS802 if a process cannot be started or another program listens at the endpoint.
+        """
+        _check_port(self._base.endpoint)
+        for program in (ROUTER, *self._programs):
+            await self._spawn(program)
+        self.bus = self._bus = await Bus.open(
+            self._base.endpoint, sender="aos-up", connect_timeout_s=ROUTER.start_s
+        )
+        self._changed(ROUTER.name, "ready")
+        self._presence = self._tasks.create_task(self._follow_presence(self.bus))
+
+    async def until_ready(self, *names: str) -> None:
+        """Returns when these services are ready, or all if none is named.
+
+        DeployError AOS802 if one takes longer than it may, counted from the start.
+        """
+        for program in self._programs:
+            if names and program.name not in names:
+                continue
+            running = self._running[program.name]
+            elapsed_s = self._clock.monotonic_s() - self._started_s
+            try:
+                async with asyncio.timeout(program.start_s - elapsed_s):
+                    await running.ready.wait()
+            except TimeoutError:
+                raise DeployError(
+                    f"{program.name} was not ready within {program.start_s:g} s",
+                    code="AOS802",
+                    hint=self._look_at_log(program.name),
+                ) from None
+
+    async def until_ended(self, name: str, *, timeout_s: float) -> None:
+        """Returns when a process has ended, or after the timeout."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(timeout_s):
+                await self._running[name].child.wait()
+
+    async def _spawn(self, program: Program) -> None:
+        base = ServiceSettings(
+            robot=self._base.robot,
+            service=program.name,
+            endpoint=self._base.endpoint,
+            run_dir=self._base.run_dir,
+        )
+        settings = self._run.write_settings(program.name, settings_of(program, base))
+        with self._run.log(program.name).open("ab") as log:
+            child = await Child.start(
+                [*program.argv, str(settings)], name=program.name, stdout=log, stderr=log
+            )
+        self._running[program.name] = running = _Running(program, child)
+        self._changed(program.name, "starting")
+        self._tasks.create_task(self._watch(running))
+
+    async def _follow_presence(self, bus: Bus) -> None:
+        async with bus.presence(self.keys.all_live) as changes:
+            async for key, is_alive in changes:
+                running = self._running.get(self.keys.service_of(key))
+                if running is not None and is_alive:
+                    running.ready.set()
+                    self._changed(running.program.name, "ready")
+
+    async def _watch(self, running: _Running) -> None:
+        """Raises when the process ends though nobody stopped it."""
+        status = await running.child.wait()
+        self._changed(running.program.name, "ended", "" if self._is_stopping else _status_text(status))
+        if not self._is_stopping:
+            raise self._end_of(running, status)
+
+    def _end_of(self, running: _Running, status: int) -> AosError:
+        name = running.program.name
+        fault = self._run.fault(name)
+        if fault is not None:
+            return error_from_code(
+                fault.code,
+                f"{name}: {fault.message}",
+                hint=fault.hint,
+                diagnostics=fault.diagnostics,
+            )
+        code = "AOS804" if running.ready.is_set() else "AOS802"
+        return DeployError(
+            f"{name} ended unexpectedly: {_status_text(status)}", code=code, hint=self._look_at_log(name)
+        )
+
+    def _look_at_log(self, name: str) -> str:
+        lines = self._run.last_log_lines(name)
+        where = f"Its log is {self._run.log(name)}"
+        return "\n    ".join([f"{where}; it ends:", *lines]) if lines else where
+
+    # --- stopping ------------------------------------------------------------------------------------------
+
+    async def stop(self) -> None:
+        """Stops the solver, then whatever the robot still does, then the rest in reverse order."""
+        self._is_stopping = True
+        if self._presence is not None:
+            self._presence.cancel()
+        await self._stop_one("solver")
+        await self._cancel_skills()
+        for program in reversed(self._programs):
+            await self._stop_one(program.name)
+        if self._bus is not None:
+            await self._bus.close()
+        await self._stop_one(ROUTER.name)
+
+    def kill(self) -> None:
+        """Ends every process at once; what they have started ends with them."""
+        self._is_stopping = True
+        for running in self._running.values():
+            running.child.kill()
+
+    async def _stop_one(self, name: str) -> None:
+        running = self._running.get(name)
+        if running is not None and running.child.returncode is None:
+            self._changed(name, "stopping")
+            await running.child.stop(running.program.stop_s)
+
+    async def _cancel_skills(self) -> None:
+        if self._bus is None or "skills" not in self._running:
+            return
+        try:
+            await self._bus.ask(
+                self.keys.cancel, Cancel("aos-up stops"), Cancelled, timeout_s=_CANCEL_TIMEOUT_S
+            )
+        except AosError:
+            # Nobody moves the robot, or whoever does ends in a moment anyway.
+            return
+
+    def _changed(self, service: str, state: str, detail: str = "") -> None:
+        after_s = self._clock.monotonic_s() - self._started_s
+        self._report(ServiceChanged(service, state, round(after_s, 3), detail))
+
+
+def free_endpoint(endpoint: str) -> str:
+    """The endpoint itself, or with a free port in place of port 0."""
+    address, _, port = endpoint.rpartition(":")
+    if port != "0":
+        return endpoint
+    with socket.socket(_family(address)) as probe:
+        probe.bind((_host(address), 0))
+        return f"{address}:{probe.getsockname()[1]}"
+
+
+def _check_port(endpoint: str) -> None:
+    """Before anything starts, so that no service meets another system's router."""
+    address, _, port = endpoint.rpartition(":")
+    with socket.socket(_family(address)) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((_host(address), int(port)))
+        except OSError as error:
+            raise BusError(
+                f"cannot listen at {endpoint}: {error.strerror}",
+                code="AOS802",
+                hint="Does another system run? Stop it, or use --listen tcp/127.0.0.1:0 for a free port",
+            ) from error
+
+
+def _host(address: str) -> str:
+    return address.partition("/")[2].strip("[]")
+
+
+def _family(address: str) -> socket.AddressFamily:
+    return socket.AF_INET6 if "[" in address else socket.AF_INET
+
+
+def _status_text(status: int) -> str:
+    if status >= 0:
+        return f"exit status {status}"
+    return f"killed by {signal.Signals(-status).name}"

@@ -1,0 +1,91 @@
+"""One line for each event: for pipes and logs, and as JSON for programs."""
+
+from __future__ import annotations
+
+import sys
+from typing import Self
+
+from aos_deploy.events import Event, ServiceChanged, Told, event_json
+from aos_protocol.diagnostics import render
+from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
+
+__all__ = ["JsonView", "PlainView", "decision_line", "lines_of"]
+
+
+class PlainView:
+    """Prints `lines_of` each event. A mission's state is printed when its phase or remark is news."""
+
+    def __init__(self) -> None:
+        self._last_remark = ""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, MissionState):
+            if not event.remark or event.remark == self._last_remark:
+                return
+            self._last_remark = event.remark
+        for line in lines_of(event):
+            print(line, flush=True)
+
+
+class JsonView:
+    """Prints each event as one JSON object."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return
+
+    def __call__(self, event: Event) -> None:
+        sys.stdout.write(event_json(event) + "\n")
+        sys.stdout.flush()
+
+
+def lines_of(event: Event) -> list[str]:
+    """An event as text for people."""
+    match event:
+        case ServiceChanged():
+            detail = f": {event.detail}" if event.detail else ""
+            return [f"{event.after_s:7.2f} s  {event.service} {event.state}{detail}"]
+        case Told():
+            return [event.text]
+        case DecisionRecord():
+            return [decision_line(event)]
+        case MissionState():
+            return [f"mission {event.phase}: {event.remark}" if event.remark else f"mission {event.phase}"]
+        case BundleReport():
+            return _report_lines(event)
+
+
+def decision_line(record: DecisionRecord) -> str:
+    """A decision with what each action is worth, or what came of it."""
+    head = f"step {record.step:2}: {record.action}"
+    if record.outcome is None:
+        others = sorted(record.actions, key=lambda action: -action.q)
+        values = ", ".join(f"{action.action} {action.q:+.2f}" for action in others)
+        return f"{head}  [{values}]  {record.simulations} simulations in {record.planning_s:.2f} s"
+    outcome = record.outcome
+    what = outcome.response if outcome.status == "observed" else outcome.status
+    if outcome.fault is not None:
+        what = f"{what} ({outcome.fault.message})"
+    surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
+    return f"{head} -> {what}  {surprise}  goal {record.belief.goal_probability:.3f}"
+
+
+def _report_lines(report: BundleReport) -> list[str]:
+    lines = [render(diagnostic) for diagnostic in report.diagnostics]
+    if not report.is_accepted:
+        return [*lines, f"bundle {report.source} refused, nothing has changed"]
+    new = [f"{verb} {', '.join(skills)}" for verb, skills in _news(report) if skills]
+    revision = f"{report.project} revision {report.revision}"
+    return [*lines, f"bundle {report.source}: {revision}, {'; '.join(new) or 'nothing new'}"]
+
+
+def _news(report: BundleReport) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    return (("added", report.added), ("changed", report.changed))

@@ -1,0 +1,165 @@
+"""A project as text for people: the typed documents, each part with the place it comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import (
+    AbstractionMapping,
+    Assignment,
+    Environment,
+    Import,
+    LocalSource,
+    LocalVariable,
+    LowLevelDocument,
+    Project,
+    Skill,
+    Snippet,
+    SpecialState,
+    StateVariable,
+)
+
+__all__ = ["outline"]
+
+_PLACE_COLUMN = 76
+
+
+def outline(project: Project) -> str:
+    """The whole project, environment first, then each skill with its mapping."""
+    environment = project.environment
+    title = f"project {project.name}: horizon {environment.horizon}, discount {environment.discount:g}"
+    lines = [_placed(title, environment.span)]
+    lines += _environment(environment)
+    if project.low_level is not None:
+        lines += _low_level(project.low_level)
+    for skill in project.skills:
+        lines += ["", *_skill(skill)]
+    return "\n".join(lines) + "\n"
+
+
+def _environment(environment: Environment) -> Iterator[str]:
+    if environment.is_one_state_model:
+        yield "one state model: state, state_ and state__ are the same"
+    for enum in environment.enums:
+        yield _placed(f"enum {enum.name}: {', '.join(enum.values)}", enum.span)
+    for compound in environment.compounds:
+        yield _placed(f"compound {compound.name}", compound.span)
+        for field in compound.fields:
+            default = f" = {field.default.code}" if field.default else ""
+            low_level = f" of {field.low_level_type}" if field.low_level_type else ""
+            yield _placed(f"  {field.type} {field.name}{default}{low_level}", field.span)
+    for variable in environment.variables:
+        yield from _variable(variable)
+    yield from _block("initial belief", environment.initial_belief)
+    for special in environment.special_states:
+        yield from _special_state(special)
+    yield from _block("extrinsic changes", environment.extrinsic_changes)
+    yield from _block("state heuristic", environment.state_heuristic)
+    yield from _block("print function", environment.print_state)
+
+
+def _variable(variable: StateVariable) -> Iterator[str]:
+    kind = "action parameter value" if variable.is_parameter_value else "variable"
+    keys = f" by ({', '.join(variable.key_types)})" if variable.key_types else ""
+    array = "[]" if variable.is_array else ""
+    default = f" = {variable.default_value.code}" if variable.default_value else ""
+    yield _placed(f"{kind} {variable.type}{array} {variable.name}{keys}{default}", variable.span)
+    yield from _code(variable.default_code)
+
+
+def _special_state(special: SpecialState) -> Iterator[str]:
+    flags = ", goal" * special.is_goal + ", once" * special.is_one_time
+    if special.condition is None:
+        yield from _block("special state", special.code)
+        return
+    yield _placed(f"special state: reward {special.reward:g}{flags}, when", special.span)
+    yield from _code(special.condition)
+
+
+def _low_level(document: LowLevelDocument) -> Iterator[str]:
+    for kind in document.types:
+        fields = ", ".join(f"{field.type} {field.name}" for field in kind.fields)
+        yield _placed(f"low-level type {kind.name}: {fields}", kind.span)
+    for constant in document.constants:
+        yield _placed(f"low-level constant {constant.type} {constant.name}", constant.span)
+        yield from _code(constant.code)
+
+
+def _skill(skill: Skill) -> Iterator[str]:
+    model = skill.model
+    parameters = ", ".join(f"{parameter.type} {parameter.name}" for parameter in model.parameters)
+    yield _placed(f"skill {model.name}({parameters})", model.span)
+    yield from _indented(_block("parameter values", model.possible_parameters))
+    precondition = f"precondition, {model.violation_penalty:g} when it does not hold"
+    yield from _indented(_block(precondition, model.precondition))
+    yield from _indented(_block("rollout policy", model.rollout_policy))
+    yield from _indented(_block("execution time", model.execution_time))
+    yield from _indented(_block("dynamic model", model.dynamic_model))
+    yield from _indented(_block("state given the observation", model.state_given_observation))
+    yield from _indented(_mapping(skill.mapping))
+
+
+def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
+    activation = mapping.activation
+    fields = ", ".join(f"{field.name}={field.value.code}" for field in activation.fields)
+    service = f" of type {activation.service_type}" if activation.service_type else ""
+    limit = f", at most {activation.max_duration_s:g} s" if activation.max_duration_s else ""
+    call = f"activation: {activation.kind} {activation.path}({fields}){service}{limit}"
+    yield _placed(call, activation.span)
+    yield from _imports(activation.imports)
+    for rule in mapping.rules:
+        condition = rule.condition.code if rule.condition else "True"
+        yield _placed(f"response {rule.response} when {condition}", rule.span)
+    if mapping.response_variable:
+        yield f"response is the text of {mapping.response_variable}"
+    for variable in mapping.local_variables:
+        yield from _local_variable(variable)
+
+
+def _local_variable(variable: LocalVariable) -> Iterator[str]:
+    origin = {
+        LocalSource.PARAMETER: f"parameter {variable.parameter_path}",
+        LocalSource.SERVICE_RESPONSE: "the service's response",
+        LocalSource.TOPIC: f"topic {variable.topic} ({variable.message_type or 'any message'})",
+    }[variable.source]
+    kind = f"{variable.type} " if variable.type else ""
+    initial = f", at first {variable.initial_value.code}" if variable.initial_value else ""
+    yield _placed(f"local variable {kind}{variable.name} from {origin}{initial}", variable.span)
+    yield from _imports(variable.imports)
+    yield from _code(variable.code)
+
+
+def _imports(imports: tuple[Import, ...]) -> Iterator[str]:
+    for item in imports:
+        names = ", ".join(item.names)
+        yield f"  from {item.module} import {names}" if item.module else f"  import {names}"
+
+
+def _block(title: str, block: tuple[Assignment, ...]) -> Iterator[str]:
+    for assignment in block:
+        yield _placed(title, assignment.span)
+        if assignment.temporary is not None:
+            temporary = assignment.temporary
+            values = f" {temporary.enum_name}: {', '.join(temporary.enum_values)}"
+            yield f"  temporary {temporary.type} {temporary.name}{values if temporary.enum_name else ''}"
+        for copy, loops in (("previous", assignment.over_previous), ("next", assignment.over_next)):
+            for loop in loops:
+                yield f"  for each {loop.type} {loop.item} of the {copy} state, when"
+                yield from _indented(_code(loop.condition))
+                yield from _indented(_code(loop.body))
+        yield from _code(assignment.code)
+
+
+def _code(snippet: Snippet | None) -> Iterator[str]:
+    if snippet is not None:
+        for line in snippet.code.split("\n"):
+            yield f"  | {line}".rstrip()
+
+
+def _indented(lines: Iterator[str]) -> Iterator[str]:
+    return (f"  {line}" for line in lines)
+
+
+def _placed(text: str, span: Span) -> str:
+    return f"{text:<{_PLACE_COLUMN}}  {span}"

@@ -1,0 +1,266 @@
+// What an engine child can be asked, one method for each command; answers are JSON objects.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "aos/belief.hpp"
+#include "aos/exact.hpp"
+#include "aos/json.hpp"
+#include "aos/pomcp.hpp"
+
+namespace aos {
+
+// A command that cannot be carried out as it was given.
+struct BadCommand {
+  std::string text;
+};
+
+template <class Model>
+class Engine {
+ public:
+  using State = typename Model::State;
+  static_assert(std::is_trivially_copyable_v<State>);
+
+  explicit Engine(std::uint64_t seed, ImpossiblePolicy policy)
+      : random_(seed), policy_(policy), belief_(Belief<Model>::initial(random_)), hidden_() {}
+
+  void describe(JsonWriter& json) const {
+    json.begin_object().member("project", Model::project).member("horizon", Model::horizon);
+    json.member("discount", Model::discount).key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      const int skill = Model::skill_of(action);
+      json.begin_object().member("name", Model::action_name(action)).member("skill", Model::skill_name(skill));
+      Model::write_parameters(action, json.key("parameters"));
+      json.end_object();
+    }
+    json.end_array().key("responses").begin_object();
+    for (int skill = 0; skill < Model::skill_count; ++skill) {
+      json.key(Model::skill_name(skill)).begin_array();
+      for (int response = 0; response < Model::response_count(skill); ++response) {
+        json.value(Model::response_name(skill, response));
+      }
+      json.end_array();
+    }
+    json.end_object().end_object();
+  }
+
+  void reset_belief(JsonWriter& json) {
+    belief_ = Belief<Model>::initial(random_);
+    search_.forget();
+    summary(json);
+  }
+
+  void summary(JsonWriter& json) const { belief_.write_summary(json); }
+
+  void plan(JsonWriter& json, Budget budget, std::uint64_t seed, int horizon) {
+    const auto start = std::chrono::steady_clock::now();
+    if (horizon <= 0) horizon = Model::horizon;
+    if (horizon != planned_horizon_) search_.forget();
+    planned_horizon_ = horizon;
+    Sampler random{seed};
+    const std::uint64_t simulations = search_.search(belief_, budget, horizon, random);
+    const auto estimates = search_.estimates(belief_);
+    int best = 0;
+    for (int action = 1; action < Model::action_count(); ++action) {
+      const auto& candidate = estimates[static_cast<std::size_t>(action)];
+      const auto& leader = estimates[static_cast<std::size_t>(best)];
+      if (candidate.n > 0 && (leader.n == 0 || candidate.q > leader.q)) best = action;
+    }
+    json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
+    json.key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      const auto& estimate = estimates[static_cast<std::size_t>(action)];
+      json.begin_object().member("action", Model::action_name(action)).member("q", estimate.q);
+      json.member("n", estimate.n).member("stderr", estimate.standard_error).end_object();
+    }
+    json.end_array().key("predicted");
+    write_predicted(json, best);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    json.member("seconds", spent.count()).end_object();
+  }
+
+  void exact(JsonWriter& json, int horizon, std::uint64_t belief_budget) const {
+    ExactEvaluation<Model> evaluation{belief_budget};
+    const auto values = evaluation.action_values(belief_, horizon > 0 ? horizon : Model::horizon);
+    json.begin_object().key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      json.begin_object().member("action", Model::action_name(action));
+      json.member("q", values[static_cast<std::size_t>(action)]).end_object();
+    }
+    json.end_array().member("beliefs", evaluation.beliefs()).member("states", evaluation.states()).end_object();
+  }
+
+  void update(JsonWriter& json, int action, std::string_view response) {
+    const Observation observation = observation_of(checked(action), response);
+    auto [posterior, probability] = belief_.posterior(action, observation, random_);
+    const bool is_impossible = posterior.particles().empty();
+    if (is_impossible) {
+      belief_ = after_impossible(action);
+      search_.forget();
+    } else {
+      belief_ = std::move(posterior);
+      search_.move_to(action, observation);
+    }
+    json.begin_object().member("probability", probability).member("is_impossible", is_impossible);
+    summary(json.key("summary"));
+    json.end_object();
+  }
+
+  // Nobody knows whether the action ran.
+  void update_without_observation(JsonWriter& json, int action, double ran_probability) {
+    belief_ = belief_.mixed_with(belief_.predicted(checked(action), random_), ran_probability);
+    search_.forget();
+    json.begin_object().member("probability", 1.0).member("is_impossible", false);
+    summary(json.key("summary"));
+    json.end_object();
+  }
+
+  // One line for each particle: its weight and its bytes in hexadecimal.
+  void export_belief(JsonWriter& json) const {
+    json.begin_object().member("is_exact", belief_.is_exact()).key("particles").begin_array();
+    for (const auto& [state, weight] : belief_.particles()) {
+      json.begin_array().value(weight).value(hex_of(state)).end_array();
+    }
+    json.end_array().end_object();
+  }
+
+  void import_belief(JsonWriter& json, bool is_exact, const std::vector<std::string_view>& fields) {
+    std::vector<typename Belief<Model>::Particle> particles;
+    for (std::size_t i = 0; i + 1 < fields.size(); i += 2) {
+      particles.push_back({state_of(fields[i + 1]), std::stod(std::string{fields[i]})});
+    }
+    if (particles.empty()) throw BadCommand{"an empty belief"};
+    belief_ = Belief<Model>::of(particles, is_exact);
+    search_.forget();
+    summary(json);
+  }
+
+  // A world of its own, stepped by the model, for missions without a robot.
+  void reset_world(JsonWriter& json, std::uint64_t seed) {
+    world_random_ = Sampler{seed};
+    hidden_ = State{};
+    Model::initial(hidden_, world_random_);
+    json.begin_object().member("ending", ending_text(hidden_)).end_object();
+  }
+
+  void step_world(JsonWriter& json, int action) {
+    const Step step = Model::step(hidden_, checked(action), world_random_);
+    json.begin_object().member("reward", step.reward);
+    json.member("response", response_text(action, step.observation)).member("ending", ending_text(hidden_)).end_object();
+  }
+
+  // Samples of (next state, observation, reward) for random actions; a new start at the end or at the horizon.
+  void rate(JsonWriter& json, double seconds, std::uint64_t seed) const {
+    Sampler random{seed};
+    const int actions = Model::action_count();
+    const auto start = std::chrono::steady_clock::now();
+    std::chrono::duration<double> spent{};
+    std::uint64_t samples = 0;
+    double rewards = 0;
+    State state = belief_.sample(random);
+    int depth = 0;
+    do {
+      for (int i = 0; i < 4096; ++i, ++samples) {
+        if (depth++ == Model::horizon || Model::ending(state) != Ending::running) {
+          state = belief_.sample(random);
+          depth = 1;
+        }
+        rewards += Model::step(state, random.below(actions), random).reward;
+      }
+      spent = std::chrono::steady_clock::now() - start;
+    } while (spent.count() < seconds);
+    json.begin_object().member("samples", samples).member("seconds", spent.count());
+    json.member("mean_reward", rewards / static_cast<double>(samples)).end_object();
+  }
+
+ private:
+  static int checked(int action) {
+    if (action < 0 || action >= Model::action_count()) throw BadCommand{"there is no such action"};
+    return action;
+  }
+
+  static const char* ending_text(const State& state) {
+    switch (Model::ending(state)) {
+      case Ending::running: return "";
+      case Ending::goal: return "goal";
+      case Ending::failure: return "failure";
+    }
+    return "";
+  }
+
+  static std::string response_text(int action, Observation observation) {
+    if (observation >= 0) return Model::response_name(Model::skill_of(action), static_cast<int>(observation));
+    if (observation == default_observation) return default_observation_text;
+    return std::string{observation_text(observation)};
+  }
+
+  static Observation observation_of(int action, std::string_view response) {
+    const int skill = Model::skill_of(action);
+    for (int number = 0; number < Model::response_count(skill); ++number) {
+      if (response == Model::response_name(skill, number)) return number;
+    }
+    if (response == default_observation_text) return default_observation;
+    return text_observation(response);
+  }
+
+  void write_predicted(JsonWriter& json, int action) {
+    json.begin_array();
+    for (const auto& [observation, probability] : belief_.observations(action, random_)) {
+      json.begin_object().member("response", response_text(action, observation));
+      json.member("probability", probability).end_object();
+    }
+    json.end_array();
+  }
+
+  // hold: what the action does is believed, what was seen is not. widen: the same, but half of the belief goes back to
+  // what it was before and to the initial belief, in equal shares. reset: the initial belief.
+  Belief<Model> after_impossible(int action) {
+    const Belief<Model> initial = Belief<Model>::initial(random_);
+    if (policy_ == ImpossiblePolicy::reset) return initial;
+    const Belief<Model> predicted = belief_.predicted(action, random_);
+    if (policy_ == ImpossiblePolicy::hold) return predicted;
+    return predicted.mixed_with(belief_.mixed_with(initial, 0.5), 0.5);
+  }
+
+  static std::string hex_of(const State& state) {
+    static constexpr char digits[] = "0123456789abcdef";
+    unsigned char bytes[sizeof(State)];
+    std::memcpy(bytes, &state, sizeof bytes);
+    std::string text;
+    for (const unsigned char byte : bytes) {
+      text += digits[byte >> 4];
+      text += digits[byte & 15];
+    }
+    return text;
+  }
+
+  static State state_of(std::string_view hex) {
+    if (hex.size() != 2 * sizeof(State)) throw BadCommand{"a state of another layout"};
+    unsigned char bytes[sizeof(State)];
+    const auto digit = [](char c) { return static_cast<unsigned char>(c <= '9' ? c - '0' : c - 'a' + 10); };
+    for (std::size_t i = 0; i < sizeof bytes; ++i) {
+      bytes[i] = static_cast<unsigned char>(digit(hex[2 * i]) << 4 | digit(hex[2 * i + 1]));
+    }
+    State state{};
+    std::memcpy(&state, bytes, sizeof bytes);
+    return state;
+  }
+
+  Sampler random_;
+  ImpossiblePolicy policy_;
+  Belief<Model> belief_;
+  Pomcp<Model> search_;
+  int planned_horizon_ = 0;
+  State hidden_;
+  Sampler world_random_{0};
+};
+
+}  // namespace aos

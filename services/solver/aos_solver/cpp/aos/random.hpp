@@ -1,0 +1,140 @@
+// Where draws come from. Document code sees one interface; `Sampler` draws, `Enumerator` (enumerator.hpp) walks.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <numbers>
+
+#include "aos/fault.hpp"
+
+namespace aos {
+
+// The built-ins that document code calls on `AOS` and `AOSUtils`. A source gives `flag(probability)`,
+// `choose(weights, count, total)` with a positive total, and `uniform()`.
+template <class Source>
+class Draws {
+ public:
+  bool Bernoulli(double probability) { return source().flag(probability); }
+
+  // The value behind enum `name`: weights are normalised, missing ones are zero.
+  int SampleDiscrete(int name, std::initializer_list<double> weights) {
+    return name + 1 + normalised(weights.begin(), static_cast<int>(weights.size()));
+  }
+  template <class Weights>
+  int SampleDiscrete(int name, const Weights& weights) {
+    const Copied copied{weights};
+    return name + 1 + normalised(copied.weights.data(), copied.count);
+  }
+
+  // An index, or -1 where the weights, which are not normalised, leave room. A gap that single precision explains is
+  // none.
+  template <class Weights>
+  int SampleDiscrete(const Weights& weights) {
+    Copied copied{weights};
+    const double total = checked_total(copied.weights.data(), copied.count, /*may_be_zero=*/true);
+    const double gap = 1 - total;
+    if (gap <= rounding) return source().choose(copied.weights.data(), copied.count, total);
+    copied.append(gap);
+    const int drawn = source().choose(copied.weights.data(), copied.count, 1.0);
+    return drawn == copied.count - 1 ? -1 : drawn;
+  }
+
+  double SampleNormal(double mean, double deviation) {
+    const double radius = std::sqrt(-2 * std::log(1 - source().uniform()));
+    return mean + deviation * radius * std::cos(2 * std::numbers::pi * source().uniform());
+  }
+  double SampleUniform(double low, double high) { return low + (high - low) * source().uniform(); }
+
+  void SetNull(bool& value) { value = false; }
+  void Uninitialize(bool& value) { value = false; }
+  void Initialize(bool& value) { value = true; }
+  bool IsInitialized(bool value) { return value; }
+
+ private:
+  static constexpr double rounding = 1e-5;
+  static constexpr int most_weights = 512;
+
+  struct Copied {
+    template <class Weights>
+    explicit Copied(const Weights& from) {
+      for (const double weight : from) append(weight);
+    }
+    void append(double weight) {
+      if (count == most_weights) throw ModelFault{"AOS215", "more than 511 weights in one draw"};
+      weights[count++] = weight;
+    }
+    std::array<double, most_weights> weights;
+    int count = 0;
+  };
+
+  Source& source() { return static_cast<Source&>(*this); }
+
+  int normalised(const double* weights, int count) {
+    return source().choose(weights, count, checked_total(weights, count, /*may_be_zero=*/false));
+  }
+
+  static double checked_total(const double* weights, int count, bool may_be_zero) {
+    double total = 0;
+    for (int i = 0; i < count; ++i) {
+      if (!(weights[i] >= 0)) throw ModelFault{"AOS215", "a weight is negative or not a number"};
+      total += weights[i];
+    }
+    if (total <= 0 && !may_be_zero) throw ModelFault{"AOS215", "all weights of a draw are zero"};
+    return total;
+  }
+};
+
+// Draws at random. The generator is xoshiro256++ (Blackman and Vigna), seeded through splitmix64, so that every seed
+// gives an independent stream.
+class Sampler : public Draws<Sampler> {
+ public:
+  explicit Sampler(std::uint64_t seed) {
+    for (auto& word : words_) {
+      seed += 0x9e3779b97f4a7c15u;
+      std::uint64_t mixed = seed;
+      mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
+      mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
+      word = mixed ^ (mixed >> 31);
+    }
+  }
+
+  std::uint64_t bits() {
+    const std::uint64_t result = std::rotl(words_[0] + words_[3], 23) + words_[0];
+    const std::uint64_t shifted = words_[1] << 17;
+    words_[2] ^= words_[0];
+    words_[3] ^= words_[1];
+    words_[1] ^= words_[2];
+    words_[0] ^= words_[3];
+    words_[2] ^= shifted;
+    words_[3] = std::rotl(words_[3], 45);
+    return result;
+  }
+
+  // In [0, 1).
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
+  // In [0, bound).
+  int below(int bound) {
+    return static_cast<int>((static_cast<unsigned __int128>(bits()) * static_cast<unsigned>(bound)) >> 64);
+  }
+
+  bool flag(double probability) { return uniform() < probability; }
+  int choose(const double* weights, int count, double total) {
+    double left = uniform() * total;
+    int last = 0;
+    for (int i = 0; i < count; ++i) {
+      if (weights[i] <= 0) continue;
+      if (left < weights[i]) return i;
+      left -= weights[i];
+      last = i;
+    }
+    return last;
+  }
+
+ private:
+  std::array<std::uint64_t, 4> words_;
+};
+
+}  // namespace aos

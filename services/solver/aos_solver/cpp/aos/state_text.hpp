@@ -1,0 +1,99 @@
+// A state as one line of text and back, for beliefs that outlive their process.
+#pragma once
+
+#include <bit>
+#include <charconv>
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "aos/fault.hpp"
+#include "aos/reflection.hpp"
+
+namespace aos {
+
+// Numbers separated by blanks: every leaf is a number, vectors and texts begin with their size, floating point is
+// written as its bits.
+class StateWriter {
+ public:
+  template <class T>
+  void write(const T& value) {
+    if constexpr (Compound<T>) {
+      T::__fields(value, [this](const char*, const auto& member) { write(member); });
+    } else if constexpr (Mapping<T>) {
+      for (const auto& entry : value) write(entry.second);
+    } else if constexpr (Sequence<T> || std::same_as<T, Text>) {
+      put(static_cast<std::int64_t>(value.size()));
+      for (const auto& element : value) write(element);
+    } else if constexpr (std::floating_point<T>) {
+      put(std::bit_cast<std::int64_t>(static_cast<double>(value)));
+    } else {
+      put(static_cast<std::int64_t>(value));
+    }
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void put(std::int64_t number) {
+    if (!text_.empty()) text_ += ' ';
+    text_ += std::to_string(number);
+  }
+
+  std::string text_;
+};
+
+// Reads what a StateWriter wrote. Constants are read past: they have their values already.
+class StateReader {
+ public:
+  explicit StateReader(std::string_view text) : rest_(text) {}
+
+  template <class T>
+  void read(T& value) {
+    if constexpr (std::is_const_v<T>) {
+      std::remove_const_t<T> ignored = value;
+      read(ignored);
+    } else if constexpr (Compound<T>) {
+      T::__fields(value, [this](const char*, auto& member) { read(member); });
+    } else if constexpr (Mapping<T>) {
+      for (auto& entry : value) read(entry.second);
+    } else if constexpr (Sequence<T> || std::same_as<T, Text>) {
+      resize(value, static_cast<std::size_t>(next()));
+      for (auto& element : value) read(element);
+    } else if constexpr (std::floating_point<T>) {
+      value = static_cast<T>(std::bit_cast<double>(next()));
+    } else {
+      value = static_cast<T>(next());
+    }
+  }
+  void finish() const {
+    if (!rest_.empty()) malformed();
+  }
+
+ private:
+  [[noreturn]] static void malformed() { throw ModelFault{"AOS215", "a saved state that does not fit this model"}; }
+
+  template <class T>
+  static void resize(T& value, std::size_t size) {
+    if constexpr (requires { value.resize(size); }) {
+      value.resize(size);
+    } else if constexpr (std::same_as<T, Text>) {
+      value = std::string(size, ' ');
+    } else if (size != value.size()) {
+      malformed();
+    }
+  }
+  std::int64_t next() {
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
+    if (error != std::errc{}) malformed();
+    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+    if (!rest_.empty()) rest_.remove_prefix(1);
+    return number;
+  }
+
+  std::string_view rest_;
+};
+
+}  // namespace aos

@@ -1,0 +1,253 @@
+"""The engine child of one model: started, asked, killed and started again.
+
+The service survives whatever model code does: every question has a deadline; a crash, a hang and an exit
+become a ModelError that names the document line; the next question starts a new child with the belief that
+the old one had.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+from pathlib import Path
+from typing import Literal, Self, TypeVar
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.errors import AosError, ModelError
+from aos_protocol.messages import BeliefSummary
+from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_solver.answers import (
+    BeliefUpdate,
+    EngineDescription,
+    ExactValues,
+    ExportedBelief,
+    Plan,
+    SampleCount,
+    WorldStart,
+    WorldStep,
+)
+from aos_solver.build import BuiltModel
+
+__all__ = ["Engine", "ImpossiblePolicy"]
+
+ImpossiblePolicy = Literal["hold", "widen", "reset"]
+
+A = TypeVar("A")
+
+START_DEADLINE_S = 20.0
+ANSWER_DEADLINE_S = 30.0
+PLANNING_DEADLINE_S = 120.0
+"""For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
+EXACT_DEADLINE_S = 600.0
+EXACT_BELIEF_BUDGET = 20_000_000
+ADDRESS_SPACE_BYTES = 8 * 1024**3
+ANSWER_LIMIT_BYTES = 256 * 1024**2
+
+
+class _Fault(msgspec.Struct, frozen=True):
+    code: str
+    text: str
+    piece: int
+
+
+class _FaultAnswer(msgspec.Struct, frozen=True):
+    fault: _Fault | None = None
+
+
+class Engine:
+    """Owns the child process of one built model. Questions are asked one at a time."""
+
+    def __init__(self, built: BuiltModel, seed: int, impossible_observation: ImpossiblePolicy) -> None:
+        self._built = built
+        self._seed = seed
+        self._policy = impossible_observation
+        self._child: Child | None = None
+        self._belief: ExportedBelief | None = None
+        self._asking = asyncio.Lock()
+        self._folder = tempfile.TemporaryDirectory(prefix="aos-engine-")
+        self._blame = Path(self._folder.name) / "blame"
+        self.description: EngineDescription
+
+    @classmethod
+    async def start(
+        cls, built: BuiltModel, *, seed: int, impossible_observation: ImpossiblePolicy = "widen"
+    ) -> Self:
+        """Starts the child on the initial belief; ModelError if the model cannot even begin."""
+        engine = cls(built, seed, impossible_observation)
+        try:
+            await engine._start_child()
+        except BaseException:
+            await engine.close()
+            raise
+        return engine
+
+    async def close(self) -> None:
+        """Ends the child. A closed engine is not asked again."""
+        await self._drop_child()
+        self._folder.cleanup()
+
+    @property
+    def pid(self) -> int | None:
+        """The guarded child's process id; None while there is no child."""
+        return self._child.pid if self._child else None
+
+    # --- questions -----------------------------------------------------------------------------------
+
+    async def summary(self) -> BeliefSummary:
+        return await self._ask("summary", BeliefSummary)
+
+    async def reset_belief(self) -> BeliefSummary:
+        """Back to the initial belief."""
+        return await self._change_belief("reset_belief", BeliefSummary)
+
+    async def plan(
+        self,
+        *,
+        seed: int,
+        simulations: int | None = None,
+        time_s: float | None = None,
+        horizon: int | None = None,
+    ) -> Plan:
+        """Searches from the current belief within the budget; `horizon` None takes the document's."""
+        deadline_s = PLANNING_DEADLINE_S if time_s is None else time_s + ANSWER_DEADLINE_S
+        command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}"
+        return await self._ask(command, Plan, deadline_s=deadline_s)
+
+    async def exact(self, horizon: int | None = None) -> ExactValues:
+        """Finite-horizon values by enumeration; ModelError AOS220 where that is not tractable, and why."""
+        command = f"exact\t{horizon or 0}\t{EXACT_BELIEF_BUDGET}"
+        return await self._ask(command, ExactValues, deadline_s=EXACT_DEADLINE_S)
+
+    async def update(self, action: str, response: str) -> BeliefUpdate:
+        """Bayes' rule after an action and its observation."""
+        if any(mark in response for mark in "\t\n"):
+            raise ModelError(f"the response {response!r} has a tab or a line end in it", code="AOS310")
+        return await self._change_belief(f"update\t{self._index(action)}\t{response}", BeliefUpdate)
+
+    async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
+        """The mixture of "it ran" and "it did not"."""
+        command = f"update_without_observation\t{self._index(action)}\t{ran_probability}"
+        return await self._change_belief(command, BeliefUpdate)
+
+    async def export_belief(self) -> ExportedBelief:
+        return await self._ask("export_belief", ExportedBelief)
+
+    async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
+        """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
+        return await self._change_belief(_import_command(belief), BeliefSummary)
+
+    async def reset_world(self, seed: int) -> WorldStart:
+        """Starts a hidden state, drawn from the initial belief, for missions without a robot."""
+        return await self._ask(f"reset_world\t{seed}", WorldStart)
+
+    async def step_world(self, index: int) -> WorldStep:
+        """Runs an action on the hidden state, by the model."""
+        return await self._ask(f"step_world\t{index}", WorldStep)
+
+    async def rate(self, seconds: float, seed: int) -> SampleCount:
+        """Draws samples with random actions for so long."""
+        return await self._ask(
+            f"rate\t{seconds}\t{seed}", SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S
+        )
+
+    # --- the child -----------------------------------------------------------------------------------
+
+    def _index(self, action: str) -> int:
+        for index, grounded in enumerate(self.description.actions):
+            if grounded.name == action:
+                return index
+        raise ModelError(f"there is no action {action}", code="AOS501")
+
+    async def _change_belief(self, command: str, kind: type[A]) -> A:
+        answer = await self._ask(command, kind)
+        self._belief = await self.export_belief()
+        return answer
+
+    async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
+        async with self._asking:
+            if self._child is None or self._child.returncode is not None:
+                await self._restart_child()
+            return await self._exchange(command, kind, deadline_s)
+
+    async def _start_child(self) -> None:
+        self._blame.write_bytes(bytes(4))
+        arguments = [str(self._blame), str(self._seed), self._policy]
+        self._child = await Child.start(
+            guarded(
+                [str(self._built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)
+            ),
+            name="engine",
+            stdin=PIPE,
+            stdout=PIPE,
+            stream_limit_bytes=ANSWER_LIMIT_BYTES,
+        )
+        self.description = await self._exchange(None, EngineDescription, START_DEADLINE_S)
+
+    async def _restart_child(self) -> None:
+        await self._drop_child()
+        await self._start_child()
+        if self._belief is not None:
+            await self._exchange(_import_command(self._belief), BeliefSummary, ANSWER_DEADLINE_S)
+
+    async def _exchange(self, command: str | None, kind: type[A], deadline_s: float) -> A:
+        """One line there and one back; `command` None only waits for the answer."""
+        child = self._child
+        assert child is not None
+        try:
+            async with asyncio.timeout(deadline_s):
+                if command is not None:
+                    child.stdin.write(command.encode() + b"\n")
+                    await child.stdin.drain()
+                line = await child.stdout.readline()
+        except TimeoutError:
+            raise await self._lost("AOS211", f"the model did not finish within {deadline_s:.0f} s") from None
+        except (ConnectionError, ValueError):
+            line = b""
+        if not line.endswith(b"\n"):
+            raise await self._lost("AOS210", "model code ended the engine")
+        return self._decoded(line, kind)
+
+    def _decoded(self, line: bytes, kind: type[A]) -> A:
+        try:
+            fault = msgspec.json.decode(line, type=_FaultAnswer).fault
+            if fault is None:
+                return msgspec.json.decode(line, type=kind)
+        except msgspec.MsgspecError as error:
+            raise ModelError(f"the engine's answer makes no sense: {error}", code="AOS213") from error
+        raise self._blamed(fault.code, fault.text, fault.piece)
+
+    async def _lost(self, code: str, message: str) -> AosError:
+        """The error for a child that is gone or has to go; the blame page tells what ran last."""
+        piece = int.from_bytes(self._blame.read_bytes()[:4], "little")
+        child = self._child
+        await self._drop_child()
+        if code == "AOS210" and child is not None and child.returncode is not None:
+            message = f"{message} ({_status_text(child.returncode)})"
+            code = code if piece else "AOS213"
+        return self._blamed(code, message, piece)
+
+    def _blamed(self, code: str, message: str, piece: int) -> AosError:
+        spans = self._built.emitted.snippets
+        if not 0 < piece <= len(spans):
+            return ModelError(message, code=code)
+        span: Span = spans[piece - 1]
+        hint = "Look at this piece of the document"
+        diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)
+        return ModelError(f"{span}: {message}", code=code, hint=hint, diagnostics=(diagnostic,))
+
+    async def _drop_child(self) -> None:
+        child, self._child = self._child, None
+        if child is not None:
+            child.kill()
+            await child.wait()
+
+
+def _import_command(belief: ExportedBelief) -> str:
+    particles = "\t".join(f"{weight!r}\t{state}" for weight, state in belief.particles)
+    return f"import_belief\t{int(belief.is_exact)}\t{particles}"
+
+
+def _status_text(returncode: int) -> str:
+    return f"signal {-returncode}" if returncode < 0 else f"exit status {returncode}"

@@ -1,0 +1,125 @@
+"""How many elements the vectors of a state can have: read off what the documents assign to them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+
+from aos_runtime.snippets import Access, Cpp, Mention, strip_comments
+
+__all__ = ["Rooms"]
+
+GROWING_ROOM = 64
+"""What a vector gets that grows by code, if nothing in the code tells more."""
+
+_LARGEST_ROOM = 16384
+_GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})
+_SIZING = frozenset({"assign", "resize"})
+_LOOP_BOUND = re.compile(r"\bfor\s*\([^;{}]*;[^;{}]*<=?\s*(\d+)\s*;")
+_CONSTRUCTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*\(\s*(\d+)")
+_LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
+
+
+class Rooms:
+    """Room by the name of a variable or field and by level of nesting.
+
+    A vector that is only ever assigned lists and literal sizes has exactly the room of the longest. One that
+    grows has `GROWING_ROOM`, or the product of the loop bounds in the code that makes it grow. Running over
+    is a fault at run time, told with the document's line.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, int], int] = {}
+        self._grows: dict[tuple[str, int], int] = {}
+
+    def room(self, name: str, level: int = 0) -> int:
+        """The room of `name` at a level: 0 for the vector, 1 for the vectors in it."""
+        key = (name, level)
+        known = self._known.get(key, 0)
+        if key not in self._grows and known > 0:
+            return known
+        return min(max(self._grows.get(key, GROWING_ROOM), 2 * known), _LARGEST_ROOM)
+
+    def read_default(self, name: str, expression: str) -> None:
+        """Takes in the default value of a variable or field."""
+        self._take_value((name, 0), strip_comments(expression).lstrip(), loops=1)
+
+    def read_code(self, snippets: Iterable[Cpp]) -> None:
+        """Takes in statements."""
+        for cpp in snippets:
+            code = strip_comments(cpp.code)
+            loops = math.prod(int(bound) for bound in _LOOP_BOUND.findall(code))
+            for mention in cpp.mentions:
+                self._take_mention(mention, code, loops)
+
+    def _take_mention(self, mention: Mention, code: str, loops: int) -> None:
+        names = [part for part in mention.path if part != "[]"]
+        level = len(mention.path) - len(mention.path[: _last_name(mention.path) + 1])
+        key = (names[-1], level)
+        rest = code[mention.extent.end :].lstrip()
+        if mention.access is Access.WRITE and rest.startswith("="):
+            self._take_value(key, rest[1:].lstrip(), loops)
+        elif mention.method in _GROWING:
+            self._grow(key, loops)
+        elif mention.method in _SIZING:
+            size = re.match(r"\.\s*\w+\s*\(\s*(\d+)\s*[,)]", rest)
+            if size is not None:
+                self._know(key, int(size[1]))
+            else:
+                self._grow(key, loops)
+
+    def _take_value(self, key: tuple[str, int], value: str, loops: int) -> None:
+        if (constructed := _CONSTRUCTED.match(value)) is not None:
+            self._know(key, int(constructed[1]))
+            return
+        if (listed := _LISTED.match(value)) is not None:
+            value = value[listed.end() :]
+        if re.match(rf"state_*\.(?:\w+\.)*{re.escape(key[0])}\s*;", value):
+            return
+        if value.startswith("{"):
+            for depth, count in enumerate(_list_lengths(value)):
+                self._know((key[0], key[1] + depth), count)
+        else:
+            self._grow(key, loops)
+
+    def _know(self, key: tuple[str, int], size: int) -> None:
+        self._known[key] = max(self._known.get(key, 1), size)
+
+    def _grow(self, key: tuple[str, int], loops: int) -> None:
+        self._grows[key] = max(self._grows.get(key, GROWING_ROOM), loops)
+
+
+def _last_name(path: tuple[str, ...]) -> int:
+    return max(index for index, part in enumerate(path) if part != "[]")
+
+
+def _list_lengths(text: str) -> list[int]:
+    """The most elements at each depth of a braced list, which `text` begins with."""
+    lengths: list[int] = []
+    open_lists: list[int] = []
+    parentheses = 0
+    is_inside_element = False
+    for character in text:
+        if character in "([":
+            parentheses += 1
+        elif character in ")]":
+            parentheses -= 1
+        if parentheses == 0 and character == "{":
+            if open_lists and not is_inside_element:
+                open_lists[-1] += 1
+            open_lists.append(0)
+            is_inside_element = False
+        elif parentheses == 0 and character == "}":
+            depth, count = len(open_lists) - 1, open_lists.pop()
+            lengths += [0] * (depth + 1 - len(lengths))
+            lengths[depth] = max(lengths[depth], count)
+            is_inside_element = True
+            if not open_lists:
+                break
+        elif parentheses == 0 and character == ",":
+            is_inside_element = False
+        elif not character.isspace() and not is_inside_element:
+            open_lists[-1] += 1
+            is_inside_element = True
+    return lengths
