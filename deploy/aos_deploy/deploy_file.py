@@ -132,8 +132,8 @@ def check_endpoint(endpoint: str) -> None:
 def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) -> Deployment:
     """The paths made absolute, and what the schema alone cannot see checked."""
     folder = path.parent
-    for key, name in (("robot", file.robot), ("project", file.project or file.robot)):
-        if not _NAME.fullmatch(name):
+    for key, name in (("robot", file.robot), ("project", file.project)):
+        if (name or key == "robot") and not _NAME.fullmatch(name):
             hint = "Use letters, digits, - and _"
             findings.error("AOS106", f"{name!r} is not a {key} name", _place(node, key), hint)
     try:

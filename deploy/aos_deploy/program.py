@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from aos_deploy.deploy_file import Deployment
-from aos_runtime.lifecycle import ServiceSettings
+from aos_runtime.service_settings import ServiceSettings
 
 __all__ = ["Program", "cache_dir", "programs_of_deployment", "settings_of"]
 

@@ -20,7 +20,7 @@ import msgspec
 
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import Fault
-from aos_runtime.lifecycle import fault_path
+from aos_runtime.service_settings import fault_path
 
 __all__ = ["RunDirectory", "RunRecord", "Summary"]
 

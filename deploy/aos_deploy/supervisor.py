@@ -109,6 +109,7 @@ class Supervisor:
         self.bus = self._bus = await Bus.open(
             self._base.endpoint, sender="aos-up", connect_timeout_s=ROUTER.start_s
         )
+        self._running[ROUTER.name].ready.set()
         self._changed(ROUTER.name, "ready")
         self._presence = self._tasks.create_task(self._follow_presence(self.bus))
 

@@ -38,6 +38,7 @@ _TOKEN = re.compile(
 )
 _CANONICAL = {"<%": "{", "%>": "}", "<:": "[", ":>": "]"}
 _PARTNER = {")": "(", "]": "[", "}": "{"}
+_BEFORE_STATEMENT = frozenset({"", ";", "{", "}", ":", "do", "else", "try"})
 _CLOSES = {opening: closing for closing, opening in _PARTNER.items()}
 
 
@@ -69,11 +70,16 @@ class Fault(msgspec.Struct, frozen=True):
 
 
 class Tokens(msgspec.Struct, frozen=True):
-    """The comments, the string and character literals, and what is wrong."""
+    """The comments, the string and character literals, and what is wrong.
+
+    `missing_semicolons` are the offsets where statements end without one: before the brace that closes their
+    block, and at the end of the code.
+    """
 
     comments: tuple[Extent, ...]
     literals: tuple[Extent, ...]
     faults: tuple[Fault, ...]
+    missing_semicolons: tuple[int, ...]
 
 
 class Lines:
@@ -94,10 +100,13 @@ def cut(code: str) -> Tokens:
     literals: list[Extent] = []
     faults: list[Fault] = []
     brackets = _Brackets()
+    statements = _Statements()
     position = 0
     while match := _TOKEN.match(code, position):
         position = match.end()
         kind = str(match.lastgroup)
+        if "comment" not in kind and not match.group().isspace():
+            statements.take(match.group(), match.end())
         if kind in ("word", "other", "number", "scope"):
             continue
         extent = lines.extent(*match.span())
@@ -119,9 +128,8 @@ def cut(code: str) -> Tokens:
             faults.append(Fault(FaultKind.QUOTE, f"this {match.group()} has no partner on its line", extent))
             position = _end_of_line(code, position)
     faults += brackets.still_open()
-    return Tokens(
-        tuple(comments), tuple(literals), tuple(sorted(faults, key=lambda fault: fault.extent.start))
-    )
+    faults.sort(key=lambda fault: fault.extent.start)
+    return Tokens(tuple(comments), tuple(literals), tuple(faults), statements.missing_semicolons())
 
 
 class _Brackets:
@@ -157,6 +165,46 @@ class _Brackets:
         while self._open[-1][0] != opening:
             faults.append(_never_closed(*self._open.pop()))
         return faults
+
+
+class _Statements:
+    """Where statements end, and whether a semicolon is there.
+
+    A brace opens a block where a statement may begin and after a closing parenthesis; every other brace is of
+    a list, an enum or the like, and what it closes needs a semicolon too.
+    """
+
+    def __init__(self) -> None:
+        self._is_block: list[bool] = []
+        self._previous = ""
+        self._end = 0
+        self._missing: list[int] = []
+
+    def take(self, token: str, end: int) -> None:
+        token = _CANONICAL.get(token, token)
+        if token in _CLOSES:
+            self._is_block.append(token == "{" and self._begins_block())
+        elif token in _PARTNER and self._is_block:
+            is_block = self._is_block.pop()
+            if is_block:
+                self._require_semicolon()
+            elif token == "}":
+                token = "list}"
+        self._previous, self._end = token, end
+
+    def missing_semicolons(self) -> tuple[int, ...]:
+        """To be called after the last token."""
+        if not self._is_block:
+            self._require_semicolon()
+        return tuple(self._missing)
+
+    def _begins_block(self) -> bool:
+        is_among_statements = not self._is_block or self._is_block[-1]
+        return self._previous == ")" or (is_among_statements and self._previous in _BEFORE_STATEMENT)
+
+    def _require_semicolon(self) -> None:
+        if self._previous not in _BEFORE_STATEMENT:
+            self._missing.append(self._end)
 
 
 def _never_closed(opening: str, extent: Extent) -> Fault:

@@ -25,17 +25,9 @@ from aos_protocol.messages import Fault
 from aos_runtime.bus import Bus
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.parent import die_with_parent
+from aos_runtime.service_settings import ServiceSettings, fault_path
 
-__all__ = ["Service", "ServiceSettings", "fault_path", "root_cause", "run_process", "run_service"]
-
-
-class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
-    """What every service is told; each adds its own. `run_dir` is absolute."""
-
-    robot: str
-    service: str
-    endpoint: str
-    run_dir: str
+__all__ = ["Service", "ServiceSettings", "root_cause", "run_process", "run_service"]
 
 
 S = TypeVar("S", bound=ServiceSettings)
@@ -104,11 +96,6 @@ def run_process(settings_type: type[S], run: Callable[[S], Coroutine[Any, Any, N
         status = 0
     logging.shutdown()
     sys.exit(status)
-
-
-def fault_path(run_dir: str | Path, service: str) -> Path:
-    """Where a service leaves the fault that ended it, a JSON `Fault`."""
-    return Path(run_dir) / "faults" / f"{service}.json"
 
 
 async def _until_told_to_stop(work: Coroutine[Any, Any, None]) -> None:

@@ -7,9 +7,11 @@ read. No names are resolved here: a mention is what is written.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable
 from functools import lru_cache
 
+import msgspec
 import tree_sitter
 import tree_sitter_cpp
 
@@ -47,8 +49,12 @@ def bracket_faults(code: str) -> tuple[Fault, ...]:
 
 def strip_comments(code: str) -> str:
     """The code with comments blanked, so that offsets and lines stay."""
+    return _without(cut(code).comments, code)
+
+
+def _without(comments: Iterable[Extent], code: str) -> str:
     characters = list(code)
-    for comment in cut(code).comments:
+    for comment in comments:
         for index in range(comment.start, comment.end):
             if characters[index] != "\n":
                 characters[index] = " "
@@ -58,42 +64,46 @@ def strip_comments(code: str) -> str:
 @lru_cache(maxsize=4096)
 def read_cpp(code: str) -> Cpp:
     """Statements, as they stand in a function body."""
-    return _read(code, before="void f() {", after="\n}")
+    return _read(code, cut(code), before="void f() {", after="\n}")
 
 
 @lru_cache(maxsize=4096)
 def read_cpp_expression(code: str) -> Cpp:
     """One expression."""
-    return _read(code, before="auto x = (", after="\n);")
+    tokens = msgspec.structs.replace(cut(code), missing_semicolons=())
+    return _read(code, tokens, before="auto x = (", after="\n);")
 
 
-def _read(code: str, *, before: str, after: str) -> Cpp:
-    tokens = cut(code)
-    is_empty = not strip_comments(code).strip()
+def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
+    is_empty = not _without(tokens.comments, code).strip()
     if tokens.faults or is_empty:
         return Cpp(code, literals=tokens.literals, faults=tokens.faults, is_empty=is_empty)
-    tree = _PARSER.parse((before + code + after).encode("utf-8", "replace"))
-    return _Reader(code, len(before), tokens).read(tree.root_node)
+    complete = Cpp(code).replace((offset, ";") for offset in tokens.missing_semicolons)
+    tree = _PARSER.parse((before + complete + after).encode("utf-8", "replace"))
+    return _Reader(code, complete, len(before), tokens).read(tree.root_node)
 
 
 _PARSER = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language()))
 
 
 class _Reader:
-    """One walk over a syntax tree. Nodes wait on a stack, so that no text is too deep to read."""
+    """One walk over a syntax tree. Nodes wait on a stack, so that no text is too deep to read.
 
-    def __init__(self, code: str, prefix: int, tokens: Tokens) -> None:
+    The tree is that of `complete`, the code with its missing semicolons; places are those of the code.
+    """
+
+    def __init__(self, code: str, complete: str, prefix: int, tokens: Tokens) -> None:
         self._code = code
         self._prefix = prefix
         self._tokens = tokens
         self._lines = Lines(code)
-        self._offsets = _character_offsets(code)
+        self._offsets = _character_offsets(complete)
+        self._inserted = [at + index for index, at in enumerate(tokens.missing_semicolons)]
         self._stack: list[tuple[tree_sitter.Node, Access]] = []
         self.mentions: list[Mention] = []
         self.calls: list[Call] = []
         self.declarations: list[Declaration] = []
         self.types: list[tuple[str, Extent]] = []
-        self.semicolons: list[int] = []
         self.faults: list[Fault] = []
 
     def read(self, root: tree_sitter.Node) -> Cpp:
@@ -107,7 +117,7 @@ class _Reader:
             tuple(d for d in sorted(self.declarations, key=_by_start) if self._is_inside(d.extent)),
             tuple(sorted(self.types, key=lambda item: item[1].start)),
             self._tokens.literals,
-            tuple(sorted(set(self.semicolons))),
+            self._tokens.missing_semicolons,
             tuple(sorted(self.faults, key=_by_start)),
         )
 
@@ -129,10 +139,7 @@ class _Reader:
         self._stack += [(node, access) for node in nodes if node is not None]
 
     def _missing(self, node: tree_sitter.Node) -> None:
-        if node.type == ";":
-            self.semicolons.append(len(self._code[: self._extent(node).start].rstrip()))
-        else:
-            self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self._extent(node)))
+        self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self._extent(node)))
 
     # --- paths -----------------------------------------------------------------------------------------
 
@@ -306,10 +313,10 @@ class _Reader:
         return self._lines.extent(start, end)
 
     def _offset(self, byte: int) -> int:
-        byte -= self._prefix
-        if self._offsets is None:
-            return min(max(byte, 0), len(self._code))
-        return self._offsets[min(max(byte, 0), len(self._offsets) - 1)]
+        offset = max(byte - self._prefix, 0)
+        if self._offsets is not None:
+            offset = self._offsets[min(offset, len(self._offsets) - 1)]
+        return min(offset - bisect_left(self._inserted, offset), len(self._code))
 
     def _is_inside(self, extent: Extent) -> bool:
         return extent.start < extent.end

@@ -37,15 +37,20 @@ from aos_runtime.children import Child
 TIMEOUT_S = 20.0
 
 
+def written_settings(settings: Settings) -> Path:
+    path = Path(settings.run_dir) / "registry.json"
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(msgspec.json.encode(settings))
+    return path
+
+
 @asynccontextmanager
 async def running_registry(run_dir: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Child]:
     """A registry process, from ready to stopped."""
-    run_dir.mkdir(exist_ok=True)
     settings = Settings(
         robot="test", service="registry", endpoint=endpoint, run_dir=str(run_dir), quiet_s=0.1
     )
-    path = run_dir / "registry.json"
-    path.write_bytes(msgspec.json.encode(settings))
+    path = written_settings(settings)
     async with asyncio.timeout(TIMEOUT_S), bus.presence(keys.live("registry")) as presence:
         child = await Child.start(
             [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
@@ -184,7 +189,9 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
         async for _, report in reports:
             assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo")
             break
-        (registry / "drop" / "armadillo" / "pick.sd").write_text("project: armadillo\nprecondition:\nx = (;\n")
+        (registry / "drop" / "armadillo" / "pick.sd").write_text(
+            "project: armadillo\nprecondition:\nx = (;\n"
+        )
         async for _, report in reports:
             assert (report.is_accepted, report.revision) == (False, 1)
             assert {d.code for d in report.diagnostics if d.is_error} == {"AOS105", "AOS108"}
@@ -207,7 +214,7 @@ async def test_sigkill_while_a_bundle_is_pushed_leaves_the_old_or_the_new_revisi
     run_dir = tmp_path / "run"
     async with running_registry(run_dir, endpoint, bus, keys):
         first = await push(bus, keys, finer)
-    for delay_s in (0.0, 0.02, 0.04, 0.08):
+    for delay_s in (0.0, 0.02, 0.05):
         files = {"pick.sd": finer["pick.sd"] + b"// " + str(delay_s).encode()}
         async with running_registry(run_dir, endpoint, bus, keys) as child:
             before = await current(bus, keys)

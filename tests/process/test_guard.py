@@ -2,42 +2,17 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 import signal
 import sys
 from pathlib import Path
 
 import pytest
+from processes import descendants, until_ended
 
 from aos_runtime.children import PIPE, Child, Limits, guarded
 
 SLEEPERS = "sleep 1000 & setsid sleep 1000 & echo $$; {tail}"
-
-
-def is_running(pid: int) -> bool:
-    """Whether a process does anything still; a zombie does not."""
-    try:
-        status = Path(f"/proc/{pid}/stat").read_text()
-    except FileNotFoundError:
-        return False
-    return status.rpartition(")")[2].split()[0] != "Z"
-
-
-def descendants(pid: int) -> list[int]:
-    """All processes below a process, wherever their group and session."""
-    below: list[int] = []
-    for task in Path(f"/proc/{pid}/task").iterdir():
-        for child in (task / "children").read_text().split():
-            below += [int(child), *descendants(int(child))]
-    return below
-
-
-async def none_left(pids: list[int]) -> None:
-    """Returns once none of them runs."""
-    async with asyncio.timeout(10):
-        while any(is_running(pid) for pid in pids):
-            await asyncio.sleep(0.01)  # noqa: ASYNC110 (a strange process cannot be waited for)
 
 
 async def start(script: str, limits: Limits | None = None) -> Child:
@@ -74,7 +49,7 @@ async def test_what_a_command_leaves_running_is_ended_with_it() -> None:
     assert len(below) == 3
     child.stdin.write(b"end\n")
     assert await child.wait() == 0
-    await none_left(below)
+    await until_ended(below)
 
 
 async def test_stopping_the_guard_ends_everything_below_it() -> None:
@@ -82,7 +57,7 @@ async def test_stopping_the_guard_ends_everything_below_it() -> None:
     await child.stdout.readline()
     below = descendants(child.pid)
     assert await child.stop() == -signal.SIGTERM
-    await none_left(below)
+    await until_ended(below)
 
 
 async def test_a_command_that_ignores_sigterm_is_killed_after_the_grace() -> None:
@@ -90,7 +65,7 @@ async def test_a_command_that_ignores_sigterm_is_killed_after_the_grace() -> Non
     await child.stdout.readline()
     below = descendants(child.pid)
     assert await child.stop(grace_s=5) == -signal.SIGKILL
-    await none_left(below)
+    await until_ended(below)
 
 
 START_GUARDED = f"""
@@ -112,7 +87,7 @@ async def test_grandchildren_end_when_the_parent_is_killed() -> None:
     assert len(below) == 4
     os.kill(parent.pid, signal.SIGKILL)
     await parent.wait()
-    await none_left(below)
+    await until_ended(below)
 
 
 async def test_the_command_ends_when_the_guard_itself_is_killed() -> None:
@@ -121,7 +96,7 @@ async def test_the_command_ends_when_the_guard_itself_is_killed() -> None:
     below = descendants(child.pid)
     os.kill(child.pid, signal.SIGKILL)
     await child.wait()
-    await none_left(below)
+    await until_ended(below)
 
 
 @pytest.mark.parametrize(

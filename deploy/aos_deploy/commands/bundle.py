@@ -1,14 +1,13 @@
-"""`aos bundle`, `aos lint` and `aos inspect`: documents checked, looked at, and sent to a running registry."""
+"""`aos bundle`, `aos lint` and `aos inspect`: documents checked, looked at, and sent to a registry."""
 
 from __future__ import annotations
 
-import asyncio
 from collections import Counter
 from collections.abc import Awaitable, Callable, Iterable
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import msgspec
 import typer
@@ -17,7 +16,7 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.diagnostics import Diagnostic, Severity, has_errors, render
 from aos_protocol.documents import Project
-from aos_protocol.errors import DeployError
+from aos_protocol.errors import DeployError, DocumentError
 from aos_protocol.messages import (
     BundleReport,
     Catalogue,
@@ -28,7 +27,9 @@ from aos_protocol.messages import (
 )
 from aos_registry.load import load_bundle, read_bundle_files
 from aos_registry.outline import outline
-from aos_runtime.client import AosClient
+
+if TYPE_CHECKING:
+    from aos_runtime.client import AosClient
 
 __all__ = ["register"]
 
@@ -113,14 +114,13 @@ def inspect(
     """Print what becomes of a bundle: the typed documents, the lowered model, the C++ or the Python."""
     loaded = load_bundle(bundle)
     if loaded.project is None:
-        _print_diagnostics(loaded.diagnostics, to_stderr=True)
-        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+        raise _refusal(bundle, loaded.diagnostics)
     if stage is Stage.DOCUMENTS:
         typer.echo(outline(loaded.project), nl=False)
     elif stage is Stage.PYTHON:
         typer.echo(_python_modules(loaded.project, skill), nl=False)
     else:
-        typer.echo(_solver_stage(loaded.project, stage), nl=False)
+        typer.echo(_solver_stage(loaded.project, stage, bundle), nl=False)
 
 
 def _python_modules(project: Project, only: str) -> str:
@@ -133,18 +133,21 @@ def _python_modules(project: Project, only: str) -> str:
     return "\n\n".join(emit_mapping(skill, project.low_level).python for skill in chosen)
 
 
-def _solver_stage(project: Project, stage: Stage) -> str:
-    from aos_solver.emit import emit  # Keeps the other commands quick to start.
-
+def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:
+    from aos_solver.emit import emit  # As above.
     from aos_solver.lower import lower
 
-    lowered = lower(project)
-    _print_diagnostics(lowered.diagnostics, to_stderr=True)
-    if has_errors(lowered.diagnostics):
-        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+    program, diagnostics = lower(project)
+    if program is None:
+        raise _refusal(bundle, diagnostics)
     if stage is Stage.CPP:
-        return emit(lowered.program).cpp
-    return msgspec.json.format(msgspec.json.encode(lowered.program), indent=2).decode() + "\n"
+        return emit(program).cpp
+    return msgspec.json.format(msgspec.json.encode(program), indent=2).decode() + "\n"
+
+
+def _refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...]) -> DocumentError:
+    hint = "Mend the places named above"
+    return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=diagnostics)
 
 
 # --- a running system ----------------------------------------------------------------------------------
@@ -163,10 +166,11 @@ def push(
     Exit code 0: accepted, or nothing new. 1: refused; nothing has changed then.
     """
     files, remarks = read_bundle_files(path)
-    if has_errors(remarks) or not files:
-        _print_diagnostics(remarks, to_stderr=True)
-        typer.echo(f"{path}: no documents to push", err=True)
-        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+    if has_errors(remarks):
+        raise _refusal(path, tuple(remarks))
+    if not files:
+        hint = "Documents end in .ef, .sd, .am or .json"
+        raise DocumentError(f"there are no documents in {path}", code="AOS120", hint=hint)
 
     async def send(client: AosClient) -> BundleReport:
         bundle = PushBundle(files, str(path))
@@ -228,17 +232,28 @@ def show(
 
 def _with_client(connect: str, robot: str, runs: Path, ask: Callable[[AosClient], Awaitable[T]]) -> T:
     """The answer of the system at `connect`, or of the newest run; AosError if there is none."""
-    if not (connect and robot):
-        record = RunDirectory.latest(runs).read_record()
-        connect, robot = connect or record.endpoint, robot or record.robot
-    if not robot:
+    if connect and not robot:
         raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
+    if not connect:
+        record = _running(RunDirectory.latest(runs)).read_record()
+        connect, robot = record.endpoint, robot or record.robot
+
+    import asyncio  # Only here, as the client: the commands that need no bus start quicker.
+
+    from aos_runtime.client import AosClient
 
     async def run() -> T:
         async with AosClient.connect(connect, robot) as client:
             return await ask(client)
 
     return asyncio.run(run())
+
+
+def _running(directory: RunDirectory) -> RunDirectory:
+    if not directory.is_running:
+        hint = "Start a system with aos-up, or name a running one with --connect"
+        raise DeployError(f"the last run, {directory.path.name}, is over", code="AOS605", hint=hint)
+    return directory
 
 
 # --- output --------------------------------------------------------------------------------------------
@@ -248,16 +263,14 @@ def _sentence(report: BundleReport, path: Path) -> str:
     if not report.is_accepted:
         still = f"; the project stays at revision {report.revision}" if report.revision else ""
         return f"{path}: refused{still}"
-    new = [
-        f"{verb} {', '.join(names)}" for verb, names in (("added", report.added), ("changed", report.changed))
-        if names
-    ]  # fmt: skip
+    changes = {"added": report.added, "changed": report.changed}
+    new = [f"{verb} {', '.join(names)}" for verb, names in changes.items() if names]
     return f"{path}: project {report.project}, revision {report.revision}, {'; '.join(new) or 'nothing new'}"
 
 
-def _print_diagnostics(diagnostics: Iterable[Diagnostic], *, to_stderr: bool = False) -> None:
+def _print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
     for diagnostic in diagnostics:
-        typer.echo(render(diagnostic), err=to_stderr)
+        typer.echo(render(diagnostic))
 
 
 def _print_json(value: object) -> None:

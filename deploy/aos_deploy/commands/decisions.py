@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -14,8 +13,6 @@ from aos_deploy.run_directory import RunDirectory
 from aos_deploy.views.lines import lines_of
 from aos_protocol.errors import DeployError, StorageError
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery, MissionState
-from aos_runtime.client import AosClient
-from aos_runtime.journal import Journal
 
 __all__ = ["register"]
 
@@ -63,11 +60,15 @@ def decisions(
     if directory is not None:
         record = directory.read_record()
         connect, robot = record.endpoint, record.robot
+    import asyncio  # Only here, as the bus below: help and finished runs do without.
+
     asyncio.run(_stream(connect, robot, show, is_following=follow))
 
 
 def _journaled(directory: RunDirectory) -> list[DecisionRecord | MissionState]:
     """The decisions of a mission that is over, and how it ended."""
+    from aos_runtime.journal import Journal
+
     events: list[DecisionRecord | MissionState] = []
     try:
         with Journal.read(directory.path / "journal.db") as journal:
@@ -83,6 +84,8 @@ def _journaled(directory: RunDirectory) -> list[DecisionRecord | MissionState]:
 
 
 async def _stream(connect: str, robot: str, show: Show, *, is_following: bool) -> None:
+    from aos_runtime.client import AosClient
+
     async with AosClient.connect(connect, robot) as aos:
         if not is_following:
             key = aos.keys.decision_history

@@ -88,7 +88,7 @@ def emit(program: Program) -> EmittedModel:
         MARK=_MARK,
         END=_END,
     )  # fmt: skip
-    cpp, origins = _put_code(text, program.pieces)
+    cpp, origins = _put_code(re.sub(r"\n{3,}", "\n\n", text), program.pieces)
     return EmittedModel(
         project=program.project,
         cpp=cpp,

@@ -26,20 +26,12 @@ from aos_runtime.clock import Clock
 from aos_solver.answers import BeliefUpdate, Plan
 from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
 from aos_solver.hot_plug import RunningModel
+from aos_solver.search import Search
 
-__all__ = ["Mission", "Ports", "Search"]
+__all__ = ["Mission", "Ports"]
 
 MAX_LOST_ACTIVATIONS = 3
 """Activations in a row without an answer before the mission ends: the robot is not there."""
-
-
-class Search(msgspec.Struct, frozen=True, kw_only=True):
-    """The planning budget of one decision: `time_s` if given, else `simulations`."""
-
-    simulations: int
-    seed: int
-    time_s: float | None = None
-    horizon: int | None = None
 
 
 class Ports(Protocol):
@@ -107,7 +99,7 @@ class Mission:
         while not self._ends_with(ending_of_belief(belief, steps_taken, self._limits), belief):
             self._model = await self._ports.newest_model(self._model)
             self._move_to("planning", steps_taken, belief)
-            plan = await self._plan(steps_taken + 1)
+            plan = await self._search.run(self._model.engine, steps_taken + 1)
             if self._ends_with(ending_after_planning(plan.best, self._limits), belief):
                 return
             steps_taken += 1
@@ -115,15 +107,6 @@ class Mission:
             self._move_to("acting", steps_taken, belief, remark=decision.action)
             outcome = await self._act(decision)
             belief = await self._observe(decision, outcome)
-
-    async def _plan(self, step: int) -> Plan:
-        search = self._search
-        return await self._model.engine.plan(
-            simulations=None if search.time_s is not None else search.simulations,
-            time_s=search.time_s,
-            seed=search.seed + step,
-            horizon=search.horizon,
-        )
 
     def _decide(self, step: int, plan: Plan, belief: BeliefSummary) -> DecisionRecord:
         chosen = self._model.engine.description.actions[plan.index]
@@ -138,7 +121,7 @@ class Mission:
             parameters=chosen.parameters,
             model_digest=self._model.digest,
             revision=self._model.revision,
-            seed=self._search.seed + step,
+            seed=self._search.seed_of(step),
             simulations=plan.simulations,
             horizon=plan.horizon,
             planning_s=plan.seconds,

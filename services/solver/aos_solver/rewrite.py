@@ -46,11 +46,11 @@ def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tupl
 
 def _of_mentions(cpp: Cpp, rewriting: Rewriting) -> Iterator[tuple[Extent | int, str]]:
     for mention in cpp.mentions:
-        after_root = mention.root.end
-        if mention.path[0] == "AOSUtils" and (at := re.compile(r"\s*::").match(cpp.code, after_root)):
-            yield _extent(cpp.code, at.end() - 2, at.end()), "."
+        if scope := re.compile(r"AOSUtils\s*::").match(cpp.code, mention.root.start):
+            yield _extent(cpp.code, scope.end() - 2, scope.end()), "."
         if mention.path[0] not in _STATES or len(mention.path) < 2:
             continue
+        after_root = mention.root.end
         if arrow := re.compile(r"\s*->").match(cpp.code, after_root):
             yield _extent(cpp.code, arrow.end() - 2, arrow.end()), "."
         name = mention.path[1]

@@ -34,7 +34,8 @@ from aos_solver.build import BuiltModel
 from aos_solver.endings import MissionLimits
 from aos_solver.engine import Engine
 from aos_solver.hot_plug import ModelShelf, RunningModel
-from aos_solver.mission import Mission, Search
+from aos_solver.mission import Mission
+from aos_solver.search import Search
 from aos_solver.settings import Settings
 
 __all__ = ["serve"]

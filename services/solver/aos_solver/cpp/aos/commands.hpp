@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -123,11 +122,11 @@ class Engine {
     json.end_object();
   }
 
-  // One line for each particle: its weight and its bytes in hexadecimal.
+  // Each particle as its weight and its state as text.
   void export_belief(JsonWriter& json) const {
     json.begin_object().member("is_exact", belief_.is_exact()).key("particles").begin_array();
     for (const auto& [state, weight] : belief_.particles()) {
-      json.begin_array().value(weight).value(hex_of(state)).end_array();
+      json.begin_array().value(weight).value(Model::save_state(state)).end_array();
     }
     json.end_array().end_object();
   }
@@ -135,7 +134,9 @@ class Engine {
   void import_belief(JsonWriter& json, bool is_exact, const std::vector<std::string_view>& fields) {
     std::vector<typename Belief<Model>::Particle> particles;
     for (std::size_t i = 0; i + 1 < fields.size(); i += 2) {
-      particles.push_back({state_of(fields[i + 1]), std::stod(std::string{fields[i]})});
+      State state{};
+      Model::load_state(state, fields[i + 1]);
+      particles.push_back({state, std::stod(std::string{fields[i]})});
     }
     if (particles.empty()) throw BadCommand{"an empty belief"};
     belief_ = Belief<Model>::of(particles, is_exact);
@@ -228,30 +229,6 @@ class Engine {
     const Belief<Model> predicted = belief_.predicted(action, random_);
     if (policy_ == ImpossiblePolicy::hold) return predicted;
     return predicted.mixed_with(belief_.mixed_with(initial, 0.5), 0.5);
-  }
-
-  static std::string hex_of(const State& state) {
-    static constexpr char digits[] = "0123456789abcdef";
-    unsigned char bytes[sizeof(State)];
-    std::memcpy(bytes, &state, sizeof bytes);
-    std::string text;
-    for (const unsigned char byte : bytes) {
-      text += digits[byte >> 4];
-      text += digits[byte & 15];
-    }
-    return text;
-  }
-
-  static State state_of(std::string_view hex) {
-    if (hex.size() != 2 * sizeof(State)) throw BadCommand{"a state of another layout"};
-    unsigned char bytes[sizeof(State)];
-    const auto digit = [](char c) { return static_cast<unsigned char>(c <= '9' ? c - '0' : c - 'a' + 10); };
-    for (std::size_t i = 0; i < sizeof bytes; ++i) {
-      bytes[i] = static_cast<unsigned char>(digit(hex[2 * i]) << 4 | digit(hex[2 * i + 1]));
-    }
-    State state{};
-    std::memcpy(&state, bytes, sizeof bytes);
-    return state;
   }
 
   Sampler random_;

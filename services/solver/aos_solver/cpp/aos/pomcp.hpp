@@ -1,8 +1,12 @@
 // POMCP (Silver and Veness, 2010): Monte-Carlo tree search over histories, from an exact root belief.
 //
 // What differs from the paper, and why:
-// - The exploration constant follows the returns that are seen. Immediate rewards say little about their spread, and a
-//   constant that is too small is the commonest way for POMCP to fail.
+// - The exploration bonus follows the returns that are seen: immediate rewards say little about their spread, and a
+//   constant that is too small is the commonest way for POMCP to fail. It falls polynomially, not logarithmically, as
+//   values that drift while the tree below them grows need (Shah, Xie and Xu, 2020).
+// - Every second simulation takes the root's actions in turn, so that the values of all of them are worth reading.
+// - Where the states are few, a leaf is worth what it would be to somebody who sees the state (full_knowledge.hpp);
+//   elsewhere it is worth a rollout.
 // - Values are backed up through the most visited action, not as the mean of all simulations, which the exploring ones
 //   pull down.
 // - After a real step the subtree below (action, observation) is kept and looks the full horizon ahead again.
@@ -19,13 +23,14 @@
 #include <vector>
 
 #include "aos/belief.hpp"
+#include "aos/full_knowledge.hpp"
 #include "aos/random.hpp"
 #include "aos/step.hpp"
 
 namespace aos {
 
-inline constexpr double exploration = 0.35;
-inline constexpr std::uint32_t settled_visits = 32;
+inline constexpr double exploration = 0.15;
+inline constexpr std::uint32_t settled_visits = 16;
 inline constexpr std::size_t most_nodes = 8'000'000;
 inline constexpr std::uint32_t no_node = 0xffffffffu;
 
@@ -54,13 +59,16 @@ class Pomcp {
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
       return budget.seconds > 0 && spent.count() >= budget.seconds;
     };
+    has_knowledge_ = knowledge_.prepare(belief, horizon);
     std::uint64_t done = 0;
     while (budget.simulations == 0 || done < budget.simulations) {
       if (done % 64 == 0 && is_over()) break;
       State state = belief.sample(random);
       ++done;
       if (Model::ending(state) != Ending::running) continue;
-      const double seen = simulate(state, 0, horizon, random);
+      const int in_turn = static_cast<int>(done / 2 % static_cast<std::uint64_t>(Model::action_count()));
+      const int first = done % 2 == 0 ? in_turn : choose(0);
+      const double seen = simulate(state, 0, first, horizon, random);
       lowest_ = std::min(lowest_, seen);
       highest_ = std::max(highest_, seen);
     }
@@ -140,10 +148,8 @@ class Pomcp {
     return child;
   }
 
-  // One descent from a history: returns the discounted return of this simulation.
-  double simulate(State& state, std::uint32_t history, int horizon, Sampler& random) {
-    if (horizon == 0) return 0;
-    const int a = choose(history);
+  // One descent from a history, whose first action is `a`: returns the discounted return of this simulation.
+  double simulate(State& state, std::uint32_t history, int a, int horizon, Sampler& random) {
     const Step step = Model::step(state, a, random);
     const bool goes_on = horizon > 1 && Model::ending(state) == Ending::running;
 
@@ -155,16 +161,16 @@ class Pomcp {
         child = add_history(step.observation);
         ActionNode& parent = action(history, a);
         histories_[child].sibling = std::exchange(parent.first_child, child);
-        later = rollout(state, horizon - 1, random);
+        later = leaf_value(state, horizon - 1, random);
         histories_[child].n = 1;
         histories_[child].v = later;
         change = later;
       } else if (child == no_node) {
-        later = rollout(state, horizon - 1, random);
+        later = leaf_value(state, horizon - 1, random);
         change = later;
       } else {
         const double before = histories_[child].n * histories_[child].v;
-        later = simulate(state, child, horizon - 1, random);
+        later = simulate(state, child, choose(child), horizon - 1, random);
         change = histories_[child].n * histories_[child].v - before;
       }
     }
@@ -200,16 +206,16 @@ class Pomcp {
     return best;
   }
 
-  // UCB1; every action once first.
+  // The highest upper confidence bound; every action once first.
   int choose(std::uint32_t history) const {
-    const double log_n = std::log(static_cast<double>(histories_[history].n) + 1);
+    const double root_n = std::sqrt(static_cast<double>(histories_[history].n) + 1);
     const double constant = exploration * std::max(highest_ - lowest_, 1.0);
     int best = 0;
     double best_bound = -std::numeric_limits<double>::infinity();
     for (int a = 0; a < Model::action_count(); ++a) {
       const ActionNode& node = action(history, a);
       if (node.n == 0) return a;
-      const double bound = node.q + constant * std::sqrt(log_n / node.n);
+      const double bound = node.q + constant * std::sqrt(root_n / node.n);
       if (bound > best_bound) {
         best_bound = bound;
         best = a;
@@ -218,7 +224,11 @@ class Pomcp {
     return best;
   }
 
-  double rollout(State& state, int horizon, Sampler& random) const {
+  double leaf_value(State& state, int horizon, Sampler& random) const {
+    return has_knowledge_ ? knowledge_.value(state, horizon) : rollout(state, horizon, random);
+  }
+
+  static double rollout(State& state, int horizon, Sampler& random) {
     double sum = 0;
     double discount = 1;
     for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
@@ -270,6 +280,8 @@ class Pomcp {
 
   std::vector<HistoryNode> histories_;
   std::vector<ActionNode> actions_;
+  FullKnowledge<Model> knowledge_;
+  bool has_knowledge_ = false;
   double lowest_ = 0;
   double highest_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 
 #include "aos/blame.hpp"
 #include "aos/fault.hpp"
@@ -18,6 +19,9 @@ inline constexpr const char* no_text_response = "NoStrResponse";
 struct Effect {
   double reward = 0;
   int response = 0;
+};
+
+struct EffectWithText : Effect {
   std::string text = no_text_response;
 };
 
@@ -30,7 +34,7 @@ struct SkillDefaults {
   static constexpr bool has_text_response = false;
   static void precondition(const auto&, bool&, const auto&, auto&) {}
   static void execution_time(const auto&, int&, const auto&, auto&) {}
-  static void next_state(auto&, auto&, auto&, bool, int, Effect&, const auto&, auto&) {}
+  static void next_state(auto&, auto&, auto&, bool, int, auto&, const auto&, auto&) {}
   static void rollout_policy(const auto&, double&, const auto&, auto&) {}
 };
 
@@ -65,7 +69,7 @@ double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
 namespace detail {
 
 template <class Skill>
-Observation observation_of(const Effect& effect) {
+Observation observation_of(const auto& effect) {
   if constexpr (Skill::has_text_response) {
     if (effect.text != no_text_response) return text_observation(effect.text);
   }
@@ -90,7 +94,7 @@ Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, a
     if constexpr (!Environment::is_one_state) next = state_;
   }
 
-  Effect effect;
+  std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
   Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
   const double special_reward = Environment::special_states(next, random);
   const double penalty = meets_precondition ? 0 : Skill::violation_penalty;

@@ -1,0 +1,206 @@
+"""`aos plan`, `aos simulate` and `aos rate`: a bundle's model without a robot."""
+
+from __future__ import annotations
+
+import asyncio
+import statistics
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import msgspec
+import typer
+
+from aos_deploy.program import cache_dir
+from aos_deploy.views.tables import print_runs, print_values
+from aos_protocol.diagnostics import render
+from aos_protocol.errors import DocumentError
+from aos_protocol.messages import ActionValue
+from aos_registry.load import load_bundle
+from aos_solver.endings import MissionLimits
+from aos_solver.engine import Engine
+from aos_solver.hot_plug import build_project
+from aos_solver.search import Search
+from aos_solver.simulation import SimulatedRun, simulate_mission
+
+__all__ = ["register"]
+
+RATE_REPETITIONS = 10
+
+T = TypeVar("T")
+
+Bundle = Annotated[Path, typer.Argument(metavar="BUNDLE", help="A directory of documents")]
+Simulations = Annotated[int, typer.Option(min=1, help="Planning budget of a decision, in simulations")]
+Time = Annotated[float | None, typer.Option("--time", min=0.001, help="Planning budget in seconds, instead")]
+Horizon = Annotated[
+    int | None, typer.Option(min=1, help="Look-ahead in decisions; else the environment document's")
+]
+Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations give the same result")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the commands to `aos`."""
+    app.command(epilog="Example: aos plan deploy/bundles/armadillo-finer --exact --horizon 8")(plan)
+    app.command(epilog="Example: aos simulate deploy/bundles/armadillo-finer --runs 20")(simulate)
+    app.command(epilog="Example: aos rate deploy/bundles/armadillo-finer")(rate)
+
+
+class Decision(msgspec.Struct):
+    """What `aos plan --json` prints; the best action first."""
+
+    action: str
+    value: float
+    simulations: int
+    actions: list[ActionValue]
+
+
+def plan(
+    bundle: Bundle,
+    simulations: Simulations = 100_000,
+    time_s: Time = None,
+    horizon: Horizon = None,
+    seed: Seed = 1,
+    exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Decide at the initial belief: the value of every action, by search or exactly."""
+    search = Search(simulations=simulations, seed=seed, time_s=time_s, horizon=horizon)
+
+    async def decide(engine: Engine) -> Decision:
+        if exact:
+            values = (await engine.exact(horizon)).actions
+            return _decision([ActionValue(value.action, value.q, 0, 0.0) for value in values], 0)
+        found = await engine.plan(
+            simulations=None if time_s is not None else simulations,
+            time_s=time_s,
+            seed=search.seed_of(1),
+            horizon=horizon,
+        )
+        return _decision(list(found.actions), found.simulations)
+
+    decision = _with_engine(bundle, seed, decide)
+    if as_json:
+        _print_json(decision)
+    else:
+        print_values(decision.actions, decision.simulations)
+
+
+def _decision(values: list[ActionValue], simulations: int) -> Decision:
+    values = sorted(values, key=lambda value: -value.q)
+    return Decision(values[0].action, values[0].q, simulations, values)
+
+
+class Campaign(msgspec.Struct):
+    """What `aos simulate --json` prints."""
+
+    runs: list[SimulatedRun]
+    summary: dict[str, float]
+
+
+def simulate(
+    bundle: Bundle,
+    runs: Annotated[int, typer.Option(min=1, help="How many missions")] = 10,
+    seed: Seed = 1,
+    simulations: Simulations = 100_000,
+    time_s: Time = None,
+    horizon: Horizon = None,
+    goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
+    step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
+    stop_below_value: Annotated[
+        float | None, typer.Option(help="Ends a mission when the best action promises less")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run whole missions against the documents' own model; run k has seed SEED + k, from 0."""
+    limits = MissionLimits(
+        goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
+    )
+
+    async def run_all(engine: Engine) -> list[SimulatedRun]:
+        done: list[SimulatedRun] = []
+        with typer.progressbar(length=runs, label="missions", file=typer.get_text_stream("stderr")) as bar:
+            for run_seed in range(seed, seed + runs):
+                search = Search(simulations=simulations, seed=run_seed, time_s=time_s, horizon=horizon)
+                done.append(await simulate_mission(engine, search, limits))
+                bar.update(1)
+        return done
+
+    missions = _with_engine(bundle, seed, run_all)
+    if as_json:
+        _print_json(Campaign(missions, _summary(missions)))
+    else:
+        print_runs(missions, _summary(missions))
+
+
+def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
+    returns = [run.discounted_return for run in runs]
+    return {
+        "runs": len(runs),
+        "goal_rate": sum(run.ending == "goal" for run in runs) / len(runs),
+        "mean_discounted_return": statistics.fmean(returns),
+        "stderr": statistics.stdev(returns) / len(runs) ** 0.5 if len(runs) > 1 else 0.0,
+        "mean_steps": statistics.fmean(run.steps for run in runs),
+    }
+
+
+class Rate(msgspec.Struct):
+    """What `aos rate --json` prints: samples per second."""
+
+    mean: float
+    sd: float
+    repetitions: int
+    seconds: float
+
+
+def rate(
+    bundle: Bundle,
+    seconds: Annotated[float, typer.Option(min=0.01, help="Length of one repetition")] = 1.0,
+    seed: Seed = 1,
+    as_json: AsJson = False,
+) -> None:
+    """Measure how many (next state, observation, reward) samples a second the compiled model gives."""
+
+    async def measure(engine: Engine) -> list[float]:
+        counts = [await engine.rate(seconds, seed + turn) for turn in range(RATE_REPETITIONS)]
+        return [count.samples / count.seconds for count in counts]
+
+    rates = _with_engine(bundle, seed, measure)
+    result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
+    if as_json:
+        _print_json(result)
+    else:
+        typer.echo(f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)")
+
+
+def _with_engine(bundle: Path, seed: int, ask: Callable[[Engine], Awaitable[T]]) -> T:
+    async def run() -> T:
+        async with _engine_of(bundle, seed) as engine:
+            return await ask(engine)
+
+    return asyncio.run(run())
+
+
+@asynccontextmanager
+async def _engine_of(bundle: Path, seed: int) -> AsyncIterator[Engine]:
+    """The engine of a bundle, compiled if need be; the bundle's mistakes as one DocumentError."""
+    loaded = load_bundle(bundle)
+    if loaded.project is None:
+        raise DocumentError(
+            f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
+        )
+    for diagnostic in loaded.diagnostics:
+        typer.echo(render(diagnostic), err=True)
+    built = await build_project(
+        loaded.project, cache_dir(), lambda remark: typer.echo(f"aos: {remark}", err=True)
+    )
+    engine = await Engine.start(built, seed=seed)
+    try:
+        yield engine
+    finally:
+        await engine.close()
+
+
+def _print_json(value: object) -> None:
+    typer.echo(msgspec.json.format(msgspec.json.encode(value), indent=2).decode())

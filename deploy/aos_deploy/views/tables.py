@@ -1,0 +1,57 @@
+"""Tables for people: the value of each action, and simulated missions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rich.bar import Bar
+from rich.console import Console
+from rich.table import Table
+
+from aos_protocol.messages import ActionValue
+from aos_solver.simulation import SimulatedRun
+
+__all__ = ["print_runs", "print_values"]
+
+BAR_WIDTH = 30
+
+
+def print_values(values: list[ActionValue], simulations: int) -> None:
+    """The actions, best first, with a bar from the worst value to the best."""
+    tried = [value.q for value in values if value.n or not simulations]
+    lowest, highest = min(tried), max(tried)
+    table = Table(title=f"{simulations:,} simulations" if simulations else "exact")
+    table.add_column("action")
+    table.add_column("value", justify="right")
+    if simulations:
+        table.add_column("stderr", justify="right")
+        table.add_column("visits", justify="right")
+    table.add_column("")
+    for value in values:
+        row = [value.action, f"{value.q:+.3f}"]
+        if simulations:
+            row += [f"{value.stderr:.3f}", f"{value.n:,}"]
+        size = max(highest - lowest, 1e-9)
+        table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=BAR_WIDTH, color="cyan"))
+    Console().print(table)
+
+
+def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
+    """One row for each mission, and the summary."""
+    table = Table()
+    for name in ("seed", "ending", "steps", "return"):
+        table.add_column(name, justify="right" if name != "ending" else "left")
+    table.add_column("actions and observations")
+    for run in runs:
+        story = ", ".join(
+            f"{action} → {observation}"
+            for action, observation in zip(run.actions, run.observations, strict=True)
+        )
+        table.add_row(str(run.seed), run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
+    console = Console()
+    console.print(table)
+    console.print(
+        f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
+        f"discounted return {summary['mean_discounted_return']:+.2f} ± {summary['stderr']:.2f}, "
+        f"{summary['mean_steps']:.1f} steps"
+    )

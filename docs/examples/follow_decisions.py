@@ -1,0 +1,26 @@
+"""Follows a robot's decisions from the first step of its mission, whenever it is started.
+
+python docs/examples/follow_decisions.py [ENDPOINT [ROBOT]]
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+
+from aos_runtime.client import AosClient
+
+
+async def main(endpoint: str = "tcp/127.0.0.1:7447", robot: str = "armadillo") -> None:
+    async with AosClient.connect(endpoint, robot) as aos:
+        async for record in aos.decisions():
+            if record.outcome is None:
+                values = {each.action: round(each.q, 2) for each in record.actions}
+                print(f"step {record.step}: {record.action}, of {values}")
+            else:
+                goal = record.belief.goal_probability
+                print(f"step {record.step}: observed {record.outcome.response}, goal {goal:.3f}")
+
+
+if __name__ == "__main__":
+    asyncio.run(main(*sys.argv[1:]))

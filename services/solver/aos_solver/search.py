@@ -1,0 +1,34 @@
+"""The planning budget of a mission, and the seed of each decision."""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_solver.answers import Plan
+from aos_solver.engine import Engine
+
+__all__ = ["Search"]
+
+SEEDS_PER_MISSION = 1000
+
+
+class Search(msgspec.Struct, frozen=True, kw_only=True):
+    """The budget of one decision: `time_s` if given, else `simulations`. `horizon` None is the document's."""
+
+    simulations: int
+    seed: int
+    time_s: float | None = None
+    horizon: int | None = None
+
+    def seed_of(self, step: int) -> int:
+        """The seed of decision `step`, so that missions with neighbouring seeds share none."""
+        return self.seed * SEEDS_PER_MISSION + step
+
+    async def run(self, engine: Engine, step: int) -> Plan:
+        """Decide on the engine's belief."""
+        return await engine.plan(
+            simulations=None if self.time_s is not None else self.simulations,
+            time_s=self.time_s,
+            seed=self.seed_of(step),
+            horizon=self.horizon,
+        )

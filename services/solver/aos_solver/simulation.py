@@ -1,0 +1,60 @@
+"""Whole missions without a robot: the world is a hidden state that the documents' own model steps.
+
+The stop rules are the mission loop's. Rewards are the model's, so that returns can be compared.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
+from aos_solver.engine import Engine
+from aos_solver.search import Search
+
+__all__ = ["SimulatedRun", "simulate_mission"]
+
+
+class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
+    """One mission: `total` is the undiscounted return (`return` in JSON)."""
+
+    seed: int
+    total: float
+    discounted_return: float
+    ending: Ending
+    steps: int
+    actions: tuple[str, ...]
+    observations: tuple[str, ...]
+
+
+async def simulate_mission(engine: Engine, search: Search, limits: MissionLimits) -> SimulatedRun:
+    """Runs one mission from the initial belief; `search.seed` also draws the world."""
+    belief = await engine.reset_belief()
+    world = await engine.reset_world(search.seed)
+    discount = engine.description.discount
+    total = discounted = 0.0
+    actions: list[str] = []
+    observations: list[str] = []
+    while True:
+        ending = ending_of_belief(belief, len(actions), limits)
+        if ending is None and world.ending:
+            ending = Ending(world.ending)
+        if ending is None:
+            plan = await search.run(engine, len(actions) + 1)
+            ending = ending_after_planning(plan.best, limits)
+        if ending is not None:
+            return SimulatedRun(
+                search.seed,
+                total,
+                discounted,
+                ending,
+                len(actions),
+                tuple(actions),
+                tuple(observations),
+            )
+        step = await engine.step_world(plan.index)
+        total += step.reward
+        discounted += discount ** len(actions) * step.reward
+        actions.append(plan.best.action)
+        observations.append(step.response)
+        belief = (await engine.update(plan.best.action, step.response)).summary
+        world = step

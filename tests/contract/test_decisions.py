@@ -1,0 +1,194 @@
+"""Following decisions: history first, then live, each record once and in order, to the end of the mission."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+
+import pytest
+import pytest_asyncio
+
+from aos_protocol.errors import BusError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    BeliefSummary,
+    DecisionRecord,
+    History,
+    HistoryQuery,
+    Message,
+    MissionState,
+    StartMission,
+)
+from aos_runtime.bus import Bus
+from aos_runtime.client import AosClient, DecisionFeed
+
+
+def record(sequence: int, mission: str = "m") -> DecisionRecord:
+    return DecisionRecord(
+        sequence=sequence,
+        stamp_ns=0,
+        mission=mission,
+        epoch=1,
+        step=sequence // 2 + 1,
+        action="pick",
+        skill="pick",
+        parameters={},
+        model_digest="",
+        revision=1,
+        seed=1,
+        simulations=10,
+        horizon=10,
+        planning_s=0.0,
+        actions=(),
+        predicted=(),
+        belief=BeliefSummary((), 0.0, 0.0, 0.0, 1, True),
+    )
+
+
+class Storyteller:
+    """A solver as far as its decisions go."""
+
+    def __init__(self, bus: Bus, keys: Keys) -> None:
+        self.told: list[DecisionRecord] = []
+        self.state = MissionState("m", "acting", 1, 0.5)
+        self._bus = bus
+        self._keys = keys
+
+    async def appear(self) -> None:
+        await self._bus.answer(self._keys.decision_history, HistoryQuery, self._history)
+        await self._bus.answer(self._keys.mission_state, StartMission, self._state)
+        await self._bus.announce(self._keys.live("solver"))
+
+    def decide(self, *, is_lost: bool = False) -> None:
+        """The next record, which the stream may lose on its way."""
+        self.told.append(record(len(self.told)))
+        if not is_lost:
+            self._bus.tell(self._keys.decisions, self.told[-1])
+
+    def end(self) -> None:
+        self.state = MissionState("m", "ended", 3, 0.95, ending="goal")
+        self._bus.tell(self._keys.mission_state, self.state)
+
+    async def _history(self, query: HistoryQuery, _: str) -> Message:
+        return History("m", tuple(self.told[query.since :]))
+
+    async def _state(self, _: StartMission, __: str) -> Message:
+        return self.state
+
+
+@pytest.fixture
+def keys(request: pytest.FixtureRequest) -> Keys:
+    """A robot of its own for each test, as the tests' streams must not mix."""
+    return Keys(request.node.name[-60:])
+
+
+@pytest_asyncio.fixture
+async def solver(other: Bus, keys: Keys) -> AsyncIterator[Storyteller]:
+    yield Storyteller(other, keys)
+
+
+@pytest_asyncio.fixture
+async def client(bus: Bus, keys: Keys) -> AosClient:
+    return AosClient(bus, keys.robot)
+
+
+async def sequences(client: AosClient) -> list[int]:
+    return [decision.sequence async for decision in client.decisions()]
+
+
+async def test_who_joins_late_gets_everything_from_the_first_step(
+    client: AosClient, solver: Storyteller
+) -> None:
+    await solver.appear()
+    for _ in range(5):
+        solver.decide()
+    following = client.decisions()
+    assert [(await anext(following)).sequence for _ in range(5)] == [0, 1, 2, 3, 4]
+    solver.decide()
+    solver.end()
+    assert [decision.sequence async for decision in following] == [5]
+
+
+async def test_who_comes_before_the_solver_waits_for_it(client: AosClient, solver: Storyteller) -> None:
+    async with asyncio.TaskGroup() as tasks:
+        following = tasks.create_task(sequences(client))
+        await solver.appear()
+        for _ in range(3):
+            solver.decide()
+        solver.end()
+    assert following.result() == [0, 1, 2]
+
+
+async def test_a_gap_in_the_stream_is_filled(client: AosClient, solver: Storyteller) -> None:
+    await solver.appear()
+    solver.decide()
+    following = client.decisions()
+    assert (await anext(following)).sequence == 0
+    solver.decide(is_lost=True)
+    solver.decide(is_lost=True)
+    solver.decide()
+    assert [(await anext(following)).sequence for _ in range(3)] == [1, 2, 3]
+    solver.decide(is_lost=True)
+    solver.end()
+    assert [decision.sequence async for decision in following] == [4]
+
+
+async def test_a_mission_that_is_over_is_given_whole(client: AosClient, solver: Storyteller) -> None:
+    for _ in range(4):
+        solver.decide(is_lost=True)
+    solver.end()
+    await solver.appear()
+    assert await sequences(client) == [0, 1, 2, 3]
+
+
+async def test_following_ends_when_the_solver_goes(endpoint: str, client: AosClient, keys: Keys) -> None:
+    async with await Bus.open(endpoint, sender="solver") as mortal:
+        solver = Storyteller(mortal, keys)
+        await solver.appear()
+        solver.decide()
+        following = client.decisions()
+        assert (await anext(following)).sequence == 0
+    assert [decision async for decision in following] == []
+
+
+async def test_states_come_between_the_decisions(client: AosClient, solver: Storyteller) -> None:
+    await solver.appear()
+    solver.decide(is_lost=True)
+    events = client.follow()
+    assert isinstance(await anext(events), DecisionRecord)
+    assert await anext(events) == solver.state
+    solver.end()
+    assert [event async for event in events] == [solver.state]
+
+
+async def test_a_few_lines_are_enough(endpoint: str, solver: Storyteller, keys: Keys) -> None:
+    await solver.appear()
+    solver.decide()
+    solver.end()
+    async with AosClient.connect(endpoint, keys.robot) as aos:
+        assert [decision.action async for decision in aos.decisions()] == ["pick"]
+
+
+async def test_no_system_is_a_clear_error(unused_tcp_port: int) -> None:
+    with pytest.raises(BusError, match="no bus router answers"):
+        async with AosClient.connect(f"tcp/127.0.0.1:{unused_tcp_port}", "test", connect_timeout_s=0.1):
+            pass
+
+
+def test_a_feed_gives_each_record_once_and_in_order() -> None:
+    feed = DecisionFeed()
+    assert [r.sequence for r in feed.take(record(0))] == [0]
+    assert feed.take(record(0)) == []
+    assert feed.take(record(2)) == []
+    assert feed.has_gap
+    history = History("m", (record(1), record(2), record(3)))
+    assert [r.sequence for r in feed.take_history(history)] == [1, 2, 3]
+    assert not feed.has_gap
+
+
+def test_another_mission_starts_from_its_first_record() -> None:
+    feed = DecisionFeed()
+    feed.take(record(0))
+    feed.take(record(1))
+    assert [r.mission for r in feed.take(record(0, mission="next"))] == ["next"]
+    assert feed.next_sequence == 1

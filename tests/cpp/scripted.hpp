@@ -1,0 +1,190 @@
+// Runs an emitted model on a script: the draws come from the script, and what the model does is printed as JSON.
+// Stands where the engine child stands, so that tests see the model alone.
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <initializer_list>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+namespace aos {
+
+// Takes each draw from a list: a Bernoulli is true for 1, a discrete draw is the index itself. After the end of the list
+// the likelier, or the first, value.
+class Script {
+ public:
+  explicit Script(const std::string& draws) : draws_(draws) {}
+  bool Bernoulli(double probability) { return next(probability >= 0.5 ? 1 : 0) != 0; }
+  int SampleDiscrete(int name, std::initializer_list<double>) { return name + 1 + static_cast<int>(next(0)); }
+  template <class Weights>
+  int SampleDiscrete(const Weights&) {
+    return static_cast<int>(next(0));
+  }
+  template <class Weights>
+  int SampleDiscrete(int name, const Weights&) {
+    return name + 1 + static_cast<int>(next(0));
+  }
+  double SampleNormal(double mean, double) { return next(mean); }
+  double SampleUniform(double low, double) { return next(low); }
+  void SetNull(bool& value) { value = false; }
+  void Uninitialize(bool& value) { value = false; }
+  void Initialize(bool& value) { value = true; }
+  bool IsInitialized(bool value) { return value; }
+
+ private:
+  double next(double otherwise) {
+    double value;
+    return draws_ >> value ? value : otherwise;
+  }
+  std::istringstream draws_;
+};
+
+// A quick generator for long walks and for the rate.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits() {
+    std::uint64_t mixed = state_ += 0x9e3779b97f4a7c15u;
+    mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
+    mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
+    return mixed ^ (mixed >> 31);
+  }
+  int below(int count) { return static_cast<int>((bits() >> 32) * static_cast<std::uint64_t>(count) >> 32); }
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+  bool Bernoulli(double probability) { return uniform() < probability; }
+  int SampleDiscrete(int name, std::initializer_list<double> weights) {
+    double sum = 0;
+    for (const double weight : weights) sum += weight;
+    return name + 1 + pick(weights, uniform() * sum);
+  }
+  template <class Weights>
+  int SampleDiscrete(const Weights& weights) {
+    return pick(weights, uniform());
+  }
+  double SampleNormal(double mean, double sigma) { return mean + sigma * (uniform() + uniform() + uniform() - 1.5) * 2; }
+  double SampleUniform(double low, double high) { return low + uniform() * (high - low); }
+  void SetNull(bool& value) { value = false; }
+  void Uninitialize(bool& value) { value = false; }
+  void Initialize(bool& value) { value = true; }
+  bool IsInitialized(bool value) { return value; }
+
+ private:
+  template <class Weights>
+  static int pick(const Weights& weights, double left) {
+    int index = 0;
+    int last = -1;
+    double sum = 0;
+    for (const double weight : weights) {
+      if (weight > 0) last = index;
+      sum += weight;
+      if (left < sum) return index;
+      ++index;
+    }
+    return sum > 1 - 1e-5 ? last : -1;
+  }
+  std::uint64_t state_;
+};
+
+template <class Model>
+std::string observation_name(int action, Observation observation) {
+  if (observation == default_observation) return default_observation_text;
+  if (observation < 0) return std::string{observation_text(observation)};
+  return Model::response_name(Model::skill_of(action), static_cast<int>(observation));
+}
+
+template <class Model>
+void print_state(JsonWriter& json, const typename Model::State& state) {
+  json.begin_object();
+  Model::visit(state, [&](const std::string& name, const auto& leaf) { json.member(name, leaf_text(leaf)); });
+  json.end_object();
+}
+
+template <class Model>
+int find_action(const std::string& name) {
+  for (int action = 0; action < Model::action_count(); ++action) {
+    if (name == Model::action_name(action)) return action;
+  }
+  std::exit(3);
+}
+
+// Each line of the script is an action's name, and after a `|` the draws of its step; the first line is the draws of the
+// initial belief.
+template <class Model>
+void play() {
+  std::string line;
+  std::getline(std::cin, line);
+  typename Model::State state;
+  Script first{line};
+  Model::initial(state, first);
+  JsonWriter json;
+  json.begin_array().begin_object().key("state");
+  print_state<Model>(json, state);
+  json.member("ending", static_cast<int>(Model::ending(state))).end_object();
+  while (std::getline(std::cin, line)) {
+    const auto bar = line.find('|');
+    const int action = find_action<Model>(line.substr(0, bar));
+    Script draws{bar == std::string::npos ? "" : line.substr(bar + 1)};
+    Script none{""};
+    json.begin_object().member("meets_precondition", Model::meets_precondition(state, action, none));
+    json.member("rollout_weight", Model::rollout_weight(state, action, none));
+    const Step step = Model::step(state, action, draws);
+    json.member("reward", step.reward).member("observation", observation_name<Model>(action, step.observation));
+    json.key("state");
+    print_state<Model>(json, state);
+    typename Model::State loaded{};
+    Model::load_state(loaded, Model::save_state(state));
+    json.member("is_saved", loaded == state && Model::hash(loaded) == Model::hash(state));
+    json.member("ending", static_cast<int>(Model::ending(state))).end_object();
+  }
+  std::cout << json.end_array().text() << "\n";
+}
+
+template <class Model>
+void walk(std::uint64_t seed, long steps) {
+  Dice dice{seed};
+  typename Model::State state;
+  Model::initial(state, dice);
+  long ended = 0;
+  double sum = 0;
+  for (long count = 0; count < steps; ++count) {
+    sum += Model::step(state, dice.below(Model::action_count()), dice).reward;
+    const bool has_ended = Model::ending(state) != Ending::running;
+    if (has_ended || count % 50 == 49) Model::initial(state, dice);
+    ended += has_ended;
+  }
+  std::cout << "{\"steps\":" << steps << ",\"ended\":" << ended << ",\"reward\":" << sum << "}\n";
+}
+
+template <class Model>
+void describe() {
+  JsonWriter json;
+  json.begin_array();
+  for (int action = 0; action < Model::action_count(); ++action) {
+    json.begin_object().member("action", Model::action_name(action)).key("parameters");
+    Model::write_parameters(action, json);
+    json.end_object();
+  }
+  std::cout << json.end_array().text() << "\n";
+}
+
+template <class Model>
+int run_child(int argc, char** argv) {
+  static_assert(std::is_trivially_copyable_v<typename Model::State>);
+  const std::string mode = argc > 1 ? argv[1] : "";
+  try {
+    Model::prepare();
+    if (mode == "play") play<Model>();
+    if (mode == "describe") describe<Model>();
+    if (mode == "walk") walk<Model>(std::strtoull(argv[2], nullptr, 10), std::strtol(argv[3], nullptr, 10));
+  } catch (const ModelFault& fault) {
+    std::cout << JsonWriter{}.begin_object().member("fault", fault.code).member("text", fault.text)
+                     .member("piece", static_cast<std::uint32_t>(*blame::page)).end_object().text() << "\n";
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace aos

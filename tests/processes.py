@@ -1,0 +1,69 @@
+"""Looking at other processes: which are there, which have gone, who listens."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from contextlib import suppress
+from pathlib import Path
+
+__all__ = ["descendants", "has_listener", "is_running", "kill", "until_ended"]
+
+
+def is_running(pid: int) -> bool:
+    """Whether a process does anything still; a zombie does not."""
+    try:
+        status = Path(f"/proc/{pid}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return status.rpartition(")")[2].split()[0] != "Z"
+
+
+def descendants(pid: int) -> list[int]:
+    """All processes below a process, whatever their group and session."""
+    below: list[int] = []
+    for task in Path(f"/proc/{pid}/task").iterdir():
+        for child in (task / "children").read_text().split():
+            below.append(int(child))
+            with suppress(FileNotFoundError, ProcessLookupError):
+                below += descendants(int(child))
+    return below
+
+
+async def until_ended(pids: list[int], timeout_s: float = 10.0) -> None:
+    """Returns once none of them runs; TimeoutError if one goes on. They need not be children."""
+    async with asyncio.timeout(timeout_s):
+        for pid in pids:
+            await _until_one_ended(pid)
+
+
+async def _until_one_ended(pid: int) -> None:
+    try:
+        handle = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return
+    loop = asyncio.get_running_loop()
+    ended = asyncio.Event()
+    loop.add_reader(handle, ended.set)  # It becomes readable when the process ends.
+    try:
+        await ended.wait()
+    finally:
+        loop.remove_reader(handle)
+        os.close(handle)
+
+
+def has_listener(port: int) -> bool:
+    """Whether any process listens on a TCP port of this machine."""
+    wanted = f":{port:04X}"
+    for table in ("/proc/net/tcp", "/proc/net/tcp6"):
+        for line in Path(table).read_text().splitlines()[1:]:
+            fields = line.split()
+            if fields[1].endswith(wanted) and fields[3] == "0A":
+                return True
+    return False
+
+
+def kill(pid: int) -> None:
+    """SIGKILL."""
+    os.kill(pid, signal.SIGKILL)

@@ -1,0 +1,51 @@
+"""A real service, small: `python -m small_service SETTINGS.json`, which behaves as its settings say."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+from pathlib import Path
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.errors import DocumentError
+from aos_runtime.children import PIPE, Child, guarded
+from aos_runtime.lifecycle import Service, ServiceSettings, run_service
+
+
+class Settings(ServiceSettings, frozen=True, kw_only=True):
+    """`mood` is `good`, `slow` (never ready), `faulty`, `broken`, `deaf` (to SIGTERM) or `parental`."""
+
+    mood: str = "good"
+
+
+async def serve(service: Service[Settings]) -> None:
+    match service.settings.mood:
+        case "slow":
+            print("still thinking", file=sys.stderr, flush=True)
+            await asyncio.Event().wait()
+        case "faulty":
+            finding = Diagnostic(Severity.ERROR, "AOS102", "unknown key tabel", Span("room.yaml", 3, 1))
+            raise DocumentError("the world is wrong", code="AOS102", hint="Mend it", diagnostics=(finding,))
+        case "broken":
+            raise RuntimeError("a defect")
+        case "parental":
+            child = await Child.start(guarded(["sh", "-c", "sleep 1000 & echo; wait"]), stdout=PIPE)
+            await child.stdout.readline()
+    await service.ready()
+    if service.settings.mood == "deaf":
+        asyncio.get_running_loop().remove_signal_handler(signal.SIGTERM)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    try:
+        await asyncio.Event().wait()
+    finally:
+        _note_stop(service.settings)
+
+
+def _note_stop(settings: Settings) -> None:
+    with Path(settings.run_dir, "stopped").open("a") as stopped:
+        stopped.write(f"{settings.service}\n")
+
+
+if __name__ == "__main__":
+    run_service(Settings, serve)

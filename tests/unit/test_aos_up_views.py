@@ -1,0 +1,193 @@
+"""What aos-up prints: plain lines, JSON lines, and the live screen, from the same events."""
+
+from __future__ import annotations
+
+import io
+import json
+
+import msgspec
+import pytest
+from rich.console import Console
+
+from aos_deploy.events import Event, ServiceChanged, Told
+from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
+from aos_deploy.views import make_view
+from aos_deploy.views.lines import JsonView, PlainView
+from aos_deploy.views.live import LiveView, Screen
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.errors import AosError, error_from_code
+from aos_protocol.messages import (
+    ActionValue,
+    ActivationId,
+    BeliefSummary,
+    BundleReport,
+    DecisionRecord,
+    Fault,
+    Marginal,
+    MissionState,
+    Outcome,
+)
+
+BELIEF = BeliefSummary((Marginal("holding_can", {"true": 0.75, "false": 0.25}),), 0.56, 0.1, 0.0, 2, True)
+DECISION = DecisionRecord(
+    sequence=0,
+    stamp_ns=1,
+    mission="m",
+    epoch=1,
+    step=1,
+    action="pick",
+    skill="pick",
+    parameters={},
+    model_digest="d",
+    revision=1,
+    seed=1,
+    simulations=1000,
+    horizon=10,
+    planning_s=0.25,
+    actions=(ActionValue("serve", -4.0, 100, 0.5), ActionValue("pick", 2.713, 900, 0.04)),
+    predicted=(),
+    belief=BELIEF,
+)
+OUTCOME = Outcome(ActivationId("m", 1, 1), "pick", "observed", "pick_succeeded")
+OBSERVED = msgspec.structs.replace(DECISION, sequence=1, outcome=OUTCOME, surprise=0.5)
+REFUSED = BundleReport(
+    "armadillo",
+    False,
+    1,
+    (Diagnostic(Severity.ERROR, "AOS110", "unknown name", Span("pick.sd", 7, 2)),),
+    source="new",
+)
+EVENTS: tuple[Event, ...] = (
+    ServiceChanged("registry", "ready", 0.5),
+    ServiceChanged("skills", "ended", 2.0, "killed by SIGKILL"),
+    Told("run directory runs/x"),
+    MissionState("m", "building", 0, 0.0, remark="compiling the model"),
+    MissionState("m", "building", 0, 0.0, remark="compiling the model"),
+    DECISION,
+    OBSERVED,
+    REFUSED,
+    MissionState("m", "ended", 1, 0.95, ending="goal", remark="the goal is reached"),
+)
+
+
+def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) -> None:
+    with PlainView() as view:
+        for event in EVENTS:
+            view(event)
+    assert capsys.readouterr().out.splitlines() == [
+        "   0.50 s  registry ready",
+        "   2.00 s  skills ended: killed by SIGKILL",
+        "run directory runs/x",
+        "mission building: compiling the model",
+        "step  1: pick  [pick +2.71, serve -4.00]  1000 simulations in 0.25 s",
+        "step  1: pick -> pick_succeeded  surprise 0.50  goal 0.100",
+        "pick.sd:7:2: error[AOS110]: unknown name",
+        "bundle new refused, nothing has changed",
+        "mission ended: the goal is reached",
+    ]
+
+
+def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    lost = Outcome(OUTCOME.id, "pick", "timed_out", fault=Fault("AOS503", "no answer within 9 s"))
+    PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
+    assert "pick -> timed_out (no answer within 9 s)" in capsys.readouterr().out
+
+
+def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> None:
+    with JsonView() as view:
+        for event in EVENTS:
+            view(event)
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [line["event"] for line in lines] == [
+        "service", "service", "remark", "mission", "mission", "decision", "decision", "bundle", "mission",
+    ]  # fmt: skip
+    assert lines[5]["actions"][1] == {"action": "pick", "q": 2.713, "n": 900, "stderr": 0.04}
+    assert lines[6]["outcome"]["response"] == "pick_succeeded"
+
+
+def shown(screen: Screen) -> str:
+    console = Console(file=io.StringIO(), width=120, force_terminal=False)
+    console.print(screen)
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    return str(text)
+
+
+def test_the_screen_says_what_is_being_waited_for() -> None:
+    screen = Screen("armadillo")
+    screen.take(ServiceChanged("registry", "ready", 0.1))
+    screen.take(ServiceChanged("skills", "starting", 0.1))
+    assert "waiting for skills ... 0 s" in shown(screen)
+    screen.take(EVENTS[3])
+    assert "compiling the model ... 0 s" in shown(screen)
+
+
+def test_the_screen_shows_steps_values_and_belief_bars() -> None:
+    screen = Screen("armadillo")
+    for event in EVENTS:
+        screen.take(event)
+    text = shown(screen)
+    assert "holding_can  true  ███████████████·····  0.750" in " ".join(text.split("\n")).replace(
+        " " * 2, "  "
+    )
+    for expected in (
+        "pick_succeeded",
+        "+2.71",
+        "-4.00",
+        "900",
+        "registry ready",
+        "goal: the goal is reached",
+    ):
+        assert expected in text
+
+
+def test_the_live_view_draws_and_lets_go_of_the_terminal() -> None:
+    console = Console(file=io.StringIO(), width=120, force_terminal=True)
+    with LiveView("armadillo", console) as view:
+        for event in EVENTS:
+            view(event)
+    assert "pick_succeeded" in console.file.getvalue()  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("options", "kind"),
+    [
+        ({"is_plain": False, "is_json": False, "is_terminal": True}, LiveView),
+        ({"is_plain": True, "is_json": False, "is_terminal": True}, PlainView),
+        ({"is_plain": False, "is_json": False, "is_terminal": False}, PlainView),
+        ({"is_plain": False, "is_json": True, "is_terminal": True}, JsonView),
+    ],
+)
+def test_the_view_fits_where_it_is_shown(options: dict[str, bool], kind: type[object]) -> None:
+    assert isinstance(make_view("armadillo", **options), kind)
+
+
+@pytest.mark.parametrize(
+    ("ending", "code"),
+    [
+        ("goal", 0),
+        ("failure", 4),
+        ("nothing_worthwhile", 5),
+        ("step_limit", 6),
+        ("fault", 7),
+        ("cancelled", 130),
+    ],
+)
+def test_each_ending_has_its_exit_code(ending: str, code: int) -> None:
+    assert exit_code_of_mission(MissionState("m", "ended", 1, 0.0, ending=ending)) == code
+
+
+@pytest.mark.parametrize(
+    ("code", "before", "after"),
+    [
+        ("AOS201", 1, 7),
+        ("AOS801", 1, 7),
+        ("AOS110", 1, 7),
+        ("AOS605", 3, 7),
+        ("AOS802", 3, 7),
+        ("AOS203", 3, 7),
+    ],
+)
+def test_a_fault_counts_by_when_it_happens(code: str, before: int, after: int) -> None:
+    error: AosError = error_from_code(code, "")
+    assert exit_code_of_error(error) == before
+    assert exit_code_of_error(error, has_started=True) == after == ExitCode.FAULT

@@ -1,0 +1,174 @@
+"""The deploy file: what it means, and that everything wrong with it is found at once and at its place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file
+from aos_deploy.program import programs_of_deployment
+from aos_protocol.errors import DeployError
+
+HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a bundle of two skills and a world."""
+    (tmp_path / "bundle").mkdir()
+    for name in ("rover.ef", "drive.sd", "drive.am", "look.sd", "look.am"):
+        (tmp_path / "bundle" / name).write_text("")
+    (tmp_path / "room.yaml").write_text("")
+    return tmp_path
+
+
+def read(folder: Path, text: str) -> Deployment:
+    (folder / "rover.yaml").write_text(text)
+    return read_deploy_file(folder / "rover.yaml")
+
+
+def findings(folder: Path, text: str) -> list[str]:
+    """Line, column, code and message of everything wrong with a deploy file."""
+    with pytest.raises(DeployError) as caught:
+        read(folder, text)
+    assert caught.value.code == "AOS801"
+    return [
+        f"{each.span.line}:{each.span.column} {each.code} {each.message}"
+        + (f". {each.hint}" if each.hint else "")
+        for each in caught.value.diagnostics
+    ]
+
+
+def test_what_is_not_said_has_its_default(folder: Path) -> None:
+    deployment = read(folder, HEAD)
+    assert deployment.project == "rover"
+    assert deployment.bundles == (folder / "bundle",)
+    assert deployment.runs == folder / "runs"
+    assert deployment.file.mission.goal_probability == 0.9
+    assert deployment.file.bus.listen == "tcp/127.0.0.1:7447"
+    assert deployment.world is None
+
+
+def test_everything_that_can_be_said_arrives(folder: Path) -> None:
+    deployment = read(
+        folder,
+        HEAD
+        + """\
+project: garden
+leave_out: [look]
+watch: drop
+bus: {listen: tcp/127.0.0.1:0}
+mission: {goal_probability: 1, step_limit: 7, stop_below_value: -2.5, activation_timeout_s: 9}
+solver: {time_s: 0.5, horizon: 12, seed: 0x10, impossible_observation: reset}
+world: room.yaml
+bind: {/drive: pybullet}
+runs: ../elsewhere
+""",
+    )
+    file = deployment.file
+    assert (deployment.project, file.leave_out, deployment.watch) == ("garden", ("look",), folder / "drop")
+    assert (file.mission.goal_probability, file.mission.step_limit) == (1.0, 7)
+    assert (file.solver.time_s, file.solver.horizon, file.solver.seed) == (0.5, 12, 16)
+    assert (deployment.world, file.bind) == (folder / "room.yaml", {"/drive": "pybullet"})
+    assert deployment.runs == folder.parent / "elsewhere"
+
+
+@pytest.mark.parametrize("name", ["armadillo", "armadillo-rough", "armadillo-hotplug"])
+def test_the_shipped_deploy_files_are_good(root: Path, name: str) -> None:
+    assert read_deploy_file(root / "deploy" / f"{name}.yaml").file.robot == "armadillo"
+
+
+def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
+    deployment = read_deploy_file(root / "deploy" / "armadillo-hotplug.yaml")
+    assert deployment.file.leave_out == ("observe_holding", "observe_arm_outstretched")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("bundels: [x]", "4:1 AOS102 unknown key bundels. Did you mean bundles?"),
+        ("solver:\n  simulation: 5", "5:3 AOS102 unknown key solver.simulation. Did you mean simulations?"),
+        ("zebra: 1", "4:1 AOS102 unknown key zebra. Known are aos, bind, bundles, bus"),
+        ("solver: {seed: many}", "4:16 AOS106 solver.seed is not a whole number"),
+        ("solver: {seed: -1}", "4:16 AOS106 solver.seed is not a whole number >= 0"),
+        ("solver: {seed: true}", "4:16 AOS106 solver.seed is not a whole number"),
+        ("solver: {time_s: 0}", "4:18 AOS106 solver.time_s is not a number > 0.0"),
+        ("solver: 3", "4:9 AOS106 solver is not a mapping of keys to values"),
+        (
+            "solver: {impossible_observation: dance}",
+            "4:34 AOS106 solver.impossible_observation is not hold or widen or reset",
+        ),
+        ("mission: {goal_probability: 1.5}", "4:29 AOS106 mission.goal_probability is not a number <= 1.0"),
+        ("leave_out: look", "4:12 AOS106 leave_out is not a list"),
+        ("leave_out: [drive, loook]", "4:20 AOS110 no bundle has a skill loook. Did you mean look?"),
+        ("bind: {/drive: 3}", "4:16 AOS106 bind./drive is not a text"),
+        ("world: nowhere.yaml", "4:8 AOS101 there is no world file"),
+        ("bus: {listen: tcp/0.0.0.0:7447}", "4:15 AOS106 'tcp/0.0.0.0:7447' is not an endpoint of this"),
+        ("robot: twice", "4:1 AOS103 the key robot is given twice. First in line 2"),
+        ("runs: &here x", "4:7 AOS104 anchors and aliases are not used here"),
+        ("runs: !secret x", "4:7 AOS104 the tag !secret is not used here"),
+        ("runs: [", "5:1 AOS104 not well-formed YAML"),
+        ("solver: {simulations: 9, time_s: 1}", "4:34 AOS106 solver has both simulations and time_s"),
+    ],
+)
+def test_a_mistake_is_named_with_its_place(folder: Path, text: str, found: str) -> None:
+    assert findings(folder, f"{HEAD}{text}\n")[0].startswith(found)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("", "1:0 AOS104 not a mapping of keys to values"),
+        ("- aos\n", "1:0 AOS104 not a mapping of keys to values"),
+        ("aos: 1\nrobot: rover\n", "1:1 AOS105 the key bundles is missing"),
+        (HEAD.replace("aos: 1", "aos: 2"), "1:6 AOS106 aos is not 1"),
+        (HEAD.replace("rover", "my rover"), "2:8 AOS106 'my rover' is not a robot name. Use letters"),
+        (HEAD.replace("[bundle]", "[]"), "3:10 AOS105 bundles names none. Name a bundle's folder"),
+        (HEAD.replace("[bundle]", "[bundle, gone]"), "3:19 AOS101 there is no bundle folder"),
+    ],
+)
+def test_what_a_file_must_have(folder: Path, text: str, found: str) -> None:
+    assert findings(folder, text)[0].startswith(found)
+
+
+def test_all_mistakes_are_found_in_one_run(folder: Path) -> None:
+    text = f"{HEAD}leave_out: [lok]\nworld: gone.yaml\nsolver: {{sed: 1, seed: x}}\nmission: 3\n"
+    assert [found.split()[0] for found in findings(folder, text)] == ["4:13", "5:8", "6:10", "6:24", "7:10"]
+
+
+def test_a_file_that_is_not_there_or_not_text_is_told(folder: Path) -> None:
+    with pytest.raises(DeployError) as absent:
+        read_deploy_file(folder / "absent.yaml")
+    assert "No such file" in absent.value.diagnostics[0].message
+    (folder / "binary.yaml").write_bytes(b"\xff\xfe")
+    with pytest.raises(DeployError) as binary:
+        read_deploy_file(folder / "binary.yaml")
+    assert "not UTF-8" in binary.value.diagnostics[0].message
+
+
+def test_only_endpoints_of_this_machine_are_taken() -> None:
+    for good in ("tcp/127.0.0.1:7447", "tcp/localhost:0", "tcp/[::1]:7447"):
+        check_endpoint(good)
+    for bad in ("tcp/192.168.0.1:7447", "udp/127.0.0.1:7447", "127.0.0.1:7447", "tcp/127.0.0.1"):
+        with pytest.raises(DeployError, match="not an endpoint of this machine"):
+            check_endpoint(bad)
+
+
+def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(folder / "cache"))
+    deployment = read(folder, f"{HEAD}watch: drop\nworld: room.yaml\nbind: {{/drive: pybullet}}\n")
+    programs = {program.name: program for program in programs_of_deployment(deployment)}
+
+    assert list(programs) == ["registry", "middleware", "skills", "solver"]
+    assert programs["registry"].settings == {"watch": str(folder / "drop")}
+    assert programs["middleware"].settings == {"project": "rover", "activation_timeout_s": 120.0}
+    assert programs["skills"].settings == {
+        "world": str(folder / "room.yaml"),
+        "bind": {"/drive": "pybullet"},
+        "seed": 1,
+    }
+    solver = programs["solver"].settings
+    assert solver["cache_dir"] == str(folder / "cache")
+    assert "time_s" not in solver
+    assert solver["goal_probability"] == 0.9

@@ -1,0 +1,108 @@
+"""The original bundles: all of them load, and what is strange in them is said at the right place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_registry.load import LoadedBundle, load_bundle
+
+pytestmark = pytest.mark.corpus
+
+WARNINGS = {
+    "armadillo-finer": [
+        "IROS.basic_pick.json:32:183 AOS122",
+        "IROS.serve_can_to_person glue.json:16:30 AOS117",
+    ],
+    "armadillo-rough": [
+        "IROS.basic_pick.json:34:122 AOS122",
+        "IROS.serve_can_to_person glue.json:16:30 AOS117",
+    ],
+    "paper-example-json": ["aosPaper.environment.json:75:50 AOS127"],
+    "paper-example-sdl": [
+        f"example.ef:{place} AOS127"
+        for place in ("14:34", "17:22", "20:22", "23:22", "26:111", "29:113", "32:111")
+    ],
+    "sampling-rate": [
+        "plps_domain.move_to_point glue.json:17:53 AOS118",
+        "plps_domain.move_to_point glue.json:21:53 AOS118",
+        "plps_domain.move_to_point.json:22:124 AOS127",
+        "plps_domain.observe_can glue.json:17:53 AOS118",
+        "plps_domain.observe_can glue.json:21:53 AOS118",
+        "plps_domain.pick glue.json:17:53 AOS118",
+        "plps_domain.pick glue.json:21:53 AOS118",
+        "plps_domain.pick.json:13:61 AOS127",
+        "plps_domain.pick.json:16:18 AOS102",
+    ],
+    "sarsop-simple": [
+        "inc_half.am:5:16 AOS118",
+        "inc_half.am:13:10 AOS110",
+        "inc_half.am:13:23 AOS110",
+        "inc_half.am:13:36 AOS110",
+        "inc_half.sd:2:1 AOS125",
+        "inc_half.sd:9:1 AOS125",
+        "inc_one.am:5:16 AOS118",
+        "inc_one.am:13:10 AOS110",
+        "inc_one.am:13:23 AOS110",
+        "inc_one.am:13:36 AOS110",
+        "simple_sarsop.ef:7:12 AOS127",
+    ],
+    "tic-tac-toe-json": [],
+    "tic-tac-toe-sdl": [],
+    "turtlebot-visit": [
+        "turtleBotVisitLocations.environment.json:84:48 AOS127",
+        "turtleBotVisitLocations.environment.json:157:52 AOS127",
+    ],
+    "wildfire": [
+        f"{skill} glue.json:34:{column} AOS110" for skill in ("cut_out", "put_out") for column in (57, 70, 83)
+    ],
+}
+
+
+def findings(loaded: LoadedBundle) -> list[str]:
+    return [f"{diagnostic.span} {diagnostic.code}" for diagnostic in loaded.diagnostics]
+
+
+@pytest.mark.parametrize("name", WARNINGS)
+def test_an_original_bundle_loads_with_these_warnings(corpus: Path, name: str) -> None:
+    loaded = load_bundle(corpus / name)
+    assert loaded.project is not None
+    assert not loaded.has_errors
+    assert findings(loaded) == WARNINGS[name]
+
+
+def test_a_misspelt_key_is_named_with_the_right_one(corpus: Path) -> None:
+    (warning,) = [d for d in load_bundle(corpus / "sampling-rate").diagnostics if d.code == "AOS102"]
+    assert '"IteratePrevStateVars"' in warning.message
+    assert warning.hint == 'Did you mean "IteratePreviousStateVars"?'
+
+
+def test_the_last_dynamic_model_of_a_file_counts(corpus: Path) -> None:
+    project = load_bundle(corpus / "sarsop-simple").project
+    assert project is not None
+    (block,) = project.skill("inc_half").model.dynamic_model
+    assert block.code is not None
+    assert "bool b = AOS.Bernoulli(0.2);" in block.code.code
+
+
+def test_a_text_response_that_stands_alone_is_read(corpus: Path) -> None:
+    for name, skill in (("tic-tac-toe-sdl", "detect"), ("tic-tac-toe-json", "detect_board_state")):
+        project = load_bundle(corpus / name).project
+        assert project is not None
+        assert project.skill(skill).mapping.response_variable == "obsr"
+
+
+def test_two_environments_are_an_error_at_the_second(corpus: Path) -> None:
+    loaded = load_bundle(corpus / "bad" / "turtlebot-duplicate")
+    errors = [diagnostic for diagnostic in loaded.diagnostics if diagnostic.is_error]
+    assert loaded.project is None
+    assert [f"{error.span} {error.code}" for error in errors] == [
+        "turtleBotVisitLocations.environment.json:4:18 AOS111"
+    ]
+
+
+def test_results_of_runs_are_told_from_documents(corpus: Path) -> None:
+    loaded = load_bundle(corpus / "bad" / "not-documents")
+    assert findings(loaded) == ["run1_outcomes.json:1:1 AOS107", "run2_outcomes.json:1:1 AOS107"]
+    assert loaded.project is None

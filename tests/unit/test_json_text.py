@@ -1,0 +1,133 @@
+"""The JSON reader: values, and the place of everything."""
+
+from __future__ import annotations
+
+import json
+import string
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from aos_protocol.diagnostics import Diagnostic
+from aos_registry.documents.json_text import (
+    JsonArray,
+    JsonConstant,
+    JsonNumber,
+    JsonObject,
+    JsonString,
+    JsonValue,
+    code_snippet,
+    parse_json,
+)
+from aos_registry.documents.source import Findings, Source
+
+
+def parsed(text: str) -> tuple[JsonValue | None, tuple[Diagnostic, ...]]:
+    findings = Findings()
+    source = Source("a.json", text)
+    findings.add_source(source)
+    return parse_json(source, findings), findings.sorted()
+
+
+def plain(value: JsonValue | None) -> object:
+    match value:
+        case JsonObject():
+            return {key.text: plain(item) for key, item in value.members}
+        case JsonArray():
+            return [plain(item) for item in value.items]
+        case JsonString():
+            return value.text
+        case JsonNumber() | JsonConstant():
+            return value.value
+    return None
+
+
+json_values = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-(10**15), 10**15)
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0")),
+    lambda inner: st.lists(inner) | st.dictionaries(st.text(string.ascii_letters), inner),
+    max_leaves=20,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(json_values, st.booleans())
+def test_whatever_is_json_reads_as_the_standard_library_reads_it(value: object, ascii_only: bool) -> None:
+    text = json.dumps(value, ensure_ascii=ascii_only, indent=1)
+    result, findings = parsed(text)
+    assert findings == ()
+    assert plain(result) == value
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.text(alphabet='{}[]",:\\/*truefalsn0123.eE-+ \n'))
+def test_any_text_gives_a_value_or_an_error(text: str) -> None:
+    result, findings = parsed(text)
+    assert (result is None) == any(finding.code == "AOS104" and finding.is_error for finding in findings) or (
+        result is not None
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "message"),
+    [
+        ('{"a": }', "1:7", "expected a value, found '}'"),
+        ('{"a" 1}', "1:6", 'expected ":" after "a", found \'1\''),
+        ('{"a": 1', "1:1", 'this "{" is never closed'),
+        ('{"a":\n [1, 2', "2:2", 'this "[" is never closed'),
+        ('{"a": "x\n"}', "1:7", "this string is not closed on its line"),
+        ('{"a": "x\\q"}', "1:9", "no such escape in JSON"),
+        ('{"a": "\\ud800"}', "1:8", "half of a surrogate pair"),
+        ('{"a": "\\u0000"}', "1:8", "a NUL character"),
+        ("{'a': 1}", "1:2", 'expected a key in double quotes, found "\'"'),
+        ('{"a": 01}', "1:7", "expected a value, found '0'"),
+        ('{"a": 1e999}', "1:7", "this number is too large"),
+        ("{} {}", "1:4", "text after the end of the document"),
+        ("[1 true]", "1:4", 'expected "," or "]", found \'true\''),
+        ("/* open", "1:1", "this comment is never closed"),
+        ("[" * 70, "1:66", "values nested deeper than 64"),
+        ("", "1:1", "expected a value, found the end of the file"),
+    ],
+)
+def test_what_cannot_be_read_is_said_with_its_place(text: str, place: str, message: str) -> None:
+    result, (finding, *_) = parsed(text)
+    assert result is None
+    assert (str(finding.span), finding.message) == (f"a.json:{place}", message)
+
+
+def test_a_forgotten_comma_does_not_stop_the_reader() -> None:
+    result, (finding,) = parsed('{"a": 1\n "b": [1 2]}'.replace("1 2", "1, 2"))
+    assert plain(result) == {"a": 1, "b": [1, 2]}
+    assert (finding.message, str(finding.span)) == ("a comma is missing here", "a.json:1:8")
+
+
+def test_the_first_of_two_equal_keys_counts_and_the_second_is_an_error() -> None:
+    result, (finding,) = parsed('{"a": 1,\n "a": 2}')
+    assert plain(result) == {"a": 1}
+    assert (finding.code, str(finding.span)) == ("AOS103", "a.json:2:2")
+
+
+def test_each_character_of_a_string_has_its_place() -> None:
+    text = '["a\\"b\\u00e9c\\ud83d\\ude00d"]'
+    result, _ = parsed(text)
+    assert isinstance(result, JsonArray)
+    (value,) = result.items
+    assert isinstance(value, JsonString)
+    assert value.text == 'a"béc😀d'
+    assert [text[value.offset_of(index)] for index in range(7)] == ["a", "\\", "b", "\\", "c", "\\", "d"]
+
+
+def test_lines_of_code_come_from_where_they_stand_in_the_string() -> None:
+    text = '["if (a)\\n\\tx = \\"y\\" + z;",\n "last"]'
+    result, _ = parsed(text)
+    assert isinstance(result, JsonArray)
+    strings = tuple(item for item in result.items if isinstance(item, JsonString))
+    snippet = code_snippet(Source("a.json", text), strings)
+    assert snippet.code == 'if (a)\n\tx = "y" + z;\nlast'
+    assert [str(origin) for origin in snippet.origins] == ["a.json:1:3", "a.json:1:11", "a.json:2:3"]
+    column_of_z = snippet.code.split("\n")[1].index("z") + 1
+    assert text[snippet.locate(2, column_of_z).column - 1] == "z"

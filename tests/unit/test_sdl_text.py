@@ -1,0 +1,94 @@
+"""SDL text cut into sections."""
+
+from __future__ import annotations
+
+from aos_protocol.diagnostics import Diagnostic
+from aos_registry.documents.sdl_sections import GRAMMARS, places_of_words
+from aos_registry.documents.sdl_text import Section, parse_sdl
+from aos_registry.documents.source import Findings, Source
+
+
+def sections(text: str, suffix: str = ".sd") -> tuple[list[Section], tuple[Diagnostic, ...]]:
+    findings = Findings()
+    source = Source(f"a{suffix}", text)
+    findings.add_source(source)
+    return parse_sdl(source, GRAMMARS[suffix], places_of_words(suffix), findings), findings.sorted()
+
+
+def code_of(section: Section) -> str:
+    snippet = section.code()
+    return snippet.code if snippet else ""
+
+
+def test_a_section_has_a_value_and_a_body_with_places() -> None:
+    found, findings = sections("project:  p \t\n\ndynamic_model: \n\n  a = 1;\n\n\tb = 2;  \n\n \t")
+    project, model = found
+    assert (project.word, project.value.text) == ("project", "p")
+    snippet = model.code()
+    assert snippet is not None
+    assert snippet.code == "  a = 1;\n\n\tb = 2;"
+    assert [str(origin) for origin in snippet.origins] == ["a.sd:5:1", "a.sd:6:1", "a.sd:7:1"]
+    assert findings == ()
+
+
+def test_code_may_begin_on_the_line_of_its_word() -> None:
+    (section,), _ = sections("precondition: a = 1;\nb = 2;")
+    assert code_of(section) == "a = 1;\nb = 2;"
+    snippet = section.code()
+    assert snippet is not None
+    assert str(snippet.origins[0]) == "a.sd:1:15"
+
+
+def test_a_word_inside_code_opens_nothing() -> None:
+    text = "dynamic_model:\nproject::f();\nswitch (x) {\ncase 1:\ndefault:\n y = a\n  ? b\n  : c; }"
+    (section,), findings = sections(text)
+    assert code_of(section).count("\n") == 6
+    assert findings == ()
+
+
+def test_words_of_another_case_are_taken_with_a_warning() -> None:
+    (section,), (warning,) = sections("Dynamic_Model:\nx = 1;")
+    assert section.word == "dynamic_model"
+    assert (warning.code, str(warning.span), warning.is_error) == ("AOS127", "a.sd:1:1", False)
+
+
+def test_a_misspelt_word_is_an_error_and_still_opens_its_section() -> None:
+    (first, second), (error,) = sections("precondition:\nx = 1;\ndynamic_modle:\ny = 2;")
+    assert (code_of(first), code_of(second)) == ("x = 1;", "y = 2;")
+    assert (error.code, str(error.span), error.hint) == (
+        "AOS102",
+        "a.sd:3:1",
+        "Did you mean `dynamic_model:`?",
+    )
+
+
+def test_a_section_of_another_kind_of_file_is_an_error_that_names_the_kind() -> None:
+    found, (error,) = sections("dynamic_model:\nx = 1;\nreward_code:\n__reward = 1;")
+    assert [code_of(section) for section in found] == ["x = 1;"]
+    assert error.hint == "It belongs in the environment file (.ef)"
+
+
+def test_the_parts_of_a_section_are_its_own() -> None:
+    text = (
+        "module_activation: skill\nparameter: x\ncode:\na + b\npath: /p\n"
+        "local_variable: v\ncode:\nif a:\n    return 1\ntype: bool"
+    )
+    (activation, variable), findings = sections(text, ".am")
+    assert [part.word for part in activation.parts] == ["parameter", "code", "path"]
+    assert [part.word for part in variable.parts] == ["code", "type"]
+    assert findings == ()
+
+
+def test_both_spellings_of_the_service_response_are_one_word() -> None:
+    text = "local_variable: a\nfrom_ros_reservice_response: true\nfrom_ros_service_response: true"
+    (variable,), _ = sections(text, ".am")
+    assert [part.word for part in variable.parts] == ["from_ros_service_response"] * 2
+
+
+def test_python_loses_the_indentation_its_lines_share() -> None:
+    text = "local_variable: v\ncode:\n\t\tif a:\n\t\t    return 1\n\n\t\treturn 2"
+    (variable,), _ = sections(text, ".am")
+    snippet = variable.parts[0].code()
+    assert snippet is not None
+    assert snippet.code == "if a:\n    return 1\n\nreturn 2"
+    assert str(snippet.locate(2, 5)) == "a.am:4:7"
