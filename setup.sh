@@ -96,26 +96,20 @@ make_venv() {
 
 # --- C++ -----------------------------------------------------------------------------------------------
 
-find_compiler() { # the compiler AOS will use, in its order of choice; fails when there is none
-    for candidate in ${CXX:-} g++ clang++; do
-        if command -v "$candidate" >/dev/null 2>&1; then
-            command -v "$candidate"
-            return
-        fi
-    done
-    return 1
-}
+try_compiler() { "$VENV/bin/python" deploy/try_compiler.py; }
 
 need_compiler() {
-    if compiler=$(find_compiler); then
-        say "C++ compiler: $compiler"
-    elif "$VENV/bin/python" -c 'import ziglang' >/dev/null 2>&1; then
-        say "C++ compiler: the ziglang package in $VENV"
-    else
-        say "no C++ compiler on PATH: installing the one in the ziglang package, 100 MB to load, 400 MB on disk"
-        say "(its first compilation takes about a minute, later ones are as fast as any)"
+    status=0
+    compiler=$(try_compiler 2>"$VENV/compiler-messages") || status=$?
+    if [ "$status" = 1 ] && [ -z "${CXX:-}" ]; then
+        say "no C++ compiler here: installing the one in the ziglang package, 100 MB to load, 400 MB on disk"
         install "$LOCK/compiler.txt"
+        say "building its C++ library: one to three minutes, once"
+        status=0
+        compiler=$(try_compiler 2>"$VENV/compiler-messages") || status=$?
     fi
+    [ "$status" = 0 ] || fail "no C++ compiler works:" "$(cat "$VENV/compiler-messages")"
+    say "C++ compiler: $compiler"
 }
 
 # --- packages ------------------------------------------------------------------------------------------
@@ -130,7 +124,7 @@ has_pybullet() { "$VENV/bin/python" -c 'import importlib.util as u, sys; sys.exi
 
 prepare_to_build_pybullet() { # prepare_to_build_pybullet REQUIREMENTS
     python=$VENV/bin/python
-    if ! find_compiler >/dev/null || ! has_headers "$python"; then
+    if ! command -v g++ >/dev/null 2>&1 || ! has_headers "$python"; then
         version=$(version_of "$python")
         if ! apt_install g++ "python$version-dev"; then
             # The next attempt may find another Python.

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 import typer
 
 from aos_deploy.exit_codes import exit_code_of_error
-from aos_protocol.diagnostics import render
+from aos_deploy.faults import print_fault
 from aos_protocol.errors import AosError
 
 __all__ = ["main", "up_main"]
@@ -68,8 +68,6 @@ def _run(app: typer.Typer, name: str) -> NoReturn:
     try:
         app(prog_name=name)
     except AosError as error:
-        for diagnostic in error.diagnostics:
-            typer.echo(render(diagnostic), err=True)
-        typer.echo(f"{name}: {error}", err=True)
+        print_fault(name, error)
         sys.exit(exit_code_of_error(error))
     sys.exit(0)

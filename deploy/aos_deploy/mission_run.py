@@ -45,6 +45,7 @@ class MissionRun:
         self._report = report
         self._clock = clock
         self._begun_s = begun_s
+        self.error: AosError | None = None
         self._started = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
         self._supervisor: Supervisor | None = None
         self._state: MissionState | None = None
@@ -53,27 +54,26 @@ class MissionRun:
         self._first_decision_s: float | None = None
 
     async def run(self) -> Summary:
-        """Until the mission has ended and every process with it.
+        """Until the mission has ended and every process with it, by itself, by a fault or cancelled.
 
-        AosError for whatever kept it from ending by itself; cancelling it stops everything too. In every case
-        the run directory holds a summary.
+        A fault is kept in `error`. In every case the run directory holds the summary, if there is a run
+        directory; AosError if there is none.
         """
-        deployment = self._deployment
-        run = RunDirectory.create(deployment.runs, deployment.file.robot, self._clock.now_ns())
-        self._report(Told(f"run directory {run.path}"))
-        ending, remark, code = "fault", "", ExitCode.FAULT
+        run = RunDirectory.create(self._deployment.runs, self._deployment.file.robot, self._clock.now_ns())
+        self._report(Told(f"run directory {_from_here(run.path)}"))
         try:
             state = await self._run_in(run)
             ending, remark, code = state.ending, state.remark, exit_code_of_mission(state)
         except asyncio.CancelledError:
             ending, remark, code = "cancelled", "interrupted", ExitCode.INTERRUPTED
-            raise
         except AosError as error:
+            self.error = error
+            ending = "fault" if self._has_started else "not_started"
             remark, code = str(error), exit_code_of_error(error, has_started=self._has_started)
-            raise
-        finally:
-            summary = self._summary(ending, remark, code)
-            run.write_summary(summary)
+        summary = self._summary(ending, remark, code)
+        run.write_summary(summary)
+        took = f"{summary.steps} steps in {summary.duration_s:.1f} s"
+        self._report(Told(f"{ending} after {took}; everything is kept in {_from_here(run.path)}"))
         return summary
 
     @property
@@ -114,14 +114,18 @@ class MissionRun:
         return self._state
 
     async def _start_mission(self, supervisor: Supervisor) -> None:
-        await supervisor.until_ready("registry")
-        for bundle in self._deployment.bundles:
-            await self._push(supervisor, bundle)
-        await supervisor.until_ready()
-        self._services_ready_s = self._elapsed_s()
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(self._push_bundles(supervisor))
+            await supervisor.until_ready()
+            self._services_ready_s = self._elapsed_s()
         await supervisor.bus.ask(
             supervisor.keys.start_mission, StartMission(), MissionState, timeout_s=_BUILD_TIMEOUT_S
         )
+
+    async def _push_bundles(self, supervisor: Supervisor) -> None:
+        await supervisor.until_ready("registry")
+        for bundle in self._deployment.bundles:
+            await self._push(supervisor, bundle)
 
     async def _push(self, supervisor: Supervisor, bundle: Path) -> None:
         """Brings a bundle into the registry; DocumentError with all diagnostics if it is refused."""
@@ -132,10 +136,10 @@ class MissionRun:
             BundleReport,
             timeout_s=_BUILD_TIMEOUT_S,
         )
+        found = tuple(_with_folder(diagnostic, bundle) for diagnostic in report.diagnostics)
         if not report.is_accepted:
-            found = tuple(_with_folder(diagnostic, bundle) for diagnostic in report.diagnostics)
             raise DocumentError(f"the bundle {bundle} is refused", code="AOS120", diagnostics=found)
-        self._report(report)
+        self._report(msgspec.structs.replace(report, diagnostics=found, source=str(_from_here(bundle))))
         if report.project != self._deployment.project:
             raise DeployError(
                 f"{bundle} holds the project {report.project}, not {self._deployment.project}",
@@ -203,22 +207,24 @@ async def run_until_interrupted(mission: MissionRun) -> int:
         nonlocal has_interrupted
         if has_interrupted:
             mission.kill()
-        has_interrupted = True
-        work.cancel()
+        else:
+            has_interrupted = True
+            work.cancel()
 
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         loop.add_signal_handler(number, interrupt)
-    try:
-        return (await work).exit_code
-    except asyncio.CancelledError:
-        return ExitCode.INTERRUPTED
+    return (await work).exit_code
 
 
 def _with_folder(diagnostic: Diagnostic, bundle: Path) -> Diagnostic:
     """The diagnostic with a file name that leads to the file from here."""
-    folder = bundle.relative_to(Path.cwd()) if bundle.is_relative_to(Path.cwd()) else bundle
-    span = msgspec.structs.replace(diagnostic.span, file=str(folder / diagnostic.span.file))
+    span = msgspec.structs.replace(diagnostic.span, file=str(_from_here(bundle) / diagnostic.span.file))
     return msgspec.structs.replace(diagnostic, span=span)
+
+
+def _from_here(path: Path) -> Path:
+    """The path as the user would write it."""
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
 def _files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:

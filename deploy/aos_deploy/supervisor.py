@@ -166,8 +166,8 @@ class Supervisor:
     async def _watch(self, running: _Running) -> None:
         """Raises when the process ends though nobody stopped it."""
         status = await running.child.wait()
-        self._changed(running.program.name, "ended", "" if self._is_stopping else _status_text(status))
         if not self._is_stopping:
+            self._changed(running.program.name, "ended", _status_text(status))
             raise self._end_of(running, status)
 
     def _end_of(self, running: _Running, status: int) -> AosError:
@@ -216,6 +216,7 @@ class Supervisor:
         if running is not None and running.child.returncode is None:
             self._changed(name, "stopping")
             await running.child.stop(running.program.stop_s)
+            self._changed(name, "ended")
 
     async def _cancel_skills(self) -> None:
         if self._bus is None or "skills" not in self._running:

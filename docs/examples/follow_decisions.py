@@ -2,6 +2,7 @@
 
 python docs/examples/follow_decisions.py [ENDPOINT [ROBOT]]
 """
+# ruff: noqa: T201 (it prints what it sees)
 
 from __future__ import annotations
 

@@ -242,7 +242,8 @@ class LocalVariable(msgspec.Struct, frozen=True):
 
     PARAMETER: `parameter_path` is `parameter` or `parameter.field`. SERVICE_RESPONSE: `code` assigns the
     variable from `__input`. TOPIC: `code` is a function body over `__input` that returns the new value;
-    `initial_value` is a Python expression, evaluated anew for each activation.
+    `initial_value` is a Python expression, evaluated anew for each activation. `source_span` is where the
+    parameter path or the topic stands.
     """
 
     name: str
@@ -256,7 +257,7 @@ class LocalVariable(msgspec.Struct, frozen=True):
     code: Snippet | None = None
     imports: tuple[Import, ...] = ()
     is_heavy: bool = False
-    parameter_span: Span | None = None
+    source_span: Span | None = None
 
 
 class ActivationField(msgspec.Struct, frozen=True):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import time
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +12,7 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
+from aos_deploy.faults import print_fault
 
 __all__ = ["register", "up"]
 
@@ -54,7 +57,7 @@ def up(
     from aos_runtime.clock import SystemClock
 
     clock = SystemClock()
-    begun_s = clock.monotonic_s()
+    begun_s = clock.monotonic_s() - _process_age_s()
     deployment = read_deploy_file(deploy)
     file = deployment.file
     if seed is not None:
@@ -67,6 +70,16 @@ def up(
     )
     title = f"{file.robot} · {deploy.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
+    mission = MissionRun(deployment, view, clock, begun_s)
     with view:
-        code = asyncio.run(run_until_interrupted(MissionRun(deployment, view, clock, begun_s)))
+        code = asyncio.run(run_until_interrupted(mission))
+    if mission.error is not None:
+        print_fault("aos-up", mission.error)
     raise typer.Exit(code)
+
+
+def _process_age_s() -> float:
+    """How long ago this process was started: importing takes a good part of the way to the first decision."""
+    fields = Path("/proc/self/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    started_s = int(fields[19]) / os.sysconf("SC_CLK_TCK")
+    return time.clock_gettime(time.CLOCK_BOOTTIME) - started_s

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from typing import Self
 
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.live import Live
 from rich.spinner import Spinner
 from rich.table import Table
@@ -24,7 +25,8 @@ from aos_protocol.messages import (
 __all__ = ["LiveView", "Screen"]
 
 _BAR_CELLS = 20
-_SHOWN_STEPS = 12
+_FEWEST_STEPS = 3
+_OTHER_ROWS = 10
 _SHOWN_VALUES = 4
 _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow", "ended": "dim"}
 
@@ -63,15 +65,20 @@ class Screen:
         if text != self.remark:
             self.remark, self.remark_since_s = text, time.monotonic()
 
-    def __rich__(self) -> RenderableType:
-        parts: list[RenderableType] = [self._headline(), self._services()]
-        if self.steps:
-            parts += [Text(), self._step_table()]
+    def __rich_console__(self, console: Console, _: ConsoleOptions) -> RenderResult:
+        yield self._headline()
+        yield self._services()
         if self.latest is not None:
+            beliefs, values = _belief_table(self.latest.belief), _value_table(self.latest)
             columns = Table.grid(padding=(0, 4))
-            columns.add_row(_belief_table(self.latest.belief), _value_table(self.latest))
-            parts += [Text(), columns]
-        return Group(*parts, Text(), self._progress())
+            columns.add_row(beliefs, values)
+            room = console.height - max(beliefs.row_count, values.row_count) - _OTHER_ROWS
+            yield Text()
+            yield self._step_table(max(room, _FEWEST_STEPS))
+            yield Text()
+            yield columns
+        yield Text()
+        yield from self._progress()
 
     def _headline(self) -> Text:
         text = Text(self.title, style="bold")
@@ -87,18 +94,21 @@ class Screen:
             text.append(f"{state}   ", style=_SERVICE_STYLES.get(state, ""))
         return text
 
-    def _progress(self) -> RenderableType:
-        if self.state is not None and self.state.phase == "ended":
-            return Text(f"{self.state.ending}: {self.remark}", style="bold")
-        elapsed_s = time.monotonic() - self.remark_since_s
-        return Spinner("dots", Text(f"{self.remark} ... {elapsed_s:.0f} s"))
+    def _progress(self) -> Iterator[RenderableType]:
+        if self.state is None or self.state.phase != "ended":
+            elapsed_s = time.monotonic() - self.remark_since_s
+            yield Spinner("dots", Text(f"{self.remark} ... {elapsed_s:.0f} s"))
+            return
+        yield Text(f"{self.state.ending}: {self.state.remark}", style="bold")
+        if self.remark != self.state.remark:
+            yield Text(self.remark)
 
-    def _step_table(self) -> Table:
+    def _step_table(self, row_count: int) -> Table:
         table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
         for column in ("step", "action", "value", "observation", "surprise", "goal"):
             is_number = column in ("step", "value", "surprise", "goal")
             table.add_column(column, justify="right" if is_number else "left", no_wrap=True)
-        for step in sorted(self.steps)[-_SHOWN_STEPS:]:
+        for step in sorted(self.steps)[-row_count:]:
             record = self.steps[step]
             chosen = _value_of(record)
             table.add_row(

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping
 
+from aos_protocol.codec import encode
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
+from aos_protocol.errors import BusError
 from aos_protocol.messages import BundleReport, ProjectRevision
 from aos_registry.catalogue import Catalogue
 from aos_registry.documents.document import DocumentKind
@@ -60,6 +62,8 @@ class Intake:
         diagnostics += findings
         if has_errors(findings):
             return BundleReport(project, False, number, diagnostics, source=source), False
+        if too_large := _too_large_for_the_bus(loaded.project):
+            return BundleReport(project, False, number, (*diagnostics, too_large), source=source), False
         before = self.revisions.get(project)
         added, changed = changed_skills(before.project if before else None, loaded.project)
         names = tuple(skill.name for skill in loaded.project.skills)
@@ -78,3 +82,13 @@ class Intake:
         span = next((document.span for document in documents), Span("bundle"))
         message = f"the catalogue holds no project `{project}` that these documents could extend"
         return (Diagnostic(Severity.ERROR, "AOS113", message, span, hint),)
+
+
+def _too_large_for_the_bus(project: Project) -> Diagnostic | None:
+    """Why a project could be stored and then not be told to anybody."""
+    try:
+        encode(ProjectRevision(0, "", project), sender="registry", stamp_ns=0)
+    except BusError as error:
+        hint = f"{error.hint}; split the project"
+        return Diagnostic(Severity.ERROR, "AOS120", error.message, Span(project.name), hint)
+    return None

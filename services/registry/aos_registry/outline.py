@@ -22,7 +22,9 @@ from aos_protocol.documents import (
 
 __all__ = ["outline"]
 
-_PLACE_COLUMN = 76
+_PLACE_COLUMN = 78
+_PLACE = "\0"
+"""Between a line's text and its place, until all lines are there and can be aligned."""
 
 
 def outline(project: Project) -> str:
@@ -35,7 +37,7 @@ def outline(project: Project) -> str:
         lines += _low_level(project.low_level)
     for skill in project.skills:
         lines += ["", *_skill(skill)]
-    return "\n".join(lines) + "\n"
+    return "".join(f"{_aligned(line)}\n" for line in lines)
 
 
 def _environment(environment: Environment) -> Iterator[str]:
@@ -162,4 +164,9 @@ def _indented(lines: Iterator[str]) -> Iterator[str]:
 
 
 def _placed(text: str, span: Span) -> str:
-    return f"{text:<{_PLACE_COLUMN}}  {span}"
+    return f"{text}{_PLACE}{span}"
+
+
+def _aligned(line: str) -> str:
+    text, _, place = line.partition(_PLACE)
+    return f"{text:<{_PLACE_COLUMN}}  {place}" if place else text

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import builtins
 import keyword
+import re
 import warnings
 from collections.abc import Iterable
 
@@ -23,6 +24,7 @@ from aos_registry.documents.source import Findings, did_you_mean, quoted
 
 __all__ = ["check_low_level", "check_mapping"]
 
+_PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 _BUILT_IN_NAMES = frozenset(dir(builtins))
 
 
@@ -30,6 +32,7 @@ def check_mapping(
     mapping: AbstractionMapping, model: SkillModel | None, scope: Scope, findings: Findings
 ) -> None:
     """Rules, local variables and the request of one mapping."""
+    _check_path(mapping.activation.path, mapping.activation.span, findings)
     _check_local_names(mapping, findings)
     known = _known_names(mapping)
     for rule in mapping.rules:
@@ -52,6 +55,12 @@ def check_low_level(document: LowLevelDocument, findings: Findings) -> None:
     """The code that makes low-level constants."""
     for constant in document.constants:
         _parse(constant.code, "exec", findings)
+
+
+def _check_path(path: str, span: Span, findings: Findings) -> None:
+    if not _PATH.fullmatch(path):
+        hint = "A path is made of letters, digits, _ and -, with / between"
+        findings.error("AOS126", f"{path!r} cannot be a path", span, hint)
 
 
 def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
@@ -100,6 +109,8 @@ def _check_expression(snippet: Snippet | None, known: frozenset[str] | None, fin
 
 
 def _check_variable(variable: LocalVariable, findings: Findings) -> None:
+    if variable.source is LocalSource.TOPIC:
+        _check_path(variable.topic, variable.source_span or variable.span, findings)
     if variable.initial_value is not None:
         _parse(variable.initial_value, "eval", findings)
     if variable.code is None:
@@ -180,7 +191,7 @@ def _constant_truth(condition: Snippet | None) -> bool | None:
 
 def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, findings: Findings) -> None:
     name, *fields = variable.parameter_path.split(".")
-    span = variable.parameter_span or variable.span
+    span = variable.source_span or variable.span
     parameters = {parameter.name: parameter.type for parameter in model.parameters}
     if name not in parameters:
         message = f"the skill {model.name} has no parameter `{name}`"

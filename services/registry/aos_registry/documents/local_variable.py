@@ -42,6 +42,7 @@ def build_local_variable(parts: LocalVariableParts, findings: Findings) -> Local
         message = f"the local variable {parts.name.text} has no code that gives its value"
         findings.error("AOS105", message, parts.name.span)
         return None
+    given = parts.parameter_path or parts.topic
     return LocalVariable(
         name=parts.name.text,
         source=source,
@@ -54,7 +55,7 @@ def build_local_variable(parts: LocalVariableParts, findings: Findings) -> Local
         code=parts.code,
         imports=parts.imports,
         is_heavy=parts.is_heavy,
-        parameter_span=parts.parameter_path.span if parts.parameter_path else None,
+        source_span=given.span if given is not None else None,
     )
 
 

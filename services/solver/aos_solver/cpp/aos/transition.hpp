@@ -68,14 +68,21 @@ double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
 
 namespace detail {
 
+// Out of the way of the code that runs in every step.
+[[noreturn, gnu::cold, gnu::noinline]] inline void no_such_response(int response) {
+  throw ModelFault{"AOS215", "__moduleResponse is " + std::to_string(response) + ", which is no response"};
+}
+[[noreturn, gnu::cold, gnu::noinline]] inline void no_such_reward(double reward) {
+  throw ModelFault{"AOS214", "the reward is " + std::to_string(reward)};
+}
+
 template <class Skill>
 Observation observation_of(const auto& effect) {
   if constexpr (Skill::has_text_response) {
     if (effect.text != no_text_response) return text_observation(effect.text);
   }
-  if (effect.response < 0 || effect.response > static_cast<int>(Skill::response_names.size())) {
-    throw ModelFault{"AOS215", "__moduleResponse is " + std::to_string(effect.response) + ", which is no response"};
-  }
+  constexpr int last = static_cast<int>(Skill::response_names.size());
+  if (effect.response < 0 || effect.response > last) no_such_response(effect.response);
   return effect.response - 1;
 }
 
@@ -101,7 +108,7 @@ Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, a
 
   Step step;
   step.reward = penalty + extrinsic_reward + effect.reward + special_reward;
-  if (!std::isfinite(step.reward)) throw ModelFault{"AOS214", "the reward is " + std::to_string(step.reward)};
+  if (!std::isfinite(step.reward)) no_such_reward(step.reward);
   step.observation = observation_of<Skill>(effect);
   blame::at(0);
   return step;
@@ -121,20 +128,27 @@ Step transition(State& next, const auto& parameters, auto& random) {
   }
 }
 
-}  // namespace detail
-
-// Runs a skill in place. An ended state stays as it is and earns nothing; what it lets the robot observe is what the
-// documents give for it, or the default observation where they do not reckon with such a state.
+// What an ended state lets the robot observe: what the documents give for it, or the default observation where they do
+// not reckon with such a state.
 template <class Environment, class Skill, class State>
-Step step(State& state, const auto& parameters, auto& random) {
-  if (state.__ending == Ending::running) return detail::transition<Environment, Skill>(state, parameters, random);
-  State copy = state;
+[[gnu::noinline]] Step step_after_the_end(State copy, const auto& parameters, auto& random) {
   copy.__ending = Ending::running;
   try {
-    return {0, detail::transition<Environment, Skill>(copy, parameters, random).observation};
+    return {0, transition<Environment, Skill>(copy, parameters, random).observation};
   } catch (const ModelFault&) {
     return {};
   }
+}
+
+}  // namespace detail
+
+// Runs a skill in place. An ended state stays as it is and earns nothing.
+template <class Environment, class Skill, class State>
+Step step(State& state, const auto& parameters, auto& random) {
+  if (state.__ending != Ending::running) [[unlikely]] {
+    return detail::step_after_the_end<Environment, Skill>(state, parameters, random);
+  }
+  return detail::transition<Environment, Skill>(state, parameters, random);
 }
 
 template <class Skill>

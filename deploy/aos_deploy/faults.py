@@ -1,0 +1,17 @@
+"""How a fault is told at the terminal."""
+
+from __future__ import annotations
+
+import typer
+
+from aos_protocol.diagnostics import render
+from aos_protocol.errors import AosError
+
+__all__ = ["print_fault"]
+
+
+def print_fault(command: str, error: AosError) -> None:
+    """On stderr: every diagnostic with its place, then what it comes to."""
+    for diagnostic in error.diagnostics:
+        typer.echo(render(diagnostic), err=True)
+    typer.echo(f"{command}: {error}", err=True)

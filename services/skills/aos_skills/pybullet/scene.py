@@ -1,0 +1,125 @@
+"""The room in pybullet: floor, walls, tables, cans, the person with a tray. The robot is in `robot`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pybullet
+import pybullet_data
+from pybullet_utils.bullet_client import BulletClient
+
+from aos_skills.pybullet.world_file import Can, Table, WorldFile
+
+__all__ = ["STEP_S", "TABLE_TOP_M", "TRAY_TOP_M", "Scene"]
+
+STEP_S = 1 / 240
+TABLE_TOP_M = 0.5
+TABLE_HALF_M = (0.5, 0.4)
+TRAY_TOP_M = 0.72
+TRAY_HALF_M = 0.14
+TRAY_FROM_PERSON_M = 0.36
+
+_WOOD = (0.72, 0.53, 0.34, 1)
+_WALL = (0.87, 0.88, 0.84, 1)
+_FLOOR = (0.62, 0.66, 0.70, 1)
+_EASY, _HARD = (0.80, 0.13, 0.15, 1), (0.95, 0.65, 0.10, 1)
+_SHIRT, _SKIN, _TRAY = (0.16, 0.36, 0.62, 1), (0.93, 0.76, 0.62, 1), (0.92, 0.92, 0.94, 1)
+
+
+class Scene:
+    """Owns the pybullet client and every body but the robot. `step` is the only way that time passes."""
+
+    def __init__(self, file: WorldFile) -> None:
+        self.client = BulletClient(connection_mode=pybullet.DIRECT)
+        self.data = Path(pybullet_data.getDataPath())
+        self.file = file
+        self.time_s = 0.0
+        self.client.setGravity(0, 0, -9.81)
+        self.client.setTimeStep(STEP_S)
+        self._box((6, 6, 0.05), (2, 0, -0.05), _FLOOR)
+        self._walls()
+        self.cans = {name: self._table_with_can(table, name) for name, table in file.tables.items()}
+        self.person = self._person()
+
+    def step(self) -> None:
+        self.client.stepSimulation()
+        self.time_s += STEP_S
+
+    def can_place(self, name: str) -> tuple[float, float, float]:
+        """Where a can's centre is, in metres."""
+        x, y, z = self.client.getBasePositionAndOrientation(self.cans[name])[0]
+        return x, y, z
+
+    def is_on_tray(self, name: str) -> bool:
+        """Whether the person has that can."""
+        x, y, z = self.can_place(name)
+        person = self.file.person
+        tray_x = person.x - TRAY_FROM_PERSON_M
+        is_above = abs(x - tray_x) < TRAY_HALF_M and abs(y - person.y) < TRAY_HALF_M
+        return is_above and TRAY_TOP_M - 0.02 < z < TRAY_TOP_M + 0.1
+
+    def close(self) -> None:
+        self.client.disconnect()
+
+    def _box(
+        self,
+        half: tuple[float, float, float],
+        at: tuple[float, float, float],
+        color: tuple[float, float, float, float],
+    ) -> int:
+        client = self.client
+        body: int = client.createMultiBody(
+            0,
+            client.createCollisionShape(pybullet.GEOM_BOX, halfExtents=half),
+            client.createVisualShape(pybullet.GEOM_BOX, halfExtents=half, rgbaColor=color),
+            at,
+        )
+        client.changeDynamics(body, -1, lateralFriction=0.9)
+        return body
+
+    def _walls(self) -> None:
+        """The room is open to the camera's side; the corridor leaves it at x = 2.5 m."""
+        self._box((2.2, 0.05, 0.5), (0.2, 3.9, 0.5), _WALL)
+        self._box((0.05, 3.9, 0.5), (-2.0, 0, 0.5), _WALL)
+        self._box((0.05, 1.35, 0.5), (2.4, 2.55, 0.5), _WALL)
+        self._box((1.9, 0.05, 0.5), (4.3, 1.2, 0.5), _WALL)
+
+    def _table_with_can(self, table: Table, name: str) -> int:
+        thickness = 0.02
+        half_x, half_y = TABLE_HALF_M
+        self._box((half_x, half_y, thickness), (table.x, table.y, TABLE_TOP_M - thickness), _WOOD)
+        leg = (TABLE_TOP_M - 2 * thickness) / 2
+        for side_x in (-1, 1):
+            for side_y in (-1, 1):
+                at = (table.x + side_x * (half_x - 0.04), table.y + side_y * (half_y - 0.04), leg)
+                self._box((0.03, 0.03, leg), at, _WOOD)
+        return self._can(table.can, _EASY if name == "easy" else _HARD)
+
+    def _can(self, can: Can, color: tuple[float, float, float, float]) -> int:
+        client = self.client
+        body: int = client.createMultiBody(
+            # A full can weighs a tenth of a kilogram; a tenth of its size, a thousandth of that.
+            max(0.1 * (can.radius / 0.033) ** 3, 0.002),
+            client.createCollisionShape(pybullet.GEOM_CYLINDER, radius=can.radius, height=can.height),
+            client.createVisualShape(
+                pybullet.GEOM_CYLINDER, radius=can.radius, length=can.height, rgbaColor=color
+            ),
+            (can.x, can.y, TABLE_TOP_M + can.height / 2),
+        )
+        client.changeDynamics(body, -1, lateralFriction=1.0, rollingFriction=1e-4, spinningFriction=1e-3)
+        return body
+
+    def _person(self) -> int:
+        """A standing figure that holds a tray towards the robot."""
+        client, place = self.client, self.file.person
+        x, y = place.x, place.y
+        self._box((0.09, 0.16, 0.4), (x, y, 0.4), (0.2, 0.2, 0.25, 1))
+        body = self._box((0.12, 0.22, 0.3), (x, y, 1.1), _SHIRT)
+        head = client.createVisualShape(pybullet.GEOM_SPHERE, radius=0.13, rgbaColor=_SKIN)
+        client.createMultiBody(0, -1, head, (x, y, 1.55))
+        for side in (-1, 1):
+            arm = (x - TRAY_FROM_PERSON_M / 2, y + side * 0.18, TRAY_TOP_M + 0.03)
+            self._box((TRAY_FROM_PERSON_M / 2, 0.035, 0.035), arm, _SKIN)
+        tray = (x - TRAY_FROM_PERSON_M, y, TRAY_TOP_M - 0.01)
+        self._box((TRAY_HALF_M, TRAY_HALF_M, 0.01), tray, _TRAY)
+        return body

@@ -1,0 +1,147 @@
+"""What the Armadillo can do: navigate, pick, sense, serve. Outcomes come out of the physics.
+
+Faults that a simulator cannot produce (perception noise, an arm that stays out, fingers that report nothing)
+are drawn from the seeded fault model; whether a grasp holds is not.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable
+from typing import Any
+
+from aos_skills.pybullet.robot import TUCKED, Robot
+from aos_skills.pybullet.scene import TABLE_TOP_M, TRAY_FROM_PERSON_M, TRAY_TOP_M, Scene
+
+__all__ = ["ArmadilloSkills"]
+
+STRETCHED = (0.0, 0.75, 0.0, -0.75, 0.0, 1.5, 0.785)
+"""Arm joint angles in radians of an arm that did not return."""
+REACH_M = 0.8
+HOLDING_GAP_M = 0.004
+CROSSING = (0.0, 0.0)
+"""All ways between the places lead over the middle of the room."""
+LOWEST_GRASP_M = 0.009
+GRASP_SHARE = 0.36
+"""Of the perceived height, where the fingers grasp."""
+LIFT_M = 0.22
+SENSING_S = 0.5
+APPROACH_M = 0.25
+RELEASE_HEIGHT_M = 0.07
+
+
+class ArmadilloSkills:
+    """The skills by activation path; each takes the request's fields and returns the answer's."""
+
+    def __init__(self, scene: Scene, robot: Robot, seed: int) -> None:
+        self._scene = scene
+        self._robot = robot
+        self._faults = random.Random(f"faults {seed}")
+        self._noise = random.Random(f"perception {seed}")
+        self.is_silent = False
+        """Whether the finger sensors report nothing during this call."""
+        self.has_injured = False
+        self.drawn: list[str] = []
+        """The faults of the current call, for the record."""
+        self.by_path: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
+            "/navigate": self._navigate,
+            "/pick": self._pick,
+            "/sense": self._sense,
+            "/serve": self._serve,
+        }
+
+    def call(self, path: str, fields: dict[str, Any]) -> dict[str, Any]:
+        """Runs a skill to its end."""
+        self.drawn.clear()
+        self.is_silent = self._draw("silent fingers", self._scene.file.faults.silent_fingers)
+        return self.by_path[path](fields)
+
+    @property
+    def is_holding(self) -> bool:
+        """The truth, which the robot itself has to sense."""
+        left, right = self._robot.finger_forces_n()
+        return left > 0 and right > 0 and self._robot.gap_m > HOLDING_GAP_M
+
+    def watch_person(self) -> None:
+        """Remembers any touch of the person; called at every simulation step."""
+        if self._scene.client.getContactPoints(bodyA=self._robot.body, bodyB=self._scene.person):
+            self.has_injured = True
+
+    def _navigate(self, fields: dict[str, Any]) -> dict[str, Any]:
+        x, y, yaw = float(fields["x"]), float(fields["y"]), float(fields["yaw"])
+        at_x, at_y, at_yaw = self._robot.base_place
+        if math.hypot(x - at_x, y - at_y) < 0.05:
+            return {"success": self._robot.drive_to(x, y, yaw)}
+        has_crossed = self._robot.drive_to(*CROSSING, at_yaw)
+        return {"success": has_crossed and self._robot.drive_to(x, y, yaw)}
+
+    def _pick(self, _: dict[str, Any]) -> dict[str, Any]:
+        robot = self._robot
+        robot.open_gripper()
+        robot.move_arm(TUCKED)
+        can = self._can_in_reach()
+        if can is None:
+            return {"success": True}
+        x, y, height = self._perceived(can)
+        above = TABLE_TOP_M + LIFT_M
+        grasp = TABLE_TOP_M + max(height, LOWEST_GRASP_M)
+        robot.move_tip((x, y, above))
+        robot.move_tip((x, y, grasp), speed_m_s=0.15)
+        robot.close_gripper()
+        robot.move_tip((x, y, above))
+        has_load = self.is_holding
+        if has_load and self._draw("the arm stays out", self._scene.file.faults.arm_stays_out):
+            robot.move_arm(STRETCHED)
+            return {"success": False}
+        robot.move_arm(TUCKED)
+        return {"success": True}
+
+    def _sense(self, _: dict[str, Any]) -> dict[str, Any]:
+        self._robot.wait(SENSING_S)
+        return {}
+
+    def _serve(self, _: dict[str, Any]) -> dict[str, Any]:
+        """Holds out what it has, lets go, and reports a delivery whatever happened, as the original did."""
+        robot = self._robot
+        x, y, _yaw = robot.base_place
+        person = self._scene.file.person
+        tray = (person.x - TRAY_FROM_PERSON_M, person.y)
+        if math.dist((x, y), tray) < 1.5:
+            robot.creep(APPROACH_M)
+            robot.move_tip((*tray, TRAY_TOP_M + RELEASE_HEIGHT_M))
+            robot.open_gripper()
+            robot.move_arm(TUCKED)
+            robot.creep(-APPROACH_M)
+        else:
+            robot.open_gripper()
+        return {"success": True}
+
+    def _can_in_reach(self) -> str | None:
+        """A can on a table, near enough to the arm; the robot sees it whatever it really is."""
+        x, y, yaw = self._robot.base_place
+        foot = (x + 0.25 * math.cos(yaw), y + 0.25 * math.sin(yaw))
+        for name in self._scene.cans:
+            can_x, can_y, can_z = self._scene.can_place(name)
+            if can_z > TABLE_TOP_M - 0.01 and math.dist(foot, (can_x, can_y)) < REACH_M:
+                return name
+        return None
+
+    def _perceived(self, name: str) -> tuple[float, float, float]:
+        """Where to grasp, as far as the robot can see: x, y, and the height above the table, in metres."""
+        file = self._scene.file
+        can = file.tables[name].can
+        x, y, _ = self._scene.can_place(name)
+        noise = self._noise
+        height = GRASP_SHARE * can.height * can.perceived_scale
+        return (
+            x + noise.gauss(0, file.faults.pose_noise_m),
+            y + noise.gauss(0, file.faults.pose_noise_m),
+            height + noise.gauss(0, file.faults.height_noise_m),
+        )
+
+    def _draw(self, fault: str, probability: float) -> bool:
+        happens = self._faults.random() < probability
+        if happens:
+            self.drawn.append(fault)
+        return happens

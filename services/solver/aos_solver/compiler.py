@@ -1,0 +1,106 @@
+"""Which C++ compiler this machine has, and how it is called.
+
+In this order: what $CXX names, g++, clang++, and the `ziglang` wheel, which brings clang and a C++ library
+with it for machines without a compiler.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import importlib.util
+import os
+import re
+import shlex
+import shutil
+import sys
+from collections.abc import Iterator, Mapping
+
+import msgspec
+
+from aos_protocol.errors import DeployError, ModelError
+from aos_runtime.children import PIPE, Child
+
+__all__ = ["Compiler", "Family", "find_compiler"]
+
+Family = str
+"""`gcc`, `clang`, or `zig`, which is clang inside."""
+
+_OLDEST = {"gcc": 11, "clang": 15}
+_VERSION_TIMEOUT_S = 30.0
+_HINT = "Install g++ 11 or newer (apt install g++), or the `ziglang` wheel (pip install 'aos[compiler]')"
+
+
+class Compiler(msgspec.Struct, frozen=True):
+    """A compiler that can build models. `version` is the first line that it says about itself."""
+
+    command: tuple[str, ...]
+    family: Family
+    version: str
+
+    def arguments(self, *, optimize: str, include: str, source: str, output: str) -> list[str]:
+        """The command line that compiles one file into an executable."""
+        return [*self.command, *self.flags(optimize), "-I", include, source, "-o", output]
+
+    def flags(self, optimize: str) -> list[str]:
+        """Flags that decide what comes out; messages as `file:line:column: error: text`, columns in bytes."""
+        common = ["-std=c++20", optimize, "-ffp-contract=off", "-w"]
+        if self.family == "gcc":
+            messages = ["-fdiagnostics-color=never", "-fno-diagnostics-show-caret", "-fmax-errors=40"]
+            return [*common, "-Wno-narrowing", "-fdiagnostics-column-unit=byte", *messages]
+        messages = ["-fno-color-diagnostics", "-fno-caret-diagnostics", "-ferror-limit=40"]
+        sanitizers = ["-fno-sanitize=all"] if self.family == "zig" else []
+        return [*common, "-Wno-c++11-narrowing", *messages, *sanitizers]
+
+    @property
+    def deadline_s(self) -> float:
+        """How long one build may take; zig builds its C++ library the first time."""
+        return 240.0 if self.family == "zig" else 90.0
+
+
+async def find_compiler(environment: Mapping[str, str] = os.environ) -> Compiler:
+    """The first compiler that is new enough; ModelError AOS203 if there is none."""
+    reasons: list[str] = []
+    for command in _candidates(environment):
+        compiler, reason = await _examine(command)
+        if compiler is not None:
+            return compiler
+        reasons.append(reason)
+        if environment.get("CXX") and command == tuple(shlex.split(environment["CXX"])):
+            raise ModelError(f"CXX is set, but {reason}", code="AOS203", hint="Unset CXX or mend it")
+    found = f": {'; '.join(reasons)}" if reasons else ""
+    raise ModelError(f"no C++ compiler to build the model with{found}", code="AOS203", hint=_HINT)
+
+
+def _candidates(environment: Mapping[str, str]) -> Iterator[tuple[str, ...]]:
+    if environment.get("CXX"):
+        yield tuple(shlex.split(environment["CXX"]))
+    for name in ("g++", "clang++"):
+        if shutil.which(name, path=environment.get("PATH")):
+            yield (name,)
+    if importlib.util.find_spec("ziglang") is not None:
+        yield (sys.executable, "-m", "ziglang", "c++")
+
+
+async def _examine(command: tuple[str, ...]) -> tuple[Compiler | None, str]:
+    """The compiler, or why it cannot be used."""
+    name = shlex.join(command)
+    try:
+        child = await Child.start([*command, "--version"], stdout=PIPE, stderr=asyncio.subprocess.DEVNULL)
+    except DeployError as error:
+        return None, error.message
+    try:
+        async with asyncio.timeout(_VERSION_TIMEOUT_S):
+            text = (await child.stdout.read()).decode(errors="replace")
+            status = await child.wait()
+    except TimeoutError:
+        await child.stop()
+        return None, f"{name} does not answer"
+    if status != 0 or not text.strip():
+        return None, f"{name} does not run"
+    line = text.splitlines()[0].strip()
+    family = "zig" if "ziglang" in command or " zig" in name else "clang" if "clang" in text else "gcc"
+    major = re.search(r"\b(\d+)\.\d+", line.removeprefix("g++").split(")")[-1] or line)
+    oldest = _OLDEST["gcc" if family == "gcc" else "clang"]
+    if major is not None and int(major[1]) < oldest:
+        return None, f"{name} is too old ({line}; {oldest} is needed)"
+    return Compiler(command, family, line), ""

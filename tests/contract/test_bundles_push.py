@@ -1,0 +1,82 @@
+"""`aos bundle` against a running registry."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+import sys
+from collections.abc import AsyncIterator, Awaitable, Callable
+from pathlib import Path
+
+import msgspec
+import pytest_asyncio
+import typer
+from typer.testing import CliRunner, Result
+
+from aos_deploy.commands import bundle
+from aos_protocol.keys import Keys
+from aos_registry.settings import Settings
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+
+Aos = Callable[..., Awaitable[Result]]
+
+
+@pytest_asyncio.fixture
+async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncIterator[Aos]:
+    """Runs `aos` with a registry on the bus."""
+    settings = Settings(robot="test", service="registry", endpoint=endpoint, run_dir=str(tmp_path))
+    path = tmp_path / "registry.json"
+    path.write_bytes(msgspec.json.encode(settings))
+    async with asyncio.timeout(20), bus.presence(keys.live("registry")) as presence:
+        child = await Child.start(
+            [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
+        )
+        async for _, is_alive in presence:
+            if is_alive:
+                break
+    app = typer.Typer()
+    bundle.register(app)
+
+    async def run(*arguments: str) -> Result:
+        where = ["--connect", endpoint, "--robot", "test"]
+        return await asyncio.to_thread(CliRunner().invoke, app, [*arguments, *where])
+
+    yield run
+    await child.stop(5.0)
+
+
+async def test_a_bundle_is_pushed_listed_and_shown(aos: Aos, bundles: Path) -> None:
+    assert (await aos("bundle", "list")).output == "The registry holds no projects.\n"
+    pushed = await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    assert pushed.exit_code == 0, pushed.output
+    skills = "navigate, observe_arm_outstretched, observe_holding, pick, serve"
+    assert pushed.output.endswith(f"project armadillo, revision 1, added {skills}\n")
+    again = await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    assert again.output.endswith("project armadillo, revision 1, nothing new\n")
+    listed = json.loads((await aos("bundle", "list", "--json")).output)
+    assert [(e["project"], e["revision"], len(e["skills"])) for e in listed["entries"]] == [
+        ("armadillo", 1, 5)
+    ]
+    shown = (await aos("bundle", "show")).output
+    assert shown.startswith("revision 1, digest ")
+    assert "skill pick()" in shown
+
+
+async def test_a_refused_bundle_ends_with_one_and_leaves_the_revision(
+    aos: Aos, bundles: Path, tmp_path: Path
+) -> None:
+    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    folder = shutil.copytree(bundles / "armadillo-rough", tmp_path / "rough")
+    (folder / "pick.am").write_text("project: armadillo\nresponse: pick_succeeded\nresponse_rule: True +\n")
+    refused = await aos("bundle", "push", str(folder))
+    assert refused.exit_code == 1
+    assert "pick.am:1:1: error[AOS105]: the mapping pick lacks `module_activation:`" in refused.output
+    assert refused.output.endswith("refused; the project stays at revision 1\n")
+
+
+async def test_an_unknown_project_is_named_with_the_nearest(aos: Aos, bundles: Path) -> None:
+    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    shown = await aos("bundle", "show", "armadilo")
+    assert "Did you mean `armadillo`?" in str(shown.exception)

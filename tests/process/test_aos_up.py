@@ -1,0 +1,293 @@
+"""The main job: `aos-up` with the real services, watched from outside, ended in every way."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from processes import descendants, has_listener, is_running, until_ended
+
+from aos_runtime.journal import Journal
+
+BIN = Path(sys.executable).parent
+PATIENCE_S = 120.0
+ENDINGS = {"goal": 0, "failure": 4, "nothing_worthwhile": 5, "step_limit": 6}
+
+
+@pytest.fixture(scope="module")
+def deploy_file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The shipped deploy file on a free port, with a small planning budget and runs of its own."""
+    folder = tmp_path_factory.mktemp("deploy")
+    text = (root / "deploy" / "armadillo.yaml").read_text()
+    replaced = {
+        "tcp/127.0.0.1:7447": "tcp/127.0.0.1:0",
+        "[bundles/": f"[{root}/deploy/bundles/",
+        "world: worlds/": f"world: {root}/deploy/worlds/",
+        "simulations: 100_000": "simulations: 5_000",
+        "runs: ../runs": "runs: runs",
+    }
+    for old, new in replaced.items():
+        assert old in text
+        text = text.replace(old, new)
+    path = folder / "armadillo.yaml"
+    path.write_text(text)
+    return path
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _cache(cache_dir: Path) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("AOS_CACHE_DIR", str(cache_dir))
+        yield
+
+
+class Up:
+    """A running aos-up that prints JSON events."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.events: list[dict[str, Any]] = []
+        self.pids: list[int] = []
+
+    def until(self, kind: str) -> dict[str, Any]:
+        """The next event of a kind; on the way, everything below the process is noted."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            event = json.loads(line)
+            self.events.append(event)
+            if event["event"] == kind:
+                self.pids = [self.process.pid, *descendants(self.process.pid)]
+                return event
+        pytest.fail(f"aos-up ended before any {kind}: {self.events}\n{self.error_text()}")
+
+    def error_text(self) -> str:
+        assert self.process.stderr is not None
+        return self.process.stderr.read()
+
+    def rest(self) -> int:
+        """Reads to the end; the exit code."""
+        assert self.process.stdout is not None
+        self.events += [json.loads(line) for line in self.process.stdout]
+        return self.process.wait(PATIENCE_S)
+
+
+@contextmanager
+def up(deploy_file: Path, *options: str) -> Iterator[Up]:
+    process = subprocess.Popen(
+        [BIN / "aos-up", deploy_file, "--json", *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    with process:
+        try:
+            yield Up(process)
+        finally:
+            process.kill()
+
+
+def latest(deploy_file: Path) -> Path:
+    return (deploy_file.parent / "runs" / "latest").resolve()
+
+
+def port_of(run: Path) -> int:
+    record = json.loads((run / "run.json").read_text())
+    return int(record["endpoint"].rpartition(":")[2])
+
+
+class Mission(NamedTuple):
+    up: Up
+    status: int
+    run: Path
+    followed: list[dict[str, Any]]
+    example: str
+
+
+@pytest.fixture(scope="module")
+def mission(root: Path, deploy_file: Path) -> Mission:
+    """One whole mission, followed by two programs that join after its first decision."""
+    with up(deploy_file) as running:
+        running.until("decision")
+        run = latest(deploy_file)
+        record = json.loads((run / "run.json").read_text())
+        follow = [BIN / "aos", "decisions", "--json", "--runs", run.parent]
+        example = [sys.executable, root / "docs/examples/follow_decisions.py", record["endpoint"]]
+        with (
+            subprocess.Popen(follow, stdout=subprocess.PIPE, text=True) as follower,
+            subprocess.Popen(example, stdout=subprocess.PIPE, text=True) as script,
+        ):
+            status = running.rest()
+            lines, _ = follower.communicate(timeout=PATIENCE_S)
+            printed, _ = script.communicate(timeout=PATIENCE_S)
+    return Mission(running, status, run, [json.loads(line) for line in lines.splitlines()], printed)
+
+
+def test_a_mission_ends_in_a_defined_way(mission: Mission) -> None:
+    ended = [event for event in mission.up.events if event["event"] == "mission"][-1]
+    assert ended["phase"] == "ended"
+    assert mission.status == ENDINGS[ended["ending"]]
+
+
+def test_services_start_in_order_and_all_get_ready(mission: Mission) -> None:
+    services = [event for event in mission.up.events if event["event"] == "service"]
+    order = [event["service"] for event in services if event["state"] == "starting"]
+    assert order == ["router", "registry", "middleware", "skills", "solver"]
+    assert {event["service"] for event in services if event["state"] == "ready"} == set(order)
+    assert [event["service"] for event in services if event["state"] == "ended"] == order[::-1]
+
+
+def test_the_run_directory_keeps_the_mission(mission: Mission) -> None:
+    summary = json.loads((mission.run / "summary.json").read_text())
+    decided = [event for event in mission.up.events if event["event"] == "decision"]
+    assert summary["exit_code"] == mission.status
+    assert summary["actions"] == [event["action"] for event in decided if "outcome" in event]
+    assert 0 < summary["services_ready_s"] < summary["first_decision_s"] < summary["duration_s"]
+    for service in ("router", "registry", "middleware", "skills", "solver"):
+        assert (mission.run / "logs" / f"{service}.log").stat().st_size > 0
+    assert list((mission.run / "faults").iterdir()) == []
+
+
+def test_who_joins_late_has_every_decision(mission: Mission) -> None:
+    with Journal.read(mission.run / "journal.db") as journal:
+        journaled = [json.loads(row.payload) for row in journal.rows("decision")]
+    assert mission.followed == journaled
+    assert [record["sequence"] for record in journaled] == list(range(len(journaled)))
+
+
+def test_the_example_script_sees_the_same(mission: Mission) -> None:
+    last_step = mission.followed[-1]["step"]
+    assert mission.example.startswith("step 1: ")
+    assert f"step {last_step}: observed " in mission.example
+
+
+def test_a_finished_mission_can_be_read(mission: Mission) -> None:
+    command = [BIN / "aos", "decisions", "--run", mission.run]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    assert len([line for line in text.splitlines() if line.startswith("step")]) == len(mission.followed)
+    assert text.splitlines()[-1].startswith("mission ended: ")
+
+
+def test_nothing_is_left_after_a_normal_end(mission: Mission) -> None:
+    assert len(mission.up.pids) >= 6
+    assert not any(is_running(pid) for pid in mission.up.pids)
+    assert not has_listener(port_of(mission.run))
+    assert not [
+        path.name for path in Path("/dev/shm").iterdir() if "aos" in path.name or "zenoh" in path.name
+    ]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["Ctrl-C", "SIGTERM"])
+def test_nothing_is_left_after_an_interrupt(deploy_file: Path, number: signal.Signals) -> None:
+    with up(deploy_file) as running:
+        running.until("decision")
+        os.kill(running.process.pid, number)
+        assert running.rest() == 130
+    assert not any(is_running(pid) for pid in running.pids)
+    assert not has_listener(port_of(latest(deploy_file)))
+    assert json.loads((latest(deploy_file) / "summary.json").read_text())["ending"] == "cancelled"
+
+
+async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path) -> None:
+    with up(deploy_file) as running:
+        running.until("decision")
+        os.kill(running.process.pid, signal.SIGKILL)
+        running.process.wait()
+    await until_ended(running.pids)
+    assert not has_listener(port_of(latest(deploy_file)))
+
+
+def test_a_service_that_dies_ends_the_mission_with_its_name(deploy_file: Path) -> None:
+    with up(deploy_file) as running:
+        running.until("decision")
+        pids = json.loads((latest(deploy_file) / "run.json").read_text())["pids"]
+        os.kill(pids["middleware"], signal.SIGKILL)
+        assert running.rest() == 7
+        assert "middleware ended unexpectedly: killed by SIGKILL" in running.error_text()
+    assert not any(is_running(pid) for pid in running.pids)
+
+
+def test_the_engine_child_may_be_killed(deploy_file: Path) -> None:
+    with up(deploy_file) as running:
+        running.until("decision")
+        pids = json.loads((latest(deploy_file) / "run.json").read_text())["pids"]
+        for pid in descendants(pids["solver"]):
+            os.kill(pid, signal.SIGKILL)
+        assert running.rest() in ENDINGS.values()
+
+
+class Refused(NamedTuple):
+    status: int
+    text: str
+
+
+def refused(deploy_file: Path, text: str, *options: str) -> Refused:
+    """How a deploy file of this text ends, without a traceback and without leaving a process."""
+    changed = deploy_file.with_name("changed.yaml")
+    changed.write_text(text)
+    with up(changed, *options) as running:
+        status = running.rest()
+        error = running.error_text()
+    assert "Traceback" not in error
+    return Refused(status, error)
+
+
+def test_an_unknown_key_is_named(deploy_file: Path) -> None:
+    result = refused(deploy_file, deploy_file.read_text() + "wrold: x\n")
+    assert result.status == 1
+    assert "error[AOS102]: unknown key wrold. Did you mean world?" in result.text
+
+
+def test_a_missing_deploy_file_is_named(tmp_path: Path) -> None:
+    with up(tmp_path / "none.yaml") as running:
+        assert running.rest() == 1
+        assert "none.yaml: error[AOS101]: the file cannot be read: No such file" in running.error_text()
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "place"),
+    [
+        ("pick.sd", "__reward = -2;", "__reward = minus_two;", "pick.sd:"),
+        ("pick.sd", "state.easy_can_at", "state.easy_cann_at", "pick.sd:4:27"),
+        ("pick.am", "__input", "__imput", "pick.am:"),
+        ("armadillo.ef", "project: armadillo", "projekt: armadillo", "armadillo.ef:1"),
+    ],
+    ids=["C++", "name", "Python", "key"],
+)
+def test_a_mistake_in_a_document_is_shown_at_its_place(
+    root: Path, deploy_file: Path, tmp_path: Path, file: str, old: str, new: str, place: str
+) -> None:
+    bundle = tmp_path / "bundle"
+    bundle.mkdir()
+    for document in (root / "deploy/bundles/armadillo-finer").iterdir():
+        (bundle / document.name).write_bytes(document.read_bytes())
+    text = (bundle / file).read_text()
+    assert old in text
+    (bundle / file).write_text(text.replace(old, new, 1))
+    changed = deploy_file.read_text().replace(str(root / "deploy/bundles/armadillo-finer"), str(bundle))
+    result = refused(deploy_file, changed)
+    assert result.status == 1
+    assert place in result.text
+
+
+def test_a_port_in_use_is_told_and_how_to_get_another(deploy_file: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        endpoint = f"tcp/127.0.0.1:{server.getsockname()[1]}"
+        result = refused(deploy_file, deploy_file.read_text(), "--listen", endpoint)
+    assert result.status == 3
+    assert f"cannot listen at {endpoint}: Address already in use. Does another system run?" in result.text
+
+
+def test_an_adapter_that_is_not_there_is_named(deploy_file: Path) -> None:
+    result = refused(deploy_file, deploy_file.read_text().replace("/pick: pybullet", "/pick: robotnik"))
+    assert result.status != 0
+    assert "robotnik" in result.text

@@ -1,0 +1,78 @@
+"""The small commands beside aos-up, as a user types them."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.commands.machine import examine_machine
+
+BIN = Path(sys.executable).parent
+
+
+def run(*command: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    name, *arguments = command
+    return subprocess.run([BIN / name, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
+
+
+def test_help_has_an_example_and_every_exit_code() -> None:
+    text = " ".join(run("aos-up", "--help").stdout.split())
+    assert "Example: aos-up deploy/armadillo.yaml" in text
+    for code in (
+        "0 the goal",
+        "1 documents",
+        "2 the command",
+        "3 the machine",
+        "4 the mission",
+        "130 interr",
+    ):
+        assert code in text
+
+
+def test_the_overview_names_every_command() -> None:
+    text = run("aos", "--help").stdout
+    for command in ("up", "decisions", "bundle", "lint", "inspect", "plan", "simulate", "rate", "doctor"):
+        assert f"  {command} " in text
+
+
+@pytest.mark.parametrize("command", [["aos-up"], ["aos-up", "x.yaml", "--sed", "1"], ["aos", "decide"]])
+def test_wrong_usage_has_its_own_exit_code(command: list[str]) -> None:
+    assert run(*command).returncode == 2
+
+
+def test_decisions_without_a_run_say_what_to_do(tmp_path: Path) -> None:
+    result = run("aos", "decisions", folder=tmp_path)
+    assert result.returncode == 3
+    assert result.stderr.startswith("aos: AOS605: there is no run in runs. Start one with aos-up, or name")
+    assert result.stderr.count("\n") == 1
+
+
+def test_decisions_of_a_folder_that_is_no_run_say_so(tmp_path: Path) -> None:
+    result = run("aos", "decisions", "--run", str(tmp_path))
+    assert result.returncode == 1
+    assert "is not a run directory" in result.stderr
+
+
+def test_the_doctor_says_what_is_there() -> None:
+    findings = {each["subject"]: each for each in json.loads(run("aos", "doctor", "--json").stdout)}
+    assert findings["pybullet"]["state"] == "ok"
+    assert findings["loopback"]["state"] == "ok"
+    assert "C++ compiler" in findings
+
+
+def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path / "file" / "aos"))
+    (cache,) = [finding for finding in examine_machine() if finding.subject == "cache"]
+    assert cache.state == "missing"
+    assert "AOS_CACHE_DIR" in cache.advice
+
+
+def test_version_names_what_it_stands_on() -> None:
+    assert run("aos", "version").stdout.startswith("aos ")

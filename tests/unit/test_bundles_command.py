@@ -1,0 +1,80 @@
+"""`aos lint` and `aos inspect` as a person calls them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from aos_deploy.commands import bundle
+from aos_protocol.errors import DocumentError
+
+
+@pytest.fixture(scope="module")
+def app() -> typer.Typer:
+    app = typer.Typer()
+    bundle.register(app)
+    return app
+
+
+@pytest.fixture
+def broken(bundles: Path, tmp_path: Path) -> Path:
+    folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
+    path = folder / "serve.sd"
+    path.write_text(path.read_text().replace("delivered : not_delivered", "deliverd : not_delivered"))
+    (folder / "armadillo.ef").unlink()
+    return folder
+
+
+def test_lint_of_a_good_bundle_ends_with_zero(app: typer.Typer, bundles: Path) -> None:
+    result = CliRunner().invoke(app, ["lint", str(bundles / "armadillo-finer")])
+    assert result.exit_code == 0
+    assert result.output.endswith("0 errors, 1 warning\n")
+
+
+def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(app: typer.Typer, broken: Path) -> None:
+    result = CliRunner().invoke(app, ["lint", str(broken)])
+    assert result.exit_code == 1
+    assert "serve.sd:12:41: error[AOS116]" in result.output
+    assert "broken: error[AOS115]: there is no environment document" in result.output
+
+
+def test_lint_gives_the_same_as_json(app: typer.Typer, broken: Path) -> None:
+    result = CliRunner().invoke(app, ["lint", str(broken), "--format", "json"])
+    found = json.loads(result.output)
+    assert (found["errors"], found["bundle"]) == (2, str(broken))
+    (error,) = [d for d in found["diagnostics"] if d["code"] == "AOS116"]
+    assert error["span"] == {"file": "serve.sd", "line": 12, "column": 41}
+    assert error["hint"] == "Did you mean `delivered`?"
+
+
+def test_inspect_prints_the_documents_with_their_places(app: typer.Typer, bundles: Path) -> None:
+    result = CliRunner().invoke(app, ["inspect", str(bundles / "armadillo-rough")])
+    assert result.exit_code == 0
+    assert "project armadillo: horizon 10, discount 0.99" in result.output
+    assert "variable bool holding_can" in result.output
+    assert "    | __moduleResponse = is_there ? arrived : failed;" in result.output
+    assert "pick.am:3:11" in result.output
+
+
+def test_inspect_prints_the_python_of_one_skill(app: typer.Typer, bundles: Path) -> None:
+    arguments = ["inspect", str(bundles / "armadillo-finer"), "--stage", "python", "--skill", "pick"]
+    result = CliRunner().invoke(app, arguments)
+    assert "skill pick, project armadillo" in result.output
+    assert "navigate" not in result.output
+
+
+def test_inspect_of_a_broken_bundle_raises_with_all_findings(app: typer.Typer, broken: Path) -> None:
+    result = CliRunner().invoke(app, ["inspect", str(broken)])
+    assert isinstance(result.exception, DocumentError)
+    assert {d.code for d in result.exception.diagnostics if d.is_error} == {"AOS115", "AOS116"}
+
+
+def test_a_push_without_a_running_system_says_so(app: typer.Typer, bundles: Path, tmp_path: Path) -> None:
+    arguments = ["bundle", "push", str(bundles / "armadillo-finer"), "--runs", str(tmp_path)]
+    result = CliRunner().invoke(app, arguments)
+    assert "there is no run in" in str(result.exception)

@@ -1,0 +1,37 @@
+"""The examples of the language page are documents that load."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from aos_registry.documents.sdl_sections import GRAMMARS
+from aos_registry.load import load_files
+
+EXAMPLE = re.compile(r"^```(sdl|json) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def examples(root: Path, dialect: str) -> dict[str, bytes]:
+    text = (root / "docs" / "languages.md").read_text(encoding="utf-8")
+    return {name: body.encode() for kind, name, body in EXAMPLE.findall(text) if kind == dialect}
+
+
+def test_the_sdl_examples_make_a_bundle_without_findings(root: Path) -> None:
+    loaded = load_files(examples(root, "sdl"))
+    assert loaded.diagnostics == ()
+    assert loaded.project is not None
+    assert [skill.name for skill in loaded.project.skills] == ["heat", "pour"]
+
+
+def test_the_json_examples_make_a_bundle_without_findings(root: Path) -> None:
+    loaded = load_files(examples(root, "json"))
+    assert loaded.diagnostics == ()
+    assert loaded.project is not None
+    assert loaded.project.low_level is not None
+
+
+def test_the_page_names_every_word_of_sdl(root: Path) -> None:
+    text = (root / "docs" / "languages.md").read_text(encoding="utf-8")
+    words = {word for grammar in GRAMMARS.values() for word in grammar}
+    words |= {part for grammar in GRAMMARS.values() for word in grammar.values() for part in word.parts}
+    assert {word for word in words if word not in text} == set()
