@@ -1,4 +1,4 @@
-"""The simulated Armadillo as an adapter: the world on a thread of its own, so that the service stays awake."""
+"""The simulated Armadillo as an adapter: its world runs on a thread of its own, beside the service."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Inverse kinematics of the arm alone.
 
-In a world of its own: in the robot's body, Bullet would also move the base to bring the hand where it should be.
+In a world of its own: in the robot's body, Bullet would also move the base to bring the hand there.
 """
 
 from __future__ import annotations

@@ -109,7 +109,7 @@ class Robot:
 
     def drive_to(self, x: float, y: float, yaw: float) -> bool:
         """Turns, drives straight, turns; whether it arrived within the time that it should take."""
-        at_x, at_y, at_yaw = self.base_place
+        at_x, at_y, _ = self.base_place
         if math.hypot(x - at_x, y - at_y) > 0.05:
             heading = math.atan2(y - at_y, x - at_x)
             if not self._turn_to(heading):

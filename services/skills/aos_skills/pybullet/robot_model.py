@@ -1,9 +1,9 @@
 """The robot's description: a Husky base that carries a Panda arm, joined into one URDF.
 
-Both come from `pybullet_data` and are read when the world is built. The base stands on three joints, along x, along y and
-about z, instead of on its wheels: Bullet's skid steering slips by amounts that depend on the time step, and the robot
-would need a localisation system to arrive anywhere. The joints are driven by motors of limited force, step by step, so
-that the base still has mass, gathers speed, bumps into things and stalls. The wheels turn for the eye only.
+Both come from `pybullet_data` and are read when the world is built. The base stands on three joints, along x,
+along y and about z, instead of on its wheels: Bullet's skid steering slips by amounts that depend on the time
+step, and the robot would need a localisation system to arrive anywhere. The joints are driven by motors of
+limited force, step by step, so that the base still has mass, gathers speed, bumps into things and stalls.
 """
 
 from __future__ import annotations
@@ -11,13 +11,11 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
-__all__ = ["ARM_JOINTS", "BASE_JOINTS", "FINGER_JOINTS", "HAND_LINK", "WHEEL_JOINTS", "robot_urdf"]
+__all__ = ["ARM_JOINTS", "BASE_JOINTS", "FINGER_JOINTS", "robot_urdf"]
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
-WHEEL_JOINTS = ("front_left_wheel", "rear_left_wheel", "front_right_wheel", "rear_right_wheel")
 ARM_JOINTS = tuple(f"panda_joint{number}" for number in range(1, 8))
 FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
-HAND_LINK = "panda_hand"
 
 _PLANAR_JOINTS = """
 <robot name="armadillo">
@@ -48,7 +46,7 @@ _CHASSIS_HEIGHT_M = 0.14493
 
 
 def robot_urdf(data: Path, mount_m: tuple[float, float, float]) -> str:
-    """The URDF text. `data` is pybullet_data's folder; `mount_m` is the arm's foot in the base's floor frame."""
+    """The URDF text. `data` is pybullet_data's folder; `mount_m` the arm's foot in the base's floor frame."""
     x, y, z = mount_m
     robot = ElementTree.fromstring(
         _PLANAR_JOINTS.format(inertia=_SMALL_INERTIA, mount=f"{x} {y} {z - _CHASSIS_HEIGHT_M}")
