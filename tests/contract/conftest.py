@@ -30,9 +30,7 @@ def free_endpoint() -> str:
 def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Where the module's router listens; clients wait for it by themselves."""
     folder: Path = tmp_path_factory.mktemp("router")
-    settings = ServiceSettings(
-        robot="test", service="router", endpoint=free_endpoint(), run_dir=str(folder)
-    )
+    settings = ServiceSettings(robot="test", service="router", endpoint=free_endpoint(), run_dir=str(folder))
     path = folder / "router.json"
     path.write_bytes(msgspec.json.encode(settings))
     with subprocess.Popen(

@@ -171,7 +171,7 @@ void describe() {
 }
 
 template <class Model>
-int run_child(int argc, char** argv) {
+int run(int argc, char** argv) {
   static_assert(std::is_trivially_copyable_v<typename Model::State>);
   const std::string mode = argc > 1 ? argv[1] : "";
   try {
@@ -182,9 +182,21 @@ int run_child(int argc, char** argv) {
   } catch (const ModelFault& fault) {
     std::cout << JsonWriter{}.begin_object().member("fault", fault.code).member("text", fault.text)
                      .member("piece", static_cast<std::uint32_t>(*blame::page)).end_object().text() << "\n";
-    return 1;
   }
   return 0;
 }
 
+// In place of the engine's table: a main function.
+struct ModelTable {
+  int (*main)(int argc, char** argv);
+};
+extern const ModelTable compiled_model;
+
+template <class Model>
+constexpr ModelTable table_of() {
+  return {run<Model>};
+}
+
 }  // namespace aos
+
+int main(int argc, char** argv) { return aos::compiled_model.main(argc, argv); }

@@ -258,7 +258,7 @@ def test_a_missing_deploy_file_is_named(tmp_path: Path) -> None:
     [
         ("pick.sd", "__reward = -2;", "__reward = minus_two;", "pick.sd:"),
         ("pick.sd", "state.easy_can_at", "state.easy_cann_at", "pick.sd:4:27"),
-        ("pick.am", "__input", "__imput", "pick.am:"),
+        ("pick.am", "__input.success", "__input.success(", "pick.am:"),
         ("armadillo.ef", "project: armadillo", "projekt: armadillo", "armadillo.ef:1"),
     ],
     ids=["C++", "name", "Python", "key"],

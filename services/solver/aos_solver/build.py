@@ -1,17 +1,13 @@
-"""From the emitted C++ to an executable, through a cache that several processes may share.
+"""From the emitted C++ to an executable, through a cache.
 
-An entry of the cache is a directory that appears at once, by a rename, when everything in it is complete.
-Its name is the digest of all that decides about the result: the text, the engine's headers, the compiler and
-its flags.
+The model is compiled for itself. The engine is compiled once for all models whose states have up to so many
+bytes, and linked to it: it is four times as much code, and models change while a robot waits.
 """
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import hashlib
-import os
-import shutil
+import re
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -20,22 +16,27 @@ import msgspec
 
 from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_solver.build_cache import BuildCache, digest_of
 from aos_solver.compiler import Compiler, find_compiler
 from aos_solver.compiler_messages import read_messages, without_line_directives
 from aos_solver.emit import MODEL_FILE, EmittedModel
 
-__all__ = ["ENGINE_HEADERS", "BuiltModel", "build"]
+__all__ = ["SOURCES", "BuiltModel", "build", "build_engine"]
 
-ENGINE_HEADERS = Path(__file__).parent / "cpp"
-"""The include directory of the engine and of what emitted models stand on."""
+SOURCES = Path(__file__).parent / "cpp"
+"""The engine, and what emitted models stand on."""
 
-_OPTIMIZE = "-O2"
+STATE_BYTES = (64, 256, 1024, 4096, 16384, 65536, 262144, 1048576)
+"""The sizes of states that engines are compiled for; most models fit the first."""
+
 _SOURCE = "compiled.cpp"
+_OBJECT = "part.o"
 _EXECUTABLE = "model"
 _ADDRESS_SPACE_BYTES = 4 << 30
 _FILE_BYTES = 512 << 20
 _OUTPUT_LIMIT_BYTES = 4 << 20
-_ABANDONED_AFTER_S = 3600.0
+_STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
+_LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 
 
 class BuiltModel(msgspec.Struct, frozen=True):
@@ -53,7 +54,6 @@ async def build(
     cache_dir: Path,
     compiler: Compiler | None = None,
     on_progress: Callable[[str], None] = lambda text: None,
-    include_dir: Path = ENGINE_HEADERS,
     deadline_s: float | None = None,
 ) -> BuiltModel:
     """The executable of a model, from the cache or compiled now.
@@ -63,54 +63,152 @@ async def build(
     AOS203 without a compiler.
     """
     compiler = compiler or await find_compiler()
-    entry = cache_dir / _key(emitted, compiler, include_dir)
-    executable = entry / _EXECUTABLE
-    if executable.exists():
-        return BuiltModel(emitted, executable, is_from_cache=True)
-    _announce(emitted, compiler, on_progress)
-    _remove_abandoned(cache_dir)
-    staging = cache_dir / f"{entry.name}.{os.getpid()}.{time.monotonic_ns()}.building"
-    staging.mkdir(parents=True)
+    cache = BuildCache(cache_dir)
+    name = f"model-{digest_of([emitted.cpp, *_circumstances(compiler)])}"
+    if (entry := cache.find(name)) is not None:
+        return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
+    work = _Build(emitted, cache, compiler, on_progress, deadline_s or compiler.deadline_s)
     started_s = time.monotonic()
-    try:
-        (staging / MODEL_FILE).write_text(emitted.cpp)
-        await _compile(emitted, compiler, staging, include_dir, deadline_s or compiler.deadline_s)
-        _move_into_place(staging, entry)
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
+    entry = await cache.fill(name, work.make)
     seconds = time.monotonic() - started_s
     on_progress(f"compiled {emitted.project} in {seconds:.1f} s")
-    return BuiltModel(emitted, executable, is_from_cache=False, compile_s=seconds)
+    return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=False, compile_s=seconds)
 
 
-def _key(emitted: EmittedModel, compiler: Compiler, include_dir: Path) -> str:
-    digest = hashlib.sha256()
-    parts = [emitted.cpp, compiler.version, *compiler.command, *compiler.flags(_OPTIMIZE)]
-    for header in sorted(include_dir.rglob("*.hpp")):
-        parts += [str(header.relative_to(include_dir)), header.read_text()]
-    for part in parts:
-        digest.update(hashlib.sha256(part.encode()).digest())
-    return digest.hexdigest()[:32]
+async def build_engine(
+    cache_dir: Path,
+    *,
+    compiler: Compiler | None = None,
+    on_progress: Callable[[str], None] = lambda text: None,
+    state_bytes: int = STATE_BYTES[0],
+) -> Path:
+    """The engine's object file for states of up to `state_bytes`; errors as in `build`.
+
+    Setting up a machine may call it, so that its first model is compiled as quickly as the later ones.
+    """
+    compiler = compiler or await find_compiler()
+    name = f"engine-{state_bytes}-{digest_of(_circumstances(compiler))}"
+
+    async def make(staging: Path) -> None:
+        on_progress(f"compiling the engine with {compiler.version}, once for all models")
+        define = f"-DAOS_STATE_BYTES={state_bytes}"
+        compilation = compiler.compilation(str(SOURCES / "engine.cpp"), _OBJECT, str(SOURCES), define)
+        output, status = await _run(compiler, compilation, staging, compiler.deadline_s, "the engine")
+        if status != 0:
+            raise _internal_error("the engine", output, status, SOURCES / "engine.cpp")
+
+    return await BuildCache(cache_dir).fill(name, make) / _OBJECT
 
 
-def _announce(emitted: EmittedModel, compiler: Compiler, on_progress: Callable[[str], None]) -> None:
-    on_progress(f"compiling {emitted.project} with {compiler.version}")
-    if compiler.family == "zig":
-        on_progress("ziglang prepares its C++ library for its first build, which takes about a minute")
+class _Build:
+    """One model on its way into the cache."""
+
+    def __init__(
+        self,
+        emitted: EmittedModel,
+        cache: BuildCache,
+        compiler: Compiler,
+        on_progress: Callable[[str], None],
+        deadline_s: float,
+    ) -> None:
+        self._emitted = emitted
+        self._cache = cache
+        self._compiler = compiler
+        self._on_progress = on_progress
+        self._deadline_s = deadline_s
+
+    async def make(self, staging: Path) -> None:
+        self._announce()
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                usual_engine = tasks.create_task(self._engine(STATE_BYTES[0]))
+                await self._compile(staging)
+        except ExceptionGroup as errors:
+            raise errors.exceptions[0] from None
+        state_bytes = self._state_bytes(staging / _OBJECT)
+        engine = usual_engine.result() if state_bytes == STATE_BYTES[0] else await self._engine(state_bytes)
+        await self._link(staging, engine)
+
+    def _announce(self) -> None:
+        self._on_progress(f"compiling {self._emitted.project} with {self._compiler.version}")
+        if self._compiler.family == "zig":
+            self._on_progress("ziglang's first build prepares its C++ library, which takes about a minute")
+
+    async def _engine(self, state_bytes: int) -> Path:
+        return await build_engine(
+            self._cache.directory,
+            compiler=self._compiler,
+            on_progress=self._on_progress,
+            state_bytes=state_bytes,
+        )
+
+    async def _compile(self, staging: Path) -> None:
+        (staging / MODEL_FILE).write_text(self._emitted.cpp)
+        (staging / _SOURCE).write_text(without_line_directives(self._emitted.cpp))
+        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES))
+        output, status = await self._run(compilation, staging)
+        if status != 0:
+            raise self._failure(output, status)
+        (staging / _SOURCE).unlink()
+
+    def _state_bytes(self, model: Path) -> int:
+        """The smallest size of engine that takes the model's states."""
+        mark = _STATE_BYTES_MARK.search(model.read_bytes())
+        needed = int(mark[1]) if mark is not None else 0
+        for state_bytes in STATE_BYTES:
+            if needed <= state_bytes:
+                return state_bytes
+        message = f"a state of {self._emitted.project} takes {needed} bytes; {STATE_BYTES[-1]} is the limit"
+        raise ModelError(message, hint="Use smaller vectors and maps for state variables")
+
+    async def _link(self, staging: Path, engine: Path) -> None:
+        model = staging / _OBJECT
+        linking = self._compiler.linking([str(model), str(engine)], _EXECUTABLE)
+        output, status = await self._run(linking, staging)
+        if status != 0:
+            raise _internal_error(self._emitted.project, output, status, self._kept_source())
+        model.unlink()
+
+    async def _run(self, command: list[str], staging: Path) -> tuple[str, int]:
+        return await _run(self._compiler, command, staging, self._deadline_s, self._emitted.project)
+
+    def _failure(self, output: str, status: int) -> ModelError:
+        project = self._emitted.project
+        report = read_messages(output, _SOURCE, self._emitted)
+        if report.diagnostics:
+            return ModelError(
+                f"the model code of {project} does not compile",
+                hint="Mend the places named",
+                diagnostics=report.diagnostics,
+            )
+        if status < 0 or status > 128 or "memory exhausted" in output or "out of memory" in output:
+            message = f"the compiler ran out of time or memory on {project}"
+            return ModelError(message, code="AOS202", hint=_LIMIT_HINT)
+        return _internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
+
+    def _kept_source(self) -> Path:
+        """The emitted file at a place where it can be looked at."""
+        kept = self._cache.directory / f"failed-{self._emitted.digest[:16]}.cpp"
+        kept.write_text(self._emitted.cpp)
+        return kept
 
 
-async def _compile(
-    emitted: EmittedModel, compiler: Compiler, staging: Path, include_dir: Path, deadline_s: float
-) -> None:
-    (staging / _SOURCE).write_text(without_line_directives(emitted.cpp))
-    command = compiler.arguments(
-        optimize=_OPTIMIZE, include=str(include_dir), source=_SOURCE, output=_EXECUTABLE
-    )
+def _circumstances(compiler: Compiler) -> list[str]:
+    """What decides about a result besides the model's text."""
+    files = sorted(path for path in SOURCES.rglob("*") if path.suffix in (".hpp", ".cpp"))
+    texts = [part for path in files for part in (str(path.relative_to(SOURCES)), path.read_text())]
+    return [compiler.version, *compiler.compilation("", "", ""), *texts]
+
+
+async def _run(
+    compiler: Compiler, command: list[str], directory: Path, deadline_s: float, what: str
+) -> tuple[str, int]:
+    """What the command says and its status; AOS202 if it does not end in time."""
     memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
     limits = Limits(address_space_bytes=memory, cpu_s=int(deadline_s) + 1, file_bytes=_FILE_BYTES)
     child = await Child.start(
         guarded(command, limits),
-        cwd=staging,
+        cwd=directory,
         env={"LC_ALL": "C"},
         stdout=PIPE,
         stderr=asyncio.subprocess.STDOUT,
@@ -118,18 +216,12 @@ async def _compile(
     try:
         async with asyncio.timeout(deadline_s):
             output = await _read(child)
-            status = await child.wait()
+            return output, await child.wait()
     except TimeoutError as error:
-        raise ModelError(
-            f"the compiler did not finish {emitted.project} within {deadline_s:g} s",
-            code="AOS202",
-            hint="Look for recursive templates or huge tables in the model code",
-        ) from error
+        message = f"the compiler did not finish {what} within {deadline_s:g} s"
+        raise ModelError(message, code="AOS202", hint=_LIMIT_HINT) from error
     finally:
         await child.stop()
-    if status != 0:
-        raise _failure(emitted, output, status, staging)
-    (staging / _SOURCE).unlink()
 
 
 async def _read(child: Child) -> str:
@@ -140,41 +232,9 @@ async def _read(child: Child) -> str:
     return kept.decode(errors="replace")
 
 
-def _failure(emitted: EmittedModel, output: str, status: int, staging: Path) -> ModelError:
-    report = read_messages(output, _SOURCE, emitted)
-    if report.diagnostics:
-        return ModelError(
-            f"the model code of {emitted.project} does not compile",
-            hint="Mend the places named",
-            diagnostics=report.diagnostics,
-        )
-    if status < 0 or status > 128 or "memory exhausted" in output or "out of memory" in output:
-        return ModelError(
-            f"the compiler ran out of time or memory on {emitted.project}",
-            code="AOS202",
-            hint="Look for recursive templates or huge tables in the model code",
-        )
-    kept = staging.parent / f"failed-{emitted.digest[:16]}.cpp"
-    kept.write_text(emitted.cpp)
-    reason = next(iter(report.outside or output.strip().splitlines()), f"status {status}")
+def _internal_error(what: str, output: str, status: int, source: Path) -> ModelError:
+    reason = next(iter(output.strip().splitlines()), f"status {status}")
     return ModelError(
-        f"the emitted model of {emitted.project} does not compile: {reason}",
-        hint=f"This is not a mistake in the documents; please report it with {kept}",
+        f"the C++ of {what} does not compile: {reason}",
+        hint=f"This is not a mistake in the documents; please report it with {source}",
     )
-
-
-def _move_into_place(staging: Path, entry: Path) -> None:
-    try:
-        staging.rename(entry)
-    except OSError:
-        # Another process was quicker with the same model.
-        if not (entry / _EXECUTABLE).exists():
-            raise
-
-
-def _remove_abandoned(cache_dir: Path) -> None:
-    """Removes what builds left behind that were killed."""
-    for path in cache_dir.glob("*.building"):
-        with contextlib.suppress(OSError):
-            if time.time() - path.stat().st_mtime > _ABANDONED_AFTER_S:
-                shutil.rmtree(path, ignore_errors=True)

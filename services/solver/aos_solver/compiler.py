@@ -37,19 +37,23 @@ class Compiler(msgspec.Struct, frozen=True):
     family: Family
     version: str
 
-    def arguments(self, *, optimize: str, include: str, source: str, output: str) -> list[str]:
-        """The command line that compiles one file into an executable."""
-        return [*self.command, *self.flags(optimize), "-I", include, source, "-o", output]
+    def compilation(self, source: str, output: str, include: str, *defines: str) -> list[str]:
+        """The command that compiles a file.
 
-    def flags(self, optimize: str) -> list[str]:
-        """Flags that decide what comes out; messages as `file:line:column: error: text`, columns in bytes."""
-        common = ["-std=c++20", optimize, "-ffp-contract=off", "-w"]
+        Messages read `file:line:column: error: text`; columns count bytes.
+        """
+        common = ["-std=c++20", "-O2", "-ffp-contract=off", "-w"]
         if self.family == "gcc":
-            messages = ["-fdiagnostics-color=never", "-fno-diagnostics-show-caret", "-fmax-errors=40"]
-            return [*common, "-Wno-narrowing", "-fdiagnostics-column-unit=byte", *messages]
-        messages = ["-fno-color-diagnostics", "-fno-caret-diagnostics", "-ferror-limit=40"]
-        sanitizers = ["-fno-sanitize=all"] if self.family == "zig" else []
-        return [*common, "-Wno-c++11-narrowing", *messages, *sanitizers]
+            own = ["-Wno-narrowing", "-fdiagnostics-column-unit=byte", "-fdiagnostics-color=never"]
+            own += ["-fno-diagnostics-show-caret", "-fmax-errors=40"]
+        else:
+            own = ["-Wno-c++11-narrowing", "-fno-color-diagnostics", "-fno-caret-diagnostics"]
+            own += ["-ferror-limit=40", *(["-fno-sanitize=all"] if self.family == "zig" else [])]
+        return [*self.command, *common, *own, *defines, "-I", include, "-c", source, "-o", output]
+
+    def linking(self, objects: list[str], output: str) -> list[str]:
+        """The command that links object files into an executable."""
+        return [*self.command, *objects, "-o", output]
 
     @property
     def deadline_s(self) -> float:

@@ -55,9 +55,16 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
             continue
         text, hint = _plain(message.text)
         diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
-        if diagnostic not in diagnostics:
-            diagnostics.append(diagnostic)
-    return CompilerReport(tuple(diagnostics), tuple(outside))
+        diagnostics.append(diagnostic)
+    return CompilerReport(tuple(_without_repeats(diagnostics)), tuple(outside))
+
+
+def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """Each complaint once for a line: a template is complained about for every use of it."""
+    first: dict[tuple[str, int, str], Diagnostic] = {}
+    for diagnostic in diagnostics:
+        first.setdefault((diagnostic.span.file, diagnostic.span.line, diagnostic.message), diagnostic)
+    return list(first.values())
 
 
 def _messages(output: str) -> list[_Message]:
@@ -88,6 +95,8 @@ def _plain(text: str) -> tuple[str, str]:
     """The message in the documents' terms, and the compiler's suggestion as a hint."""
     text = re.sub(r"\bmodel::(?:skill__\w+::)?", "", text)
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
+    text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
+    text = text.replace("was not declared in this scope", "was not declared")
     message, separator, suggestion = text.partition("; ")
     if separator and suggestion.startswith("did you mean"):
         return message, suggestion[0].upper() + suggestion[1:]

@@ -109,7 +109,7 @@ class Pieces:
             start = at.start() if at is not None else 0
             line = code.count("\n", 0, start) + 1
             span = snippet.locate(line, start - code.rfind("\n", 0, start))
-            hint = "Draw with AOS.Bernoulli, AOS.SampleDiscrete, AOS.SampleNormal; keep what changes in the state"
+            hint = "Draw with AOS.Bernoulli and its like; keep what changes in the state"
             self._findings.error(
                 "AOS124", f"`{name}` makes a step that cannot be repeated exactly", span, hint
             )

@@ -15,8 +15,8 @@ __all__ = ["Types", "lower_enum", "ordered_compounds"]
 
 _PLAIN = frozenset({
     "anyValue", "bool", "char", "double", "float", "int", "int16_t", "int32_t", "int64_t", "int8_t", "long",
-    "long long", "short", "size_t", "uint16_t", "uint32_t", "uint64_t", "uint8_t", "unsigned", "unsigned char",
-    "unsigned int", "unsigned long",
+    "long long", "short", "size_t", "uint16_t", "uint32_t", "uint64_t", "uint8_t", "unsigned",
+    "unsigned char", "unsigned int", "unsigned long",
 })  # fmt: skip
 _RANGE = re.compile(r"\(\s*(-?\d+)\s*,\s*(-?\d+)\s*,\s*([1-9]\d*)\s*\)")
 
@@ -66,7 +66,7 @@ class Types:
         self._findings = findings
 
     def stored(self, text: str, name: str, span: Span, *, is_array: bool = False) -> str:
-        """The type of a state variable or field called `name`; AOS110 or AOS124, and `int`, if it has none."""
+        """The type of a variable or field called `name`; AOS110 or AOS124, and `int`, if there is none."""
         return self._stored(f"{text}[]" if is_array else text, name, span, level=0)
 
     def plain(self, text: str, span: Span) -> str:

@@ -29,15 +29,15 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
 async def simulate_mission(engine: Engine, search: Search, limits: MissionLimits) -> SimulatedRun:
     """Runs one mission from the initial belief; `search.seed` also draws the world."""
     belief = await engine.reset_belief()
-    world = await engine.reset_world(search.seed)
+    world_ending = (await engine.reset_world(search.seed)).ending
     discount = engine.description.discount
     total = discounted = 0.0
     actions: list[str] = []
     observations: list[str] = []
     while True:
         ending = ending_of_belief(belief, len(actions), limits)
-        if ending is None and world.ending:
-            ending = Ending(world.ending)
+        if ending is None and world_ending:
+            ending = Ending(world_ending)
         if ending is None:
             plan = await search.run(engine, len(actions) + 1)
             ending = ending_after_planning(plan.best, limits)
@@ -57,4 +57,4 @@ async def simulate_mission(engine: Engine, search: Search, limits: MissionLimits
         actions.append(plan.best.action)
         observations.append(step.response)
         belief = (await engine.update(plan.best.action, step.response)).summary
-        world = step
+        world_ending = step.ending

@@ -71,8 +71,8 @@ class PybulletAdapter:
 
     def _build(self, world: WorldFile, seed: int) -> None:
         self._scene = Scene(world)
-        self._camera = Camera(self._scene)
         self._robot = Robot(self._scene, lambda: None)
+        self._camera = Camera(self._scene, self._robot)
         self._skills = ArmadilloSkills(self._scene, self._robot, seed)
         self._robot.on_tick = self._tick
 

@@ -35,8 +35,8 @@ class ArmadilloSkills:
     """The skills by activation path; each takes the request's fields and returns the answer's."""
 
     def __init__(self, scene: Scene, robot: Robot, seed: int) -> None:
-        self._scene = scene
-        self._robot = robot
+        self.scene = scene
+        self.robot = robot
         self._faults = random.Random(f"faults {seed}")
         self._noise = random.Random(f"perception {seed}")
         self.is_silent = False
@@ -54,30 +54,30 @@ class ArmadilloSkills:
     def call(self, path: str, fields: dict[str, Any]) -> dict[str, Any]:
         """Runs a skill to its end."""
         self.drawn.clear()
-        self.is_silent = self._draw("silent fingers", self._scene.file.faults.silent_fingers)
+        self.is_silent = self._draw("silent fingers", self.scene.file.faults.silent_fingers)
         return self.by_path[path](fields)
 
     @property
     def is_holding(self) -> bool:
         """The truth, which the robot itself has to sense."""
-        left, right = self._robot.finger_forces_n()
-        return left > 0 and right > 0 and self._robot.gap_m > HOLDING_GAP_M
+        left, right = self.robot.finger_forces_n()
+        return left > 0 and right > 0 and self.robot.gap_m > HOLDING_GAP_M
 
     def watch_person(self) -> None:
         """Remembers any touch of the person; called at every simulation step."""
-        if self._scene.client.getContactPoints(bodyA=self._robot.body, bodyB=self._scene.person):
+        if self.scene.client.getContactPoints(bodyA=self.robot.body, bodyB=self.scene.person):
             self.has_injured = True
 
     def _navigate(self, fields: dict[str, Any]) -> dict[str, Any]:
         x, y, yaw = float(fields["x"]), float(fields["y"]), float(fields["yaw"])
-        at_x, at_y, at_yaw = self._robot.base_place
+        at_x, at_y, at_yaw = self.robot.base_place
         if math.hypot(x - at_x, y - at_y) < 0.05:
-            return {"success": self._robot.drive_to(x, y, yaw)}
-        has_crossed = self._robot.drive_to(*CROSSING, at_yaw)
-        return {"success": has_crossed and self._robot.drive_to(x, y, yaw)}
+            return {"success": self.robot.drive_to(x, y, yaw)}
+        has_crossed = self.robot.drive_to(*CROSSING, at_yaw)
+        return {"success": has_crossed and self.robot.drive_to(x, y, yaw)}
 
     def _pick(self, _: dict[str, Any]) -> dict[str, Any]:
-        robot = self._robot
+        robot = self.robot
         robot.open_gripper()
         robot.move_arm(TUCKED)
         can = self._can_in_reach()
@@ -91,21 +91,21 @@ class ArmadilloSkills:
         robot.close_gripper()
         robot.move_tip((x, y, above))
         has_load = self.is_holding
-        if has_load and self._draw("the arm stays out", self._scene.file.faults.arm_stays_out):
+        if has_load and self._draw("the arm stays out", self.scene.file.faults.arm_stays_out):
             robot.move_arm(STRETCHED)
             return {"success": False}
         robot.move_arm(TUCKED)
         return {"success": True}
 
     def _sense(self, _: dict[str, Any]) -> dict[str, Any]:
-        self._robot.wait(SENSING_S)
+        self.robot.wait(SENSING_S)
         return {}
 
     def _serve(self, _: dict[str, Any]) -> dict[str, Any]:
         """Holds out what it has, lets go, and reports a delivery whatever happened, as the original did."""
-        robot = self._robot
+        robot = self.robot
         x, y, _yaw = robot.base_place
-        person = self._scene.file.person
+        person = self.scene.file.person
         tray = (person.x - TRAY_FROM_PERSON_M, person.y)
         if math.dist((x, y), tray) < 1.5:
             robot.creep(APPROACH_M)
@@ -119,19 +119,19 @@ class ArmadilloSkills:
 
     def _can_in_reach(self) -> str | None:
         """A can on a table, near enough to the arm; the robot sees it whatever it really is."""
-        x, y, yaw = self._robot.base_place
+        x, y, yaw = self.robot.base_place
         foot = (x + 0.25 * math.cos(yaw), y + 0.25 * math.sin(yaw))
-        for name in self._scene.cans:
-            can_x, can_y, can_z = self._scene.can_place(name)
+        for name in self.scene.cans:
+            can_x, can_y, can_z = self.scene.can_place(name)
             if can_z > TABLE_TOP_M - 0.01 and math.dist(foot, (can_x, can_y)) < REACH_M:
                 return name
         return None
 
     def _perceived(self, name: str) -> tuple[float, float, float]:
         """Where to grasp, as far as the robot can see: x, y, and the height above the table, in metres."""
-        file = self._scene.file
+        file = self.scene.file
         can = file.tables[name].can
-        x, y, _ = self._scene.can_place(name)
+        x, y, _ = self.scene.can_place(name)
         noise = self._noise
         height = GRASP_SHARE * can.height * can.perceived_scale
         return (

@@ -232,9 +232,7 @@ class Pomcp {
     double sum = 0;
     double discount = 1;
     for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
-      if constexpr (Model::has_state_heuristic) {
-        if (random.flag(0.75)) return sum + discount * Model::state_value(state, random);
-      }
+      if (Model::has_state_heuristic && random.flag(0.75)) return sum + discount * Model::state_value(state, random);
       const Step step = Model::step(state, rollout_action(state, random), random);
       sum += discount * step.reward;
       discount *= Model::discount;
@@ -245,7 +243,7 @@ class Pomcp {
   // By the documents' rollout policy where it prefers anything; else any action whose precondition holds; else any.
   static int rollout_action(const State& state, Sampler& random) {
     const int count = Model::action_count();
-    if constexpr (Model::has_rollout_policy) {
+    if (Model::has_rollout_policy) {
       thread_local std::vector<double> weights;
       weights.assign(static_cast<std::size_t>(count), 0);
       double total = 0;

@@ -1,0 +1,139 @@
+// A compiled model as a table of functions over states that are blocks of bytes. It lets the engine be compiled once
+// for all models of about the same size, and a model without the engine.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "aos/enumerator.hpp"
+#include "aos/json.hpp"
+#include "aos/random.hpp"
+#include "aos/reflection.hpp"
+#include "aos/step.hpp"
+
+namespace aos {
+
+using LeafVisitor = void (*)(void* context, const std::string& name, const std::string& text);
+
+// The model functions that draw, for one source of randomness.
+template <class Random>
+struct DrawingFunctions {
+  void (*initial)(void* state, Random& random);
+  Step (*step)(void* state, int action, Random& random);
+  bool (*meets_precondition)(const void* state, int action, Random& random);
+  double (*rollout_weight)(const void* state, int action, Random& random);
+  double (*state_value)(const void* state, Random& random);
+};
+
+// The size of a state as text that the build finds in the object file, to link the engine for such states.
+template <std::size_t Size>
+inline constexpr auto size_mark = [] {
+  std::array<char, 32> mark{"aos-state-bytes:0000000000;"};
+  for (std::size_t place = 25, rest = Size; rest > 0; rest /= 10) mark[place--] = static_cast<char>('0' + rest % 10);
+  return mark;
+}();
+
+// See the emitted `Model` for what each member means.
+struct ModelTable {
+  const char* size_mark;
+  const char* project;
+  int horizon;
+  double discount;
+  int skill_count;
+  bool has_rollout_policy;
+  bool has_state_heuristic;
+  std::size_t ending_offset;
+
+  void (*prepare)();
+  int (*action_count)();
+  const char* (*action_name)(int action);
+  int (*skill_of)(int action);
+  const char* (*skill_name)(int skill);
+  int (*response_count)(int skill);
+  const char* (*response_name)(int skill, int response);
+  bool (*has_text_response)(int skill);
+  void (*write_parameters)(int action, JsonWriter& json);
+
+  bool (*equal)(const void* left, const void* right);
+  std::uint64_t (*hash)(const void* state);
+  void (*visit)(const void* state, void* context, LeafVisitor visitor);
+  std::string (*save_state)(const void* state);
+  void (*load_state)(void* state, std::string_view saved);
+
+  DrawingFunctions<Sampler> sampling;
+  DrawingFunctions<Enumerator> enumerating;
+};
+
+// The model that this executable is linked with.
+extern const ModelTable compiled_model;
+
+template <class Model, class Random>
+constexpr DrawingFunctions<Random> drawing_functions() {
+  using State = typename Model::State;
+  return {
+      .initial = [](void* state, Random& random) { Model::initial(*static_cast<State*>(state), random); },
+      .step =
+          [](void* state, int action, Random& random) {
+            return Model::step(*static_cast<State*>(state), action, random);
+          },
+      .meets_precondition =
+          [](const void* state, int action, Random& random) {
+            return Model::meets_precondition(*static_cast<const State*>(state), action, random);
+          },
+      .rollout_weight =
+          [](const void* state, int action, Random& random) {
+            return Model::rollout_weight(*static_cast<const State*>(state), action, random);
+          },
+      .state_value =
+          [](const void* state, Random& random) {
+            return Model::state_value(*static_cast<const State*>(state), random);
+          },
+  };
+}
+
+template <class Model>
+constexpr ModelTable table_of() {
+  using State = typename Model::State;
+  static_assert(std::is_trivially_copyable_v<State> && alignof(State) <= alignof(std::uint64_t));
+  return {
+      .size_mark = size_mark<sizeof(State)>.data(),
+      .project = Model::project,
+      .horizon = Model::horizon,
+      .discount = Model::discount,
+      .skill_count = Model::skill_count,
+      .has_rollout_policy = Model::has_rollout_policy,
+      .has_state_heuristic = Model::has_state_heuristic,
+      .ending_offset = offsetof(State, __ending),
+      .prepare = Model::prepare,
+      .action_count = Model::action_count,
+      .action_name = Model::action_name,
+      .skill_of = Model::skill_of,
+      .skill_name = Model::skill_name,
+      .response_count = Model::response_count,
+      .response_name = Model::response_name,
+      .has_text_response = Model::has_text_response,
+      .write_parameters = Model::write_parameters,
+      .equal =
+          [](const void* left, const void* right) {
+            return *static_cast<const State*>(left) == *static_cast<const State*>(right);
+          },
+      .hash = [](const void* state) { return Model::hash(*static_cast<const State*>(state)); },
+      .visit =
+          [](const void* state, void* context, LeafVisitor visitor) {
+            Model::visit(*static_cast<const State*>(state), [&](const std::string& name, const auto& leaf) {
+              visitor(context, name, leaf_text(leaf));
+            });
+          },
+      .save_state = [](const void* state) { return Model::save_state(*static_cast<const State*>(state)); },
+      .load_state =
+          [](void* state, std::string_view saved) { Model::load_state(*static_cast<State*>(state), saved); },
+      .sampling = drawing_functions<Model, Sampler>(),
+      .enumerating = drawing_functions<Model, Enumerator>(),
+  };
+}
+
+}  // namespace aos

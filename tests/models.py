@@ -1,0 +1,40 @@
+"""Compiled models for tests: a bundle or a text becomes an engine, from one cache."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+from aos_registry.load import load_bundle, load_files
+from aos_solver.build import BuiltModel
+from aos_solver.engine import Engine, ImpossiblePolicy
+from aos_solver.hot_plug import build_project
+
+__all__ = ["built_bundle", "built_text", "engine_of"]
+
+
+async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:
+    """The compiled model of a bundle on the disk."""
+    loaded = load_bundle(bundle)
+    assert loaded.project is not None, loaded.diagnostics
+    return await build_project(loaded.project, cache_dir, lambda remark: None)
+
+
+async def built_text(files: Mapping[str, str], cache_dir: Path) -> BuiltModel:
+    """The compiled model of documents given as text."""
+    loaded = load_files({name: text.encode() for name, text in files.items()})
+    assert loaded.project is not None, loaded.diagnostics
+    return await build_project(loaded.project, cache_dir, lambda remark: None)
+
+
+@asynccontextmanager
+async def engine_of(
+    built: BuiltModel, *, seed: int = 1, impossible_observation: ImpossiblePolicy = "widen"
+) -> AsyncIterator[Engine]:
+    """A running engine child."""
+    engine = await Engine.start(built, seed=seed, impossible_observation=impossible_observation)
+    try:
+        yield engine
+    finally:
+        await engine.close()

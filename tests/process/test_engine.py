@@ -1,0 +1,212 @@
+"""The engine child against exact values, Bayes' rule by hand, and what may happen to a process."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from models import built_bundle, built_text, engine_of
+
+from aos_protocol.errors import ModelError
+from aos_solver.endings import MissionLimits
+from aos_solver.engine import Engine
+from aos_solver.search import Search
+from aos_solver.simulation import simulate_mission
+
+OPENING = """project: tiger
+
+response: opened
+response_rule: True
+
+module_activation: skill
+path: {path}
+"""
+
+TIGER = {
+    "tiger.ef": """project: tiger
+horizon: 6
+discount: 0.95
+
+state_variable: bool is_left
+
+initial_belief:
+state.is_left = AOS.Bernoulli(0.5);
+""",
+    "listen.sd": """project: tiger
+
+dynamic_model:
+__moduleResponse = AOS.Bernoulli(0.85) == state.is_left ? hears_left : hears_right;
+__reward = -1;
+""",
+    "open_left.sd": """project: tiger
+
+dynamic_model:
+__reward = state.is_left ? -100 : 10;
+state__.is_left = AOS.Bernoulli(0.5);
+__moduleResponse = opened;
+""",
+    "open_right.sd": """project: tiger
+
+dynamic_model:
+__reward = state.is_left ? 10 : -100;
+state__.is_left = AOS.Bernoulli(0.5);
+__moduleResponse = opened;
+""",
+    "listen.am": """project: tiger
+
+response: hears_left
+response_rule: heard == 'left'
+response: hears_right
+response_rule: True
+
+module_activation: skill
+path: /listen
+
+local_variable: heard
+type: string
+from_ros_service_response: true
+code:
+heard = __input.side
+""",
+    "open_left.am": OPENING.format(path="/left"),
+    "open_right.am": OPENING.format(path="/right"),
+}
+
+EXACT_AT_8 = {
+    "rough": {
+        "pick": 2.713,
+        "observe_holding": 1.473,
+        "observe_arm_outstretched": 1.473,
+        "navigate(destination=easy_table)": -2.527,
+    },
+    "finer": {
+        "navigate(destination=easy_table)": 3.110,
+        "observe_holding": 1.580,
+        "observe_arm_outstretched": 1.580,
+        "pick": 0.219,
+    },
+}
+"""Computed by an independent program, for a look-ahead of eight decisions."""
+
+CORPUS_NAMES = {
+    "pick": "basic_pick",
+    "observe_holding": "observe_holding_can",
+    "observe_arm_outstretched": "observe_arm_outstretched",
+    "navigate(destination=easy_table)": "navigate(oDesiredLocation=locationAuditorium_toCan1)",
+}
+
+
+async def _exact(engine: Engine, horizon: int) -> dict[str, float]:
+    return {value.action: value.q for value in (await engine.exact(horizon)).actions}
+
+
+@pytest.mark.parametrize("kind", ["rough", "finer"])
+async def test_exact_values_of_our_armadillo_are_the_published_ones(
+    kind: str, bundles: Path, cache_dir: Path
+) -> None:
+    async with engine_of(await built_bundle(bundles / f"armadillo-{kind}", cache_dir)) as engine:
+        values = await _exact(engine, 8)
+    for action, value in EXACT_AT_8[kind].items():
+        assert values[action] == pytest.approx(value, abs=5e-4)
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("kind", ["rough", "finer"])
+async def test_the_original_armadillo_has_the_same_values(kind: str, corpus: Path, cache_dir: Path) -> None:
+    async with engine_of(await built_bundle(corpus / f"armadillo-{kind}", cache_dir)) as engine:
+        values = await _exact(engine, 8)
+    for action, value in EXACT_AT_8[kind].items():
+        assert values[CORPUS_NAMES[action]] == pytest.approx(value, abs=5e-4)
+
+
+@pytest.mark.parametrize("kind", ["rough", "finer"])
+async def test_the_search_orders_actions_as_the_exact_values_do(
+    kind: str, bundles: Path, cache_dir: Path
+) -> None:
+    async with engine_of(await built_bundle(bundles / f"armadillo-{kind}", cache_dir)) as engine:
+        exact = await _exact(engine, 8)
+        plan = await engine.plan(simulations=1_000_000, seed=1, horizon=8)
+    assert abs(plan.best.q - max(exact.values())) < 0.5
+    found = {value.action: value.q for value in plan.actions}
+    for better in EXACT_AT_8[kind]:
+        for worse in EXACT_AT_8[kind]:
+            if exact[better] > exact[worse] + 1e-6:
+                assert found[better] > found[worse]
+
+
+async def test_a_simulation_budget_and_a_seed_repeat_to_the_bit(bundles: Path, cache_dir: Path) -> None:
+    built = await built_bundle(bundles / "armadillo-finer", cache_dir)
+    plans = []
+    for _ in range(2):
+        async with engine_of(built) as engine:
+            await engine.update("pick", "pick_succeeded")
+            plans.append((await engine.plan(simulations=20_000, seed=7)).actions)
+    assert plans[0] == plans[1]
+
+
+async def test_listening_to_the_tiger_updates_the_belief_by_bayes_rule(cache_dir: Path) -> None:
+    async with engine_of(await built_text(TIGER, cache_dir)) as engine:
+        first = await engine.update("listen", "hears_left")
+        second = await engine.update("listen", "hears_left")
+    assert first.probability == pytest.approx(0.5)
+    assert first.summary.marginals[0].values["true"] == pytest.approx(0.85)
+    assert second.probability == pytest.approx(0.85**2 + 0.15**2)
+    assert second.summary.marginals[0].values["true"] == pytest.approx(0.85**2 / (0.85**2 + 0.15**2))
+    assert second.summary.is_exact
+
+
+async def test_an_impossible_observation_is_an_event_and_leaves_a_belief(
+    bundles: Path, cache_dir: Path
+) -> None:
+    built = await built_bundle(bundles / "armadillo-finer", cache_dir)
+    async with engine_of(built, impossible_observation="hold") as engine:
+        update = await engine.update("observe_holding", "holding")
+    assert update.is_impossible
+    assert update.probability == 0
+    assert update.summary.states == 1
+
+
+async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_dir: Path) -> None:
+    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+        before = (await engine.update("pick", "pick_succeeded")).summary
+        assert engine.pid is not None
+        os.kill(engine.pid, signal.SIGKILL)
+        with pytest.raises(ModelError):
+            await engine.summary()
+        assert await engine.summary() == before
+
+
+async def test_a_belief_moves_to_another_engine(bundles: Path, cache_dir: Path) -> None:
+    built = await built_bundle(bundles / "armadillo-finer", cache_dir)
+    async with engine_of(built) as old, engine_of(built) as new:
+        before = (await old.update("pick", "pick_succeeded")).summary
+        assert await new.import_belief(await old.export_belief()) == before
+
+
+async def test_model_code_that_crashes_is_named_by_its_document_line(cache_dir: Path) -> None:
+    crashing = dict(TIGER)
+    crashing["listen.sd"] = (
+        "project: tiger\n\ndynamic_model:\nint* nothing = nullptr;\n*nothing = 1;\n"
+        "__moduleResponse = hears_left;\n__moduleResponse = hears_right;\n"
+    )
+    async with engine_of(await built_text(crashing, cache_dir)) as engine:
+        with pytest.raises(ModelError, match=r"listen\.sd:4") as error:
+            await engine.plan(simulations=100, seed=1)
+        assert error.value.code == "AOS210"
+        assert (await engine.summary()).states == 2
+
+
+async def test_simulated_missions_of_the_finer_armadillo_sense_between_pick_and_serve(
+    bundles: Path, cache_dir: Path
+) -> None:
+    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+        limits = MissionLimits(stop_below_value=0.0)
+        for seed in range(1, 6):
+            run = await simulate_mission(engine, Search(simulations=100_000, seed=seed), limits)
+            assert run.actions[0] == "navigate(destination=easy_table)"
+            if "serve" in run.actions:
+                served = run.actions.index("serve")
+                picked = max(i for i, action in enumerate(run.actions[:served]) if action == "pick")
+                assert any(action.startswith("observe") for action in run.actions[picked:served])

@@ -1,0 +1,116 @@
+"""Emitted models without the engine: a test gives the draws and sees what every step does."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.documents import Project
+from aos_registry.load import load_bundle, load_files
+from aos_solver.build import SOURCES
+from aos_solver.emit import EmittedModel, emit
+from aos_solver.lower import lower
+
+__all__ = ["Played", "ScriptedModel", "bundle_project", "json_text", "lowered", "scripted", "text_project"]
+
+_DRIVER = Path(__file__).parent / "cpp"
+
+
+class Played(msgspec.Struct, frozen=True):
+    """The initial state, and each step with what it gave. Leaves of states are text."""
+
+    initial: Mapping[str, Any]
+    steps: list[dict[str, Any]]
+
+    @property
+    def rewards(self) -> list[float]:
+        return [step["reward"] for step in self.steps]
+
+    @property
+    def observations(self) -> list[str]:
+        return [step["observation"] for step in self.steps]
+
+    def values(self, name: str) -> list[str]:
+        """A variable's value at the start and after each step."""
+        return [self.initial["state"][name], *(step["state"][name] for step in self.steps)]
+
+
+class ScriptedModel(msgspec.Struct, frozen=True):
+    """A compiled model that draws from a script."""
+
+    emitted: EmittedModel
+    executable: Path
+
+    def play(self, *actions: str, initial: str = "") -> Played:
+        """Runs actions, each with its draws after a `|`, from an initial state with these draws."""
+        answer = self._run("play", script="\n".join([initial, *actions]) + "\n")
+        assert isinstance(answer, list), answer
+        return Played(answer[0], answer[1:])
+
+    def fault(self, *actions: str, initial: str = "") -> dict[str, Any]:
+        """The fault that the actions end with."""
+        answer = self._run("play", script="\n".join([initial, *actions]) + "\n")
+        assert isinstance(answer, dict), answer
+        return answer
+
+    def describe(self) -> dict[str, Any]:
+        """The grounded actions in their order, with their parameters."""
+        return {action["action"]: action["parameters"] for action in self._run("describe")}
+
+    def walk(self, steps: int) -> dict[str, Any]:
+        """That many steps of random actions, with a new start at each end."""
+        answer: dict[str, Any] = self._run("walk", "1", str(steps))
+        return answer
+
+    def _run(self, *arguments: str, script: str = "") -> Any:
+        done = subprocess.run(
+            [self.executable, *arguments], input=script, capture_output=True, text=True, timeout=60, check=True
+        )
+        return json.loads(done.stdout)
+
+
+def text_project(files: Mapping[str, str]) -> Project:
+    """The project of documents given as text, which must have no mistakes that the registry finds."""
+    loaded = load_files({name: text.encode() for name, text in files.items()})
+    assert loaded.project is not None, loaded.diagnostics
+    return loaded.project
+
+
+def bundle_project(bundle: Path) -> Project:
+    """The project of a bundle on the disk."""
+    loaded = load_bundle(bundle)
+    assert loaded.project is not None, loaded.diagnostics
+    return loaded.project
+
+
+def json_text(document: Mapping[str, Any], kind: str, name: str, project: str = "test") -> str:
+    """A v1.x JSON document with its header."""
+    header = {"Project": project, "Name": name, "Type": kind, "Version": 1}
+    return json.dumps({"PlpMain": header, **document}, indent=2)
+
+
+def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
+    """The emitted model of a project without errors."""
+    program, diagnostics = lower(project)
+    assert program is not None, diagnostics
+    return emit(program), diagnostics
+
+
+def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
+    """The model of a project, compiled for the script."""
+    emitted, _ = lowered(project)
+    driver = (_DRIVER / "scripted.hpp").read_text()
+    digest = hashlib.sha256((emitted.cpp + driver).encode()).hexdigest()[:24]
+    source, executable = cache_dir / f"scripted-{digest}.cpp", cache_dir / f"scripted-{digest}"
+    if not executable.exists():
+        source.write_text(emitted.cpp.replace('"aos/model_table.hpp"', '"scripted.hpp"'))
+        command = ["g++", "-std=c++20", "-O0", "-w", "-Wno-narrowing", "-I", SOURCES, "-I", _DRIVER]
+        subprocess.run([*command, source, "-o", executable], check=True, timeout=120)
+    return ScriptedModel(emitted, executable)

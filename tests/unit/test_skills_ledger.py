@@ -1,0 +1,48 @@
+"""At most one motion for each activation, whatever is repeated or crashes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_protocol.errors import SkillError
+from aos_protocol.messages import ActivationId, SkillCall, SkillResult
+from aos_skills.ledger import Ledger
+
+ID = ActivationId("mission", 2, 1)
+CALL = SkillCall(ID, "/pick", {}, 10.0)
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "skills.db"
+
+
+def test_a_new_activation_may_move(path: Path) -> None:
+    assert Ledger(path).stored(ID) is None
+
+
+def test_a_repeated_activation_gets_its_stored_answer_also_after_a_restart(path: Path) -> None:
+    ledger = Ledger(path)
+    ledger.start(CALL)
+    ledger.end(SkillResult(ID, {"success": True}))
+    ledger.close()
+    assert Ledger(path).stored(ID) == SkillResult(ID, {"success": True})
+
+
+def test_an_activation_that_never_ended_is_unknown_and_does_not_move_again(path: Path) -> None:
+    ledger = Ledger(path)
+    ledger.start(CALL)
+    ledger.close()
+    with pytest.raises(SkillError) as error:
+        Ledger(path).stored(ID)
+    assert error.value.code == "AOS504"
+
+
+def test_a_stale_epoch_is_refused(path: Path) -> None:
+    ledger = Ledger(path)
+    ledger.start(CALL)
+    with pytest.raises(SkillError) as error:
+        ledger.stored(ActivationId("mission", 1, 7))
+    assert error.value.code == "AOS506"
