@@ -26,13 +26,17 @@ def main() -> int:
         sys.stderr.write(f"{error}\n")
         return 1
     with tempfile.TemporaryDirectory() as folder:
-        source, output = Path(folder) / "try.cpp", Path(folder) / "try"
-        source.write_text(PROGRAM)
-        command = compiler.arguments(optimize="-O2", include=folder, source=str(source), output=str(output))
-        build = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S, check=False)
-        if build.returncode != 0 or subprocess.run([output], timeout=LIMIT_S, check=False).returncode != 0:
-            sys.stderr.write(f"{compiler.version} cannot build a program:\n{build.stderr}{build.stdout}")
-            return 2
+        source, thing, program = (str(Path(folder) / name) for name in ("try.cpp", "try.o", "try"))
+        Path(source).write_text(PROGRAM)
+        for command in (
+            compiler.compilation(source, thing, folder),
+            compiler.linking([thing], program),
+            [program],
+        ):
+            done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S, check=False)
+            if done.returncode != 0:
+                sys.stderr.write(f"{compiler.version} cannot build a program:\n{done.stderr}{done.stdout}")
+                return 2
     sys.stdout.write(f"{compiler.version}\n")
     return 0
 

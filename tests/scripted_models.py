@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import json
 import subprocess
@@ -15,10 +16,20 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_registry.load import load_bundle, load_files
 from aos_solver.build import SOURCES
+from aos_solver.compiler import find_compiler
 from aos_solver.emit import EmittedModel, emit
 from aos_solver.lower import lower
 
-__all__ = ["Played", "ScriptedModel", "bundle_project", "json_text", "lowered", "scripted", "text_project"]
+__all__ = [
+    "Played",
+    "ScriptedModel",
+    "bundle_project",
+    "json_text",
+    "lowered",
+    "mapping_text",
+    "scripted",
+    "text_project",
+]
 
 _DRIVER = Path(__file__).parent / "cpp"
 
@@ -71,7 +82,12 @@ class ScriptedModel(msgspec.Struct, frozen=True):
 
     def _run(self, *arguments: str, script: str = "") -> Any:
         done = subprocess.run(
-            [self.executable, *arguments], input=script, capture_output=True, text=True, timeout=60, check=True
+            [self.executable, *arguments],
+            input=script,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=True,
         )
         return json.loads(done.stdout)
 
@@ -79,14 +95,14 @@ class ScriptedModel(msgspec.Struct, frozen=True):
 def text_project(files: Mapping[str, str]) -> Project:
     """The project of documents given as text, which must have no mistakes that the registry finds."""
     loaded = load_files({name: text.encode() for name, text in files.items()})
-    assert loaded.project is not None, loaded.diagnostics
+    assert loaded.project is not None, [d for d in loaded.diagnostics if d.is_error]
     return loaded.project
 
 
 def bundle_project(bundle: Path) -> Project:
     """The project of a bundle on the disk."""
     loaded = load_bundle(bundle)
-    assert loaded.project is not None, loaded.diagnostics
+    assert loaded.project is not None, [d for d in loaded.diagnostics if d.is_error]
     return loaded.project
 
 
@@ -94,6 +110,16 @@ def json_text(document: Mapping[str, Any], kind: str, name: str, project: str = 
     """A v1.x JSON document with its header."""
     header = {"Project": project, "Name": name, "Type": kind, "Version": 1}
     return json.dumps({"PlpMain": header, **document}, indent=2)
+
+
+def mapping_text(*responses: str, variable: str = "", project: str = "test") -> str:
+    """An abstraction mapping with these responses, or with the text of a local variable."""
+    rules = [f"response: {response}\nresponse_rule: answer == '{response}'" for response in responses]
+    local = f"local_variable: {variable or 'answer'}\ntype: string\n"
+    local += f"from_ros_service_response: true\ncode:\n{variable or 'answer'} = __input.text\n"
+    activation = "module_activation: ros_service\npath: /act\nsrv: act\n"
+    ending = f"response_local_variable: {variable}\n" if variable else ""
+    return "\n".join([f"project: {project}", *rules, activation, local, ending])
 
 
 def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
@@ -111,6 +137,9 @@ def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
     source, executable = cache_dir / f"scripted-{digest}.cpp", cache_dir / f"scripted-{digest}"
     if not executable.exists():
         source.write_text(emitted.cpp.replace('"aos/model_table.hpp"', '"scripted.hpp"'))
-        command = ["g++", "-std=c++20", "-O0", "-w", "-Wno-narrowing", "-I", SOURCES, "-I", _DRIVER]
-        subprocess.run([*command, source, "-o", executable], check=True, timeout=120)
+        compiler = asyncio.run(find_compiler())
+        object_file = str(source.with_suffix(".o"))
+        compilation = compiler.compilation(str(source), object_file, str(SOURCES), "-O0", f"-I{_DRIVER}")
+        for command in (compilation, compiler.linking([object_file], str(executable))):
+            subprocess.run(command, check=True, timeout=240)
     return ScriptedModel(emitted, executable)

@@ -2,12 +2,9 @@
 // Stands where the engine child stands, so that tests see the model alone.
 #pragma once
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
-#include <iostream>
-#include <sstream>
 #include <string>
 
 namespace aos {
@@ -16,7 +13,7 @@ namespace aos {
 // the likelier, or the first, value.
 class Script {
  public:
-  explicit Script(const std::string& draws) : draws_(draws) {}
+  explicit Script(const char* draws) : rest_(draws) {}
   bool Bernoulli(double probability) { return next(probability >= 0.5 ? 1 : 0) != 0; }
   int SampleDiscrete(int name, std::initializer_list<double>) { return name + 1 + static_cast<int>(next(0)); }
   template <class Weights>
@@ -36,10 +33,13 @@ class Script {
 
  private:
   double next(double otherwise) {
-    double value;
-    return draws_ >> value ? value : otherwise;
+    char* end = nullptr;
+    const double value = std::strtod(rest_, &end);
+    if (end == rest_) return otherwise;
+    rest_ = end;
+    return value;
   }
-  std::istringstream draws_;
+  const char* rest_;
 };
 
 // A quick generator for long walks and for the rate.
@@ -110,23 +110,32 @@ int find_action(const std::string& name) {
   std::exit(3);
 }
 
+inline bool read_line(std::string& line) {
+  line.clear();
+  for (int character = std::getchar(); character != EOF; character = std::getchar()) {
+    if (character == '\n') return true;
+    line += static_cast<char>(character);
+  }
+  return false;
+}
+
 // Each line of the script is an action's name, and after a `|` the draws of its step; the first line is the draws of the
 // initial belief.
 template <class Model>
 void play() {
   std::string line;
-  std::getline(std::cin, line);
+  read_line(line);
   typename Model::State state;
-  Script first{line};
+  Script first{line.c_str()};
   Model::initial(state, first);
   JsonWriter json;
   json.begin_array().begin_object().key("state");
   print_state<Model>(json, state);
   json.member("ending", static_cast<int>(Model::ending(state))).end_object();
-  while (std::getline(std::cin, line)) {
+  while (read_line(line)) {
     const auto bar = line.find('|');
     const int action = find_action<Model>(line.substr(0, bar));
-    Script draws{bar == std::string::npos ? "" : line.substr(bar + 1)};
+    Script draws{bar == std::string::npos ? "" : line.c_str() + bar + 1};
     Script none{""};
     json.begin_object().member("meets_precondition", Model::meets_precondition(state, action, none));
     json.member("rollout_weight", Model::rollout_weight(state, action, none));
@@ -139,7 +148,7 @@ void play() {
     json.member("is_saved", loaded == state && Model::hash(loaded) == Model::hash(state));
     json.member("ending", static_cast<int>(Model::ending(state))).end_object();
   }
-  std::cout << json.end_array().text() << "\n";
+  std::puts(json.end_array().text().c_str());
 }
 
 template <class Model>
@@ -155,7 +164,9 @@ void walk(std::uint64_t seed, long steps) {
     if (has_ended || count % 50 == 49) Model::initial(state, dice);
     ended += has_ended;
   }
-  std::cout << "{\"steps\":" << steps << ",\"ended\":" << ended << ",\"reward\":" << sum << "}\n";
+  JsonWriter json;
+  json.begin_object().member("steps", steps).member("ended", ended).member("reward", sum).end_object();
+  std::puts(json.text().c_str());
 }
 
 template <class Model>
@@ -167,7 +178,7 @@ void describe() {
     Model::write_parameters(action, json);
     json.end_object();
   }
-  std::cout << json.end_array().text() << "\n";
+  std::puts(json.end_array().text().c_str());
 }
 
 template <class Model>
@@ -180,8 +191,10 @@ int run(int argc, char** argv) {
     if (mode == "describe") describe<Model>();
     if (mode == "walk") walk<Model>(std::strtoull(argv[2], nullptr, 10), std::strtol(argv[3], nullptr, 10));
   } catch (const ModelFault& fault) {
-    std::cout << JsonWriter{}.begin_object().member("fault", fault.code).member("text", fault.text)
-                     .member("piece", static_cast<std::uint32_t>(*blame::page)).end_object().text() << "\n";
+    JsonWriter json;
+    json.begin_object().member("fault", fault.code).member("text", fault.text);
+    json.member("piece", static_cast<std::uint32_t>(*blame::page)).end_object();
+    std::puts(json.text().c_str());
   }
   return 0;
 }

@@ -217,12 +217,15 @@ def test_a_service_that_dies_ends_the_mission_with_its_name(deploy_file: Path) -
 
 
 def test_the_engine_child_may_be_killed(deploy_file: Path) -> None:
-    with up(deploy_file) as running:
+    short = deploy_file.with_name("short.yaml")
+    short.write_text(deploy_file.read_text().replace("step_limit: 30", "step_limit: 3"))
+    with up(short) as running:
         running.until("decision")
         pids = json.loads((latest(deploy_file) / "run.json").read_text())["pids"]
         for pid in descendants(pids["solver"]):
             os.kill(pid, signal.SIGKILL)
         assert running.rest() in ENDINGS.values()
+    assert max(event.get("step", 0) for event in running.events) > 1
 
 
 class Refused(NamedTuple):

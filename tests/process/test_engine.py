@@ -172,10 +172,9 @@ async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_d
     async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
         before = (await engine.update("pick", "pick_succeeded")).summary
         assert engine.pid is not None
-        os.kill(engine.pid, signal.SIGKILL)
-        with pytest.raises(ModelError):
-            await engine.summary()
-        assert await engine.summary() == before
+        for _ in range(3):
+            os.kill(engine.pid, signal.SIGKILL)
+            assert await engine.summary() == before
 
 
 async def test_a_belief_moves_to_another_engine(bundles: Path, cache_dir: Path) -> None:
@@ -195,6 +194,7 @@ async def test_model_code_that_crashes_is_named_by_its_document_line(cache_dir: 
         with pytest.raises(ModelError, match=r"listen\.sd:4") as error:
             await engine.plan(simulations=100, seed=1)
         assert error.value.code == "AOS210"
+        assert "signal 11" in str(error.value)
         assert (await engine.summary()).states == 2
 
 

@@ -26,7 +26,8 @@ class PlainView:
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, MissionState):
-            if not event.remark or event.remark == self._last_remark:
+            # What acts is in the decision's own line.
+            if not event.remark or event.remark == self._last_remark or event.phase == "acting":
                 return
             self._last_remark = event.remark
         for line in lines_of(event):

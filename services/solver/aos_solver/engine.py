@@ -8,6 +8,8 @@ the old one had.
 from __future__ import annotations
 
 import asyncio
+import logging
+import signal
 import tempfile
 from pathlib import Path
 from typing import Literal, Self, TypeVar
@@ -34,6 +36,8 @@ __all__ = ["Engine", "ImpossiblePolicy"]
 
 ImpossiblePolicy = Literal["hold", "widen", "reset"]
 
+log = logging.getLogger(__name__)
+
 A = TypeVar("A")
 
 START_DEADLINE_S = 20.0
@@ -41,6 +45,7 @@ ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
 """For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
 EXACT_DEADLINE_S = 600.0
+EXIT_DEADLINE_S = 2.0
 EXACT_BELIEF_BUDGET = 20_000_000
 ADDRESS_SPACE_BYTES = 8 * 1024**3
 ANSWER_LIMIT_BYTES = 256 * 1024**2
@@ -54,6 +59,10 @@ class _Fault(msgspec.Struct, frozen=True):
 
 class _FaultAnswer(msgspec.Struct, frozen=True):
     fault: _Fault | None = None
+
+
+class _KilledError(ModelError):
+    """The child was ended by SIGKILL: from outside, not by model code, so asking again is right."""
 
 
 class Engine:
@@ -169,7 +178,12 @@ class Engine:
         async with self._asking:
             if self._child is None or self._child.returncode is not None:
                 await self._restart_child()
-            return await self._exchange(command, kind, deadline_s)
+            try:
+                return await self._exchange(command, kind, deadline_s)
+            except _KilledError as error:
+                log.warning("asking again: %s", error)
+                await self._restart_child()
+                return await self._exchange(command, kind, deadline_s)
 
     async def _start_child(self) -> None:
         self._blame.write_bytes(bytes(4))
@@ -221,12 +235,23 @@ class Engine:
     async def _lost(self, code: str, message: str) -> AosError:
         """The error for a child that is gone or has to go; the blame page tells what ran last."""
         piece = int.from_bytes(self._blame.read_bytes()[:4], "little")
-        child = self._child
+        status = None if code == "AOS211" else await self._status()
         await self._drop_child()
-        if code == "AOS210" and child is not None and child.returncode is not None:
-            message = f"{message} ({_status_text(child.returncode)})"
+        if status == -signal.SIGKILL:
+            return _KilledError("the engine was killed", code="AOS213")
+        if status is not None:
+            message = f"{message} ({_status_text(status)})"
             code = code if piece else "AOS213"
         return self._blamed(code, message, piece)
+
+    async def _status(self) -> int | None:
+        """How a child that has closed its output ended; None if it lingers."""
+        assert self._child is not None
+        try:
+            async with asyncio.timeout(EXIT_DEADLINE_S):
+                return await self._child.wait()
+        except TimeoutError:
+            return None
 
     def _blamed(self, code: str, message: str, piece: int) -> AosError:
         spans = self._built.emitted.snippets

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from aos_solver.program import EnumVariable, Loop, Piece, Program, Section, Skill, SpecialState, Statement, Variable
+from aos_solver.program import (
+    EnumVariable,
+    Loop,
+    Piece,
+    Program,
+    Section,
+    Skill,
+    SpecialState,
+    Statement,
+    Variable,
+)
 
 __all__ = ["outline"]
 
@@ -41,10 +51,11 @@ def _titled(title: str, lines: Iterable[str]) -> Iterator[str]:
 
 
 def _variable(variable: Variable) -> str:
-    default = variable.default_value or variable.default_code
     parts = [f"{variable.name}: {variable.type}"]
-    if default is not None:
-        parts.append(f"= {_one_line(default)}  [{default.snippet.span}]")
+    if (value := variable.default_value) is not None:
+        parts.append(f"= {_one_line(value)}  [{value.snippet.span}]")
+    if (code := variable.default_code) is not None:
+        parts.append(f"{{ {_one_line(code)} }}  [{code.snippet.span}]")
     if variable.is_parameter_value:
         parts.append("(a value for parameters)")
     return " ".join(parts)

@@ -1,0 +1,520 @@
+// Model of the project armadillo: 7 state variables, 5 skills.
+// Emitted by aos 0.1.0 from the documents of digest 363c4deda2dd73da. Change the documents, not this file;
+// `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
+
+#include "aos/model_support.hpp"
+
+namespace model {
+
+using namespace std;  // Documents write `vector` and `sqrt`.
+using anyValue = bool;
+
+enum Place : std::int8_t { EasyTable, HardTable, Corridor, RobotHand, Unknown };
+inline const char* name_of(Place value) {
+  return aos::name_in({"EasyTable", "HardTable", "Corridor", "RobotHand", "Unknown"}, value);
+}
+
+struct Destination {
+  Place place = Unknown;
+  double x = 0.0;
+  double y = 0.0;
+  double yaw = 0.0;
+
+  template <class Self, class Visit>
+  static void __fields(Self& self, Visit&& visit) {
+    visit("place", self.place);
+    visit("x", self.x);
+    visit("y", self.y);
+    visit("yaw", self.yaw);
+  }
+  bool operator==(const Destination&) const = default;
+};
+
+// What no code changes; every state refers to it.
+struct Constants {
+  Destination easy_table{};
+  Destination hard_table{};
+  Destination corridor{};
+};
+inline Constants constants;
+
+// What a particle holds.
+struct State {
+  Place easy_can_at{};
+  Place hard_can_at{};
+  Place robot_at{};
+  bool holding_can{};
+  bool arm_outstretched{};
+  bool drink_served{};
+  bool person_injured{};
+  aos::Ending __ending{};
+  inline static const Destination& easy_table = constants.easy_table;
+  inline static const Destination& hard_table = constants.hard_table;
+  inline static const Destination& corridor = constants.corridor;
+
+  template <class Self, class Visit>
+  static void __fields(Self& self, Visit&& visit) {
+    visit("easy_can_at", self.easy_can_at);
+    visit("hard_can_at", self.hard_can_at);
+    visit("robot_at", self.robot_at);
+    visit("holding_can", self.holding_can);
+    visit("arm_outstretched", self.arm_outstretched);
+    visit("drink_served", self.drink_served);
+    visit("person_injured", self.person_injured);
+  }
+  bool operator==(const State&) const = default;
+};
+
+// All variables, open to the code that gives them their first values.
+struct Draft : State, Constants {
+  using Constants::easy_table;
+  using Constants::hard_table;
+  using Constants::corridor;
+};
+
+// The values that the documents declare, in their order.
+inline void default_values(Draft& state) {
+  {
+    aos::blame::at(5);
+#line 16 "armadillo.ef"
+state.easy_can_at = EasyTable;
+#line 82 "model.cpp"
+  }
+  {
+    aos::blame::at(6);
+#line 20 "armadillo.ef"
+state.hard_can_at = HardTable;
+#line 88 "model.cpp"
+  }
+  {
+    aos::blame::at(7);
+#line 24 "armadillo.ef"
+state.robot_at = Unknown;
+#line 94 "model.cpp"
+  }
+  {
+    aos::blame::at(8);
+#line 28 "armadillo.ef"
+state.holding_can = false;
+#line 100 "model.cpp"
+  }
+  {
+    aos::blame::at(9);
+#line 32 "armadillo.ef"
+state.arm_outstretched = false;
+#line 106 "model.cpp"
+  }
+  {
+    aos::blame::at(10);
+#line 36 "armadillo.ef"
+state.drink_served = false;
+#line 112 "model.cpp"
+  }
+  {
+    aos::blame::at(11);
+#line 40 "armadillo.ef"
+state.person_injured = false;
+#line 118 "model.cpp"
+  }
+  {
+    aos::blame::at(12);
+#line 44 "armadillo.ef"
+state.easy_table.place = EasyTable;
+state.easy_table.x = 0.0;
+state.easy_table.y = 2.0;
+state.easy_table.yaw = 1.5708;
+#line 127 "model.cpp"
+  }
+  {
+    aos::blame::at(13);
+#line 51 "armadillo.ef"
+state.hard_table.place = HardTable;
+state.hard_table.x = 0.0;
+state.hard_table.y = -2.0;
+state.hard_table.yaw = -1.5708;
+#line 136 "model.cpp"
+  }
+  {
+    aos::blame::at(14);
+#line 58 "armadillo.ef"
+state.corridor.place = Corridor;
+state.corridor.x = 4.0;
+state.corridor.y = 0.0;
+state.corridor.yaw = 0.0;
+#line 145 "model.cpp"
+  }
+  aos::blame::at(0);
+}
+
+// From navigate.sd.
+struct skill__navigate : aos::SkillDefaults {
+  enum Response : int { arrived = 1, failed };
+  static constexpr std::array<const char*, 2> response_names{"arrived", "failed"};
+  static constexpr double violation_penalty = -10.0;
+
+  struct Parameters {
+    Destination destination;
+
+    template <class Self, class Visit>
+    static void __fields(Self& self, Visit&& visit) {
+      visit("destination", self.destination);
+    }
+  };
+  inline static std::vector<aos::Grounding<Parameters>> groundings;
+
+  static void ground(const Draft& __draft) {
+    groundings.clear();
+    for (const auto& destination : aos::values<Destination>({
+             {"corridor", __draft.corridor},
+             {"easy_table", __draft.easy_table},
+             {"hard_table", __draft.hard_table},
+         })) {
+      groundings.push_back({aos::action_name("navigate", {{"destination", destination.name}}), {destination.value}});
+    }
+  }
+
+  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
+                           auto& AOS) {
+    aos::blame::at(19);
+#line 5 "navigate.sd"
+__meetPrecondition = state.robot_at != Unknown;
+#line 182 "model.cpp"
+  }
+
+  static void next_state(const State& state, const State& state_, State& state__,
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
+                         const Parameters& __parameters, auto& AOS) {
+    const auto& destination = __parameters.destination;
+    auto& __reward = __effect.reward;
+    auto& __moduleResponse = __effect.response;
+    aos::blame::at(20);
+#line 9 "navigate.sd"
+bool is_there = AOS.Bernoulli(1.0);
+if (is_there) state__.robot_at = destination.place;
+__moduleResponse = is_there ? arrived : failed;
+__reward = -5;
+#line 197 "model.cpp"
+  }
+};
+
+// From observe_arm_outstretched.sd.
+struct skill__observe_arm_outstretched : aos::SkillDefaults {
+  enum Response : int { outstretched = 1, not_outstretched };
+  static constexpr std::array<const char*, 2> response_names{"outstretched", "not_outstretched"};
+  inline static std::vector<aos::Grounding<Parameters>> groundings;
+
+  static void ground(const Draft&) {
+    groundings.clear();
+    groundings.push_back({aos::action_name("observe_arm_outstretched", {}), {}});
+  }
+
+  static void next_state(const State& state, const State& state_, State& state__,
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
+                         const Parameters& __parameters, auto& AOS) {
+    auto& __reward = __effect.reward;
+    auto& __moduleResponse = __effect.response;
+    aos::blame::at(21);
+#line 4 "observe_arm_outstretched.sd"
+__moduleResponse = state.arm_outstretched ? outstretched : not_outstretched;
+__reward = -1;
+#line 221 "model.cpp"
+  }
+};
+
+// From observe_holding.sd.
+struct skill__observe_holding : aos::SkillDefaults {
+  enum Response : int { holding = 1, not_holding };
+  static constexpr std::array<const char*, 2> response_names{"holding", "not_holding"};
+  inline static std::vector<aos::Grounding<Parameters>> groundings;
+
+  static void ground(const Draft&) {
+    groundings.clear();
+    groundings.push_back({aos::action_name("observe_holding", {}), {}});
+  }
+
+  static void next_state(const State& state, const State& state_, State& state__,
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
+                         const Parameters& __parameters, auto& AOS) {
+    auto& __reward = __effect.reward;
+    auto& __moduleResponse = __effect.response;
+    aos::blame::at(22);
+#line 4 "observe_holding.sd"
+// In 2 of 11 runs the fingers report nothing although they hold the can; never the other way round.
+__moduleResponse = state.holding_can && AOS.Bernoulli(0.818) ? holding : not_holding;
+__reward = -1;
+#line 246 "model.cpp"
+  }
+};
+
+// From pick.sd.
+struct skill__pick : aos::SkillDefaults {
+  enum Response : int { pick_succeeded = 1, pick_failed };
+  static constexpr std::array<const char*, 2> response_names{"pick_succeeded", "pick_failed"};
+  static constexpr double violation_penalty = -10.0;
+  inline static std::vector<aos::Grounding<Parameters>> groundings;
+
+  static void ground(const Draft&) {
+    groundings.clear();
+    groundings.push_back({aos::action_name("pick", {}), {}});
+  }
+
+  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
+                           auto& AOS) {
+    aos::blame::at(23);
+#line 4 "pick.sd"
+bool can_in_reach = state.easy_can_at == state.robot_at || state.hard_can_at == state.robot_at;
+__meetPrecondition = can_in_reach && !state.holding_can;
+#line 268 "model.cpp"
+  }
+
+  static void next_state(const State& state, const State& state_, State& state__,
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
+                         const Parameters& __parameters, auto& AOS) {
+    auto& __reward = __effect.reward;
+    auto& __moduleResponse = __effect.response;
+    aos::blame::at(24);
+#line 9 "pick.sd"
+enum Ending { Grasped, GraspedArmOut, NotGrasped, Dropped };
+
+Ending ending = NotGrasped;
+if (__meetPrecondition) ending = Ending(AOS.SampleDiscrete(-1, {0.5238, 0.0952, 0.0476, 0.4285}));
+bool in_hand = ending == Grasped || ending == GraspedArmOut;
+
+if (ending != NotGrasped) {
+    Place can_at = in_hand ? RobotHand : Unknown;
+    if (state.easy_can_at == state.robot_at) state__.easy_can_at = can_at;
+    if (state.hard_can_at == state.robot_at) state__.hard_can_at = can_at;
+}
+state__.holding_can = in_hand;
+state__.arm_outstretched = ending == GraspedArmOut;
+
+// The skill notices an arm that stays out, and neither a missed nor a dropped can.
+__moduleResponse = ending == GraspedArmOut ? pick_failed : pick_succeeded;
+__reward = -2;
+#line 295 "model.cpp"
+  }
+};
+
+// From serve.sd.
+struct skill__serve : aos::SkillDefaults {
+  enum Response : int { delivered = 1, not_delivered };
+  static constexpr std::array<const char*, 2> response_names{"delivered", "not_delivered"};
+  static constexpr double violation_penalty = -12.0;
+  inline static std::vector<aos::Grounding<Parameters>> groundings;
+
+  static void ground(const Draft&) {
+    groundings.clear();
+    groundings.push_back({aos::action_name("serve", {}), {}});
+  }
+
+  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
+                           auto& AOS) {
+    aos::blame::at(25);
+#line 4 "serve.sd"
+__meetPrecondition = state.holding_can && !state.arm_outstretched && state.robot_at == Corridor;
+#line 316 "model.cpp"
+  }
+
+  static void next_state(const State& state, const State& state_, State& state__,
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
+                         const Parameters& __parameters, auto& AOS) {
+    auto& __reward = __effect.reward;
+    auto& __moduleResponse = __effect.response;
+    aos::blame::at(26);
+#line 8 "serve.sd"
+state__.person_injured = state.arm_outstretched;
+state__.drink_served = __meetPrecondition && !state__.person_injured;
+
+// All 21 runs reported a delivery, whether or not there was a can in the hand.
+__moduleResponse = AOS.Bernoulli(1.0) ? delivered : not_delivered;
+__reward = state__.person_injured ? -20 : -8;
+#line 332 "model.cpp"
+  }
+};
+
+struct Environment : aos::EnvironmentDefaults {
+  static void initial_belief(State& state, auto& AOS) {
+    aos::blame::at(15);
+#line 64 "armadillo.ef"
+state.robot_at = state.hard_table.place;
+#line 341 "model.cpp"
+  }
+
+  static void special_state__1(const State& state, double& __reward, bool& __isGoalState,
+                               bool& __stopEvaluatingState, auto& AOS) {
+    aos::blame::at(16);
+#line 67 "armadillo.ef"
+if (state.drink_served) {
+    __reward = 30;
+    __isGoalState = true;
+}
+#line 352 "model.cpp"
+  }
+
+  static void special_state__2(const State& state, double& __reward, bool& __isGoalState,
+                               bool& __stopEvaluatingState, auto& AOS) {
+    aos::blame::at(17);
+#line 73 "armadillo.ef"
+if (state.person_injured) {
+    __reward = -10;
+    __isGoalState = true;
+}
+#line 363 "model.cpp"
+  }
+
+  static void special_state__3(const State& state, double& __reward, bool& __isGoalState,
+                               bool& __stopEvaluatingState, auto& AOS) {
+    aos::blame::at(18);
+#line 79 "armadillo.ef"
+// Both cans are lost: nothing is left to serve.
+if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
+    __isGoalState = true;
+}
+#line 374 "model.cpp"
+  }
+
+  static double special_states(State& next, auto& random) {
+    double reward = 0;
+    reward += aos::special_state(next, 0u, [&](auto&... result) {
+      special_state__1(next, result..., random);
+    });
+    reward += aos::special_state(next, 0u, [&](auto&... result) {
+      special_state__2(next, result..., random);
+    });
+    reward += aos::special_state(next, 0u, [&](auto&... result) {
+      special_state__3(next, result..., random);
+    });
+    return reward;
+  }
+};
+
+inline State start;
+inline std::vector<aos::GroundedAction> actions;
+
+// Calls `use` with the skill's type.
+decltype(auto) with_skill(int skill, auto&& use) {
+  switch (skill) {
+    case 0:
+      return use(std::type_identity<skill__navigate>{});
+    case 1:
+      return use(std::type_identity<skill__observe_arm_outstretched>{});
+    case 2:
+      return use(std::type_identity<skill__observe_holding>{});
+    case 3:
+      return use(std::type_identity<skill__pick>{});
+    default:
+      return use(std::type_identity<skill__serve>{});
+  }
+}
+
+// Calls `use` with the type of the action's skill and its parameters.
+decltype(auto) with_action(int action, auto&& use) {
+  const auto& chosen = actions[action];
+  return with_skill(chosen.skill, [&]<class Skill>(std::type_identity<Skill> skill) -> decltype(auto) {
+    return use(skill, Skill::groundings[chosen.grounding].parameters);
+  });
+}
+
+// What the engine runs.
+struct Model {
+  using State = model::State;
+  static constexpr const char* project = "armadillo";
+  static constexpr int horizon = 10;
+  static constexpr double discount = 0.99;
+  static constexpr int skill_count = 5;
+  static constexpr bool has_rollout_policy = false;
+  static constexpr bool has_state_heuristic = false;
+  static constexpr bool is_one_state = false;
+
+  // Sets the constants and grounds the actions; call it once before anything else.
+  static void prepare() {
+    Draft draft;
+    default_values(draft);
+    constants = draft;
+    start = draft;
+    actions.clear();
+    skill__navigate::ground(draft);
+    aos::add_actions(actions, 0, skill__navigate::groundings);
+    skill__observe_arm_outstretched::ground(draft);
+    aos::add_actions(actions, 1, skill__observe_arm_outstretched::groundings);
+    skill__observe_holding::ground(draft);
+    aos::add_actions(actions, 2, skill__observe_holding::groundings);
+    skill__pick::ground(draft);
+    aos::add_actions(actions, 3, skill__pick::groundings);
+    skill__serve::ground(draft);
+    aos::add_actions(actions, 4, skill__serve::groundings);
+  }
+
+  static int action_count() { return static_cast<int>(actions.size()); }
+  static const char* action_name(int action) { return actions[action].name; }
+  static int skill_of(int action) { return actions[action].skill; }
+  static const char* skill_name(int skill) {
+    static constexpr const char* names[] = {"navigate", "observe_arm_outstretched", "observe_holding", "pick", "serve"};
+    return names[skill];
+  }
+  static int response_count(int skill) {
+    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) { return static_cast<int>(Skill::response_names.size()); });
+  }
+  static const char* response_name(int skill, int response) {
+    return with_skill(skill, [&]<class Skill>(std::type_identity<Skill>) { return Skill::response_names.begin()[response]; });
+  }
+  static bool has_text_response(int skill) {
+    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) { return Skill::has_text_response; });
+  }
+  static void write_parameters(int action, aos::JsonWriter& json) {
+    with_action(action, [&](auto, const auto& parameters) { aos::write_json(json, parameters); });
+  }
+
+  static void initial(State& state, auto& random) {
+    state = start;
+    Environment::initial_belief(state, random);
+    Environment::special_states(state, random);
+    aos::blame::at(0);
+  }
+  static aos::Step step(State& state, int action, auto& random) {
+    return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+      return aos::step<Environment, Skill>(state, parameters, random);
+    });
+  }
+  static bool meets_precondition(const State& state, int action, auto& random) {
+    return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+      return aos::meets_precondition<Skill>(state, parameters, random);
+    });
+  }
+  static double rollout_weight(const State& state, int action, auto& random) {
+    return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+      return aos::rollout_weight<Skill>(state, parameters, random);
+    });
+  }
+  static double state_value(const State& state, auto& random) {
+    double value = 0;
+    Environment::state_heuristic(state, value, random);
+    aos::blame::at(0);
+    return value;
+  }
+
+  static aos::Ending ending(const State& state) { return state.__ending; }
+  static void visit(const State& state, auto&& visitor) { aos::visit_leaves("", state, visitor); }
+  static std::uint64_t hash(const State& state) {
+    const auto ended = static_cast<std::uint64_t>(state.__ending);
+    return aos::mixed(aos::hashed(0, state), ended);
+  }
+  static std::string save_state(const State& state) {
+    aos::StateWriter text;
+    State::__fields(state, [&](const char*, const auto& value) { text.write(value); });
+    text.write(state.__ending);
+    return text.text();
+  }
+  static void load_state(State& state, std::string_view saved) {
+    aos::StateReader text{saved};
+    State::__fields(state, [&](const char*, auto& value) { text.read(value); });
+    text.read(state.__ending);
+    text.finish();
+  }
+};
+
+}  // namespace model
+
+#include "aos/model_table.hpp"
+
+constinit const aos::ModelTable aos::compiled_model = aos::table_of<model::Model>();

@@ -1,0 +1,36 @@
+"""The emitted C++ of our own bundles, byte for byte. `make promote` accepts it as it is now."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from scripted_models import bundle_project
+
+from aos_solver.emit import emit
+from aos_solver.lower import lower
+from aos_solver.outline import outline
+
+GOLDEN = Path(__file__).parent / "cpp"
+
+
+@pytest.mark.parametrize("bundle", ["armadillo-rough", "armadillo-finer"])
+def test_the_emitted_model_is_the_promoted_one(bundles: Path, bundle: str) -> None:
+    program, _ = lower(bundle_project(bundles / bundle))
+    assert program is not None
+    check(GOLDEN / f"{bundle}.cpp", emit(program).cpp)
+    check(GOLDEN / f"{bundle}.txt", outline(program))
+
+
+def test_emission_gives_the_same_bytes_again(bundles: Path) -> None:
+    first, second = (lower(bundle_project(bundles / "armadillo-finer"))[0] for _ in range(2))
+    assert first is not None
+    assert second is not None
+    assert emit(first).cpp == emit(second).cpp
+
+
+def check(golden: Path, text: str) -> None:
+    if os.environ.get("AOS_PROMOTE") == "1":
+        golden.write_text(text)
+    assert text == golden.read_text(), f"{golden.name} has changed; `make promote` accepts it"
