@@ -19,7 +19,7 @@ _HEADERS = {
     "cstdio": "printf puts",
     "cstdlib": "abs atof atoi labs strtod strtol",
     "deque": "deque",
-    "functional": "function greater less plus minus",
+    "functional": "cref function greater less minus plus ref",
     "iomanip": "setprecision setw",
     "iostream": "cerr clog cout endl",
     "limits": "numeric_limits",

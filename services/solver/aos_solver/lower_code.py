@@ -101,8 +101,9 @@ class Pieces:
                 self._findings.error("AOS108", fault.message, span)
         code = _without_texts(cpp)
         self.identifiers.update(re.findall(r"[A-Za-z_]\w*", code))
-        called = frozenset(call.name[-1] for call in cpp.calls if call.name and call.name[0] != "AOS")
-        named = called | frozenset(name for name, _ in cpp.types)
+        functions = (call.name for call in cpp.calls if len(call.name) == 1 or call.name[:1] == ("std",))
+        named = {part for name in functions for part in name}
+        named |= {part for name, _ in cpp.types for part in name.split("::")}
         own = {declaration.name for declaration in cpp.declarations}
         for name in unrepeatable_names(frozenset(named - own), code):
             at = re.search(rf"\b{re.escape(name)}\b", code)

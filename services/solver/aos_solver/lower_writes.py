@@ -6,16 +6,22 @@ pass: constants are constant to the compiler.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from aos_protocol.documents import Assignment, Environment, Project
-from aos_runtime.snippets import Access, Cpp, DeclarationKind, Mention, read_cpp, read_cpp_expression
+from aos_runtime.snippets import Access, Cpp, Mention, read_cpp, read_cpp_expression
 from aos_solver.lower_code import Phase, environment_sections, skill_sections, snippets_of
 
 __all__ = ["Changes", "changes_of", "drawing_defaults"]
 
 _ALL_COPIES = frozenset({"state", "state_", "state__"})
 _CHANGING = (Access.WRITE, Access.UPDATE, Access.BIND)
+_READING_FUNCTIONS = frozenset({
+    "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",
+    "float", "floor", "fmax", "fmin", "fmod", "hypot", "int", "isfinite", "isnan", "log", "log10", "log2",
+    "lround", "make_pair", "make_tuple", "max", "min", "pow", "round", "sin", "sqrt", "static_cast", "string",
+    "tan", "tanh", "to_string", "trunc",
+})  # fmt: skip
 
 
 class Changes:
@@ -31,7 +37,7 @@ class Changes:
 
     def read(self, cpp: Cpp, copies: frozenset[str]) -> None:
         """Takes in a snippet that may change these copies of the state."""
-        passed_on = list(_passed_to_local_functions(cpp))
+        passed_on = list(_passed_to_functions(cpp))
         for mention in cpp.mentions:
             if mention.path[0] not in _ALL_COPIES:
                 continue
@@ -104,11 +110,11 @@ def _all_sections(project: Project) -> Iterator[tuple[Phase, tuple[Assignment, .
         yield from skill_sections(skill.model)
 
 
-def _passed_to_local_functions(cpp: Cpp) -> Iterable[range]:
-    """The arguments of calls to functions that the snippet declares itself: they may take references."""
-    own = {d.name for d in cpp.declarations if d.kind is DeclarationKind.VARIABLE}
+def _passed_to_functions(cpp: Cpp) -> Iterator[range]:
+    """The arguments of calls to functions that may take them by reference."""
     for call in cpp.calls:
-        if len(call.name) == 1 and call.name[0] in own:
+        is_function = len(call.name) == 1 or call.name[:1] == ("std",)
+        if is_function and call.name[-1] not in _READING_FUNCTIONS:
             yield from (range(argument.start, argument.end) for argument in call.arguments)
 
 

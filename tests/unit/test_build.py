@@ -1,0 +1,175 @@
+"""Building emitted models: the cache, mistakes at their places, limits."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from scripted_models import bundle_project, json_text, lowered, mapping_text, text_project
+
+from aos_protocol.errors import ModelError
+from aos_solver import build as build_module
+from aos_solver.build import BuiltModel, build, build_engine
+from aos_solver.build_cache import BuildCache
+from aos_solver.emit import EmittedModel
+
+HOME = """project: test
+horizon: 3
+discount: 0.9
+state_variable: int total
+"""
+
+
+def emitted_skill(code: str, home: str = HOME) -> EmittedModel:
+    """A model with one skill, whose dynamic model starts in line 3 of act.sd."""
+    act = f"project: test\ndynamic_model:\n{code}\n"
+    return lowered(text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text("done")}))[0]
+
+
+async def build_error(emitted: EmittedModel, cache_dir: Path, deadline_s: float | None = None) -> ModelError:
+    with pytest.raises(ModelError) as raised:
+        await build(emitted, cache_dir=cache_dir, deadline_s=deadline_s)
+    return raised.value
+
+
+def places(error: ModelError) -> list[str]:
+    return [str(diagnostic.span) for diagnostic in error.diagnostics]
+
+
+async def test_a_model_is_built_once_and_then_found_at_once(bundles: Path, cache_dir: Path) -> None:
+    emitted, _ = lowered(bundle_project(bundles / "armadillo-finer"))
+    first = await build(emitted, cache_dir=cache_dir)
+    started_s = time.monotonic()
+    second = await build(emitted, cache_dir=cache_dir)
+    assert second.executable == first.executable
+    assert second.is_from_cache
+    assert time.monotonic() - started_s < 1
+    assert (second.executable.parent / "model.cpp").read_text() == emitted.cpp
+
+
+async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir: Path) -> None:
+    emitted = emitted_skill("state__.total += 1;")
+    async with asyncio.TaskGroup() as tasks:
+        both = [tasks.create_task(build(emitted, cache_dir=cache_dir)) for _ in range(2)]
+    first, second = (task.result() for task in both)
+    assert first.executable == second.executable
+    assert unfinished(cache_dir) == []
+    assert await answers(first)
+
+
+async def test_progress_says_what_takes_the_time(cache_dir: Path) -> None:
+    remarks: list[str] = []
+    emitted = emitted_skill("state__.total += 2;")
+    await build(emitted, cache_dir=cache_dir, on_progress=remarks.append)
+    assert remarks[0].startswith("compiling test with ")
+    assert remarks[-1].startswith("compiled test in ")
+
+
+async def test_a_large_state_gets_an_engine_of_its_size(
+    cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual = await build_engine(cache_dir)
+    sizes: list[int] = []
+
+    async def recorded(*_: Any, state_bytes: int, **__: Any) -> Path:
+        sizes.append(state_bytes)
+        return usual
+
+    monkeypatch.setattr(build_module, "build_engine", recorded)
+    row = "state_variable: int row []\ncode:\nstate.row = vector<int>(40, 0);\n"
+    await build(emitted_skill("state__.row[3] = 1;", HOME + row), cache_dir=cache_dir)
+    assert sizes == [64, 256]
+
+
+async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) -> None:
+    error = await build_error(
+        emitted_skill("int n = 1;\n\tstate__.total = nn + 1;\n\n__reward = missing(n)"), cache_dir
+    )
+    assert error.code == "AOS201"
+    assert places(error) == ["act.sd:4:18", "act.sd:6:12"]
+    assert error.diagnostics[0].message == "`nn` was not declared"
+    assert "did you mean" in error.diagnostics[0].hint.lower()
+
+
+async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path) -> None:
+    document: dict[str, Any] = {
+        "Preconditions": {"GlobalVariablePreconditionAssignments": [
+            {"AssignmentCode": "int a = 1;\nint b = \"two\";\n__meetPrecondition = a > b;"}
+        ]},
+        "DynamicModel": {"NextStateAssignments": [
+            {"AssignmentCode": ["state__.total = 1;", "", "state__.total = AOS.Bernouli(0.5);"]},
+        ]},
+    }  # fmt: skip
+    text = json_text(document, "PLP", "act")
+    # The registry knows the built-ins; the compiler has the last word about documents that it did not read.
+    project = text_project({"home.ef": HOME, "act.json": text.replace("Bernouli", "Bernoulli"),
+                            "act.am": mapping_text("done")})  # fmt: skip
+    error = await build_error(lowered(project)[0], cache_dir)
+    line = next(n for n, content in enumerate(text.split("\n"), 1) if "int a" in content)
+    column = text.split("\n")[line - 1].index("two") - 1
+    assert places(error) == [f"act.json:{line}:{column}"]
+
+
+async def test_a_mistake_in_a_template_that_code_uses_is_told_where_it_is_used(cache_dir: Path) -> None:
+    error = await build_error(emitted_skill("vector<int> v{3, 1};\nstd::sort(v.begin(), 7);"), cache_dir)
+    assert places(error)[0].startswith("act.sd:4:")
+
+
+async def test_an_error_outside_the_documents_names_the_emitted_file(cache_dir: Path) -> None:
+    emitted = emitted_skill("state__.total = 5;")
+    broken = EmittedModel(
+        emitted.project,
+        emitted.cpp.replace("struct Model {", "struct Model { Unheard of;"),
+        emitted.digest,
+        emitted.state_digest,
+        emitted.snippets,
+        emitted.pieces,
+        emitted.origins,
+    )
+    error = await build_error(broken, cache_dir)
+    assert error.diagnostics == ()
+    assert "Unheard" in error.message
+    kept = Path(error.hint.rsplit(" ", 1)[-1])
+    assert "Unheard of;" in text_of(kept)
+
+
+async def test_a_compiler_that_does_not_finish_is_stopped(cache_dir: Path) -> None:
+    await build_engine(cache_dir)
+    emitted = emitted_skill("state__.total = 6;")
+    error = await build_error(emitted, cache_dir, deadline_s=0.3)
+    assert error.code == "AOS202"
+    assert unfinished(cache_dir) == []
+
+
+async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path: Path) -> None:
+    async def fail(staging: Path) -> None:
+        (staging / "half").write_text("half")
+        raise ModelError("no")
+
+    with pytest.raises(ModelError):
+        await BuildCache(tmp_path).fill("entry", fail)
+    assert unfinished(tmp_path, "*") == []
+
+
+def unfinished(cache_dir: Path, pattern: str = "*.building") -> list[Path]:
+    return list(cache_dir.glob(pattern))
+
+
+def text_of(path: Path) -> str:
+    return path.read_text()
+
+
+async def answers(built: BuiltModel) -> dict[str, Any]:
+    """What the engine says about itself when it starts."""
+    child = await asyncio.create_subprocess_exec(
+        built.executable, "/dev/null", "1", "widen",
+        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    async with asyncio.timeout(20):
+        output, _ = await child.communicate()
+    described: dict[str, Any] = json.loads(output.splitlines()[0])
+    return described

@@ -1,0 +1,75 @@
+"""Finding a compiler and calling it."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from aos_protocol.errors import ModelError
+from aos_solver import compiler as compiler_module
+from aos_solver.compiler import find_compiler
+
+
+def fake(directory: Path, name: str, text: str, status: int = 0) -> None:
+    path = directory / name
+    path.write_text(f"#!/bin/sh\necho '{text}'\nexit {status}\n")
+    path.chmod(0o755)
+
+
+@pytest.fixture
+def no_wheel(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler_module.importlib.util, "find_spec", lambda name: None)
+
+
+@pytest.fixture
+def tools(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A directory that is all of PATH."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    return tmp_path
+
+
+async def test_cxx_comes_first(tools: Path) -> None:
+    fake(tools, "g++", "g++ (Debian 12.2.0-14) 12.2.0")
+    fake(tools, "mine", "clang version 17.0.6")
+    found = await find_compiler({"CXX": f"{tools}/mine --gcc-toolchain=/x", "PATH": str(tools)})
+    assert found.command == (f"{tools}/mine", "--gcc-toolchain=/x")
+    assert found.family == "clang"
+
+
+async def test_a_compiler_that_is_too_old_or_broken_is_passed_over(tools: Path, no_wheel: None) -> None:
+    fake(tools, "g++", "g++ (Ubuntu 9.4.0-1) 9.4.0")
+    fake(tools, "clang++", "Debian clang version 16.0.6 (15~deb12u1)")
+    assert (await find_compiler({"PATH": str(tools)})).command == ("clang++",)
+
+
+async def test_without_a_compiler_the_error_says_what_to_install(tools: Path, no_wheel: None) -> None:
+    fake(tools, "g++", "", status=1)
+    with pytest.raises(ModelError) as raised:
+        await find_compiler({"PATH": str(tools)})
+    assert raised.value.code == "AOS203"
+    assert "g++ does not run" in raised.value.message
+    assert "apt install g++" in raised.value.hint
+
+
+async def test_a_cxx_that_does_not_work_is_not_passed_over(tools: Path) -> None:
+    fake(tools, "g++", "g++ (Debian 12.2.0-14) 12.2.0")
+    with pytest.raises(ModelError, match="CXX is set, but"):
+        await find_compiler({"CXX": "/nowhere/c++", "PATH": str(tools)})
+
+
+async def test_the_wheel_is_the_last_resort(tools: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiler_module.importlib.util, "find_spec", lambda name: object())
+    fake(tools, "python", "clang version 19.1.7")
+    monkeypatch.setattr(compiler_module.sys, "executable", str(tools / "python"))
+    found = await find_compiler({"PATH": str(tools)})
+    assert found.command[1:] == ("-m", "ziglang", "c++")
+    assert found.family == "zig"
+    assert found.deadline_s > 200
+
+
+async def test_this_machine_has_one(cache_dir: Path) -> None:
+    found = await find_compiler(os.environ)
+    assert "-std=c++20" in found.compilation("a.cpp", "a.o", str(cache_dir))

@@ -1,0 +1,164 @@
+"""What lowering decides and what it refuses."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+from scripted_models import json_text, mapping_text, text_project
+
+from aos_protocol.diagnostics import Diagnostic, Severity
+from aos_protocol.documents import Project
+from aos_solver.emit import emit
+from aos_solver.lower import lower
+from aos_solver.outline import outline
+from aos_solver.program import Program
+
+HOME = """project: test
+horizon: 3
+discount: 0.9
+define_type: Light
+enum_members: Off, On
+state_variable: Light lamp
+state_variable: int count
+code:
+state.count = 4;
+state_variable: int row []
+code:
+state.row = {1, 2};
+state_variable: int total
+"""
+ACT = "project: test\ndynamic_model:\n"
+
+
+def project_of(act: str = "state__.total += state.count;", home: str = "") -> Project:
+    return text_project({"home.ef": HOME + home, "act.sd": ACT + act + "\n", "act.am": mapping_text("done")})
+
+
+def program_of(project: Project) -> Program:
+    program, diagnostics = lower(project)
+    assert program is not None, diagnostics
+    return program
+
+
+def particle_of(act: str, home: str = "") -> list[str]:
+    return [variable.name for variable in program_of(project_of(act, home)).particle]
+
+
+@pytest.mark.parametrize(
+    ("act", "particle"),
+    [
+        ("state__.total = 1;", ["total"]),
+        ("state__.lamp = On; state__.row[1] += 2;", ["lamp", "row"]),
+        ("int& counted = state__.count; counted++;", ["count"]),
+        ("for (auto& cell : state__.row) cell = 0;", ["row"]),
+        ("sort(state__.row.begin(), state__.row.end());", ["row"]),
+        ("auto set = [&](int& x) { x = 1; }; set(state__.total);", ["total"]),
+        ("auto held = std::ref(state__.total); held.get() = 1;", ["total"]),
+        ("int read = max(int(state__.count), 2) + std::pow(state__.total, 2);", []),
+        ("auto& all = state__; all.total = 1;", ["lamp", "count", "row", "total"]),
+        ("int read = state__.count + state.total;", []),
+    ],
+)
+def test_a_particle_holds_what_code_may_change(act: str, particle: list[str]) -> None:
+    assert particle_of(act) == particle
+
+
+def test_what_an_initial_belief_sets_is_in_the_particle() -> None:
+    assert particle_of("", "initial_belief:\nstate.lamp = On;\n") == ["lamp"]
+
+
+def test_everything_from_a_drawn_default_on_is_in_the_particle() -> None:
+    drawn = "state_variable: bool lucky\ncode:\nstate.lucky = AOS.Bernoulli(0.5);\n"
+    after = "state_variable: bool as_well\ncode:\nstate.as_well = state.lucky;\n"
+    assert particle_of("", drawn + after) == ["lucky", "as_well"]
+
+
+def test_the_state_digest_is_of_the_declared_state() -> None:
+    plain = emit(program_of(project_of("state__.total = 1;")))
+    other_code = emit(program_of(project_of("state__.count = 2;")))
+    more = emit(program_of(project_of("state__.total = 1;", "state_variable: bool extra\n")))
+    assert plain.state_digest == other_code.state_digest
+    assert plain.digest != other_code.digest
+    assert plain.state_digest != more.state_digest
+
+
+@pytest.mark.parametrize(
+    ("act", "word"),
+    [
+        ("state__.total = rand();", "rand"),
+        ("static int calls = 0; state__.total = ++calls;", "static"),
+        ("std::mt19937 own; state__.total = own();", "mt19937"),
+    ],
+)
+def test_code_that_cannot_be_repeated_exactly_is_refused(act: str, word: str) -> None:
+    program, diagnostics = lower(project_of(act))
+    assert program is None
+    assert diagnostics[0].code == "AOS124"
+    assert str(diagnostics[0].span) == f"act.sd:3:{act.index(word) + 1}"
+
+
+def test_a_constant_static_and_a_variable_called_time_are_fine() -> None:
+    assert lower(project_of("static const int two = 2; int time = two; state__.total = time;"))[0] is not None
+
+
+def test_what_has_no_effect_yet_is_said() -> None:
+    project = project_of()
+    skill = project.skills[0]
+    model = msgspec.structs.replace(skill.model, state_given_observation=skill.model.dynamic_model)
+    project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, model=model),))
+    program, diagnostics = lower(project)
+    assert program is not None
+    assert [(d.severity, d.code) for d in diagnostics] == [(Severity.WARNING, "AOS124")]
+
+
+def test_names_that_cpp_needs_are_refused_at_their_places() -> None:
+    project = project_of()
+    variables = tuple(
+        msgspec.structs.replace(variable, name="operator" if variable.name == "total" else variable.name)
+        for variable in project.environment.variables
+    )
+    environment = msgspec.structs.replace(project.environment, variables=variables)
+    found = errors_of(msgspec.structs.replace(project, environment=environment))
+    assert [(d.code, d.span) for d in found] == [("AOS126", variables[-1].span)]
+
+
+def test_code_that_could_leave_its_function_is_refused() -> None:
+    project = project_of()
+    skill = project.skills[0]
+    block = skill.model.dynamic_model[0]
+    assert block.code is not None
+    code = msgspec.structs.replace(block.code, code="} void escaped() {")
+    model = msgspec.structs.replace(skill.model, dynamic_model=(msgspec.structs.replace(block, code=code),))
+    project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, model=model),))
+    assert {d.code for d in errors_of(project)} == {"AOS108"}
+
+
+@pytest.mark.parametrize("stored", ["map<int,int>", "set<int>", "vector<int*>"])
+def test_what_no_state_can_hold_is_refused(stored: str) -> None:
+    text = json_text(
+        {
+            "EnvironmentGeneral": {"Horizon": 3, "Discount": 0.9},
+            "GlobalVariableTypes": [],
+            "GlobalVariablesDeclaration": [{"Name": "kept", "Type": stored}],
+            "InitialBeliefStateAssignments": [],
+            "SpecialStates": [],
+            "ExtrinsicChangesDynamicModel": [],
+        },
+        "Environment",
+        "environment",
+    )
+    project = text_project({"home.json": text, "act.sd": ACT, "act.am": mapping_text("done")})
+    assert [d.code for d in errors_of(project)] == ["AOS124"]
+
+
+def test_the_outline_shows_the_decisions() -> None:
+    text = outline(program_of(project_of()))
+    assert "a particle holds\n  total: int\n" in text
+    assert "  count: int { state.count = 4; }  [home.ef:9:1]" in text
+    assert "skill act() observes done\n  dynamic model\n    [act.sd:3:1]" in text
+
+
+def errors_of(project: Project) -> list[Diagnostic]:
+    program, diagnostics = lower(project)
+    assert program is None
+    return [diagnostic for diagnostic in diagnostics if diagnostic.is_error]

@@ -1,0 +1,71 @@
+"""The edits that turn document code into C++, and the way back through them."""
+
+from __future__ import annotations
+
+import pytest
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Snippet
+from aos_runtime.snippets import read_cpp
+from aos_solver.program import Piece
+from aos_solver.rewrite import Rewriting, rewrite
+
+NAMES = Rewriting(frozenset({"tBox"}), {"tColour": None, "Odd": ("Odd::three", "Odd::seven")})
+
+
+def rewritten(code: str) -> str:
+    return piece_of(code).text
+
+
+def piece_of(code: str) -> Piece:
+    origins = tuple(Span("a.sd", number, 1) for number in range(10, 11 + code.count("\n")))
+    snippet = Snippet(code, origins)
+    return Piece(1, snippet, *rewrite(snippet, read_cpp(code), NAMES))
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "state__.x = state.y ? AOS.Bernoulli(0.5) : false;",
+        "e = AOS.SampleDiscrete(enumEnding, {0.5, 0.5});",
+        'note = "AOSUtils::x state.tBoxObjects";  // AOS.SampleDiscrete(tColour, {1})',
+        "state.tColourObjects.size();",
+    ],
+)
+def test_plain_code_stands_as_it_is(code: str) -> None:
+    assert rewritten(code) == code
+
+
+@pytest.mark.parametrize(
+    ("code", "text"),
+    [
+        ("x = 1", "x = 1;"),
+        ("if (a) {x = f()}", "if (a) {x = f();}"),
+        ("b = AOSUtils::Bernoulli(0.1);", "b = AOSUtils.Bernoulli(0.1);"),
+        ("n = state__.tBoxObjects.size();", "n = state__.tBoxObjects().size();"),
+        ("state.tBoxObjects[i]->x;", "state.tBoxObjects()[i]->x;"),
+        ("state->x = 1;", "state.x = 1;"),
+        ("c = AOS.SampleDiscrete(tColour, {1, 2});", "c = tColour(AOS.SampleDiscrete(-1, {1, 2}));"),
+        ("{c = AOS.SampleDiscrete(tColour, {1})}", "{c = tColour(AOS.SampleDiscrete(-1, {1}));}"),
+        (
+            "o = AOS.SampleDiscrete(Odd, {1, 1});",
+            "o = aos::nth({Odd::three, Odd::seven}, AOS.SampleDiscrete(-1, {1, 1}));",
+        ),
+    ],
+)
+def test_what_documents_may_write_becomes_cpp(code: str, text: str) -> None:
+    assert rewritten(code) == text
+
+
+def test_columns_lead_back_through_edits() -> None:
+    piece = piece_of("x = 1;\nc = AOS.SampleDiscrete(tColour, {wrong, 2}) + bad;")
+    line = piece.text.split("\n")[1]
+    for word in ("wrong", "bad", "AOS"):
+        column = line.index(word) + 1
+        source = piece.snippet.code.split("\n")[1].index(word) + 1
+        assert piece.locate(2, column) == Span("a.sd", 11, source)
+
+
+def test_a_column_in_an_edit_leads_to_the_edited_place() -> None:
+    piece = piece_of("c = AOS.SampleDiscrete(tColour, {1, 2});")
+    assert piece.locate(1, piece.text.index("tColour(") + 3) == Span("a.sd", 10, 5)
