@@ -24,7 +24,7 @@ done
 # README does not tell of.
 tools=(
     awk bash basename cat chmod cksum cp cut date dirname env expr false find getconf git grep head hostname id
-    kill ln ls mkdir mktemp mv ps pwd readlink realpath rm rmdir sed sh sleep sort stat tail tar tee test
+    kill ln ls mkdir mktemp mv ps pwd readlink realpath rm rmdir sed setsid sh sleep sort stat tail tar tee test
     timeout touch tr true uname uniq wc which xargs
 )
 compilers=(g++ as ld)

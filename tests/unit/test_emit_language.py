@@ -141,6 +141,10 @@ sort(copied.begin(), copied.end());
 state__.table[1] = {8, 9, 10};
 state__.path = vector<tColour>(2, eBlue);
 state__.note += "!";
+string& note = state__.note;
+note.insert(0, "_").erase(0, 1);
+vector<int>& row = state__.grid;
+row.at(1) = note == "a;b!" ? 50 : 51;
 auto found = state__.cost.find(make_tuple(eBlue, 3));
 if (found != state__.cost.end()) found->second = 99;
 auto detached = *state__.cost.begin();
@@ -252,7 +256,7 @@ def test_a_value_without_meaning_here_can_be_set_and_asked_for(model: ScriptedMo
 def test_containers_take_what_documents_do_with_the_standard_ones(model: ScriptedModel) -> None:
     played = model.play("shape")
     state = played.steps[0]["state"]
-    assert [state[f"grid[{index}]"] for index in range(4)] == ["9", "5", "6", "7"]
+    assert [state[f"grid[{index}]"] for index in range(4)] == ["9", "50", "6", "7"]
     assert [state[f"table[1][{index}]"] for index in range(3)] == ["8", "9", "10"]
     assert [state["path[0]"], state["path[1]"]] == ["eBlue", "eBlue"]
     assert state["cost[eBlue,3]"] == "99"

@@ -10,7 +10,9 @@ from aos_runtime.snippets import read_cpp
 from aos_solver.program import Piece
 from aos_solver.rewrite import Rewriting, rewrite
 
-NAMES = Rewriting(frozenset({"tBox"}), {"tColour": None, "Odd": ("Odd::three", "Odd::seven")})
+NAMES = Rewriting(
+    frozenset({"tBox"}), {"tColour": None, "Odd": ("Odd::three", "Odd::seven")}, frozenset({"eRed"})
+)
 
 
 def rewritten(code: str) -> str:
@@ -30,6 +32,10 @@ def piece_of(code: str) -> Piece:
         "e = AOS.SampleDiscrete(enumEnding, {0.5, 0.5});",
         'note = "AOSUtils::x state.tBoxObjects";  // AOS.SampleDiscrete(tColour, {1})',
         "state.tColourObjects.size();",
+        "vector<int> a{1, 2}; a[0] = 3;",
+        "vector<int> a{1, 2}; sort(a.begin(), a.end());",
+        "vector<int> a{1, n};",
+        "vector<int> local; vector<int>& row = local;",
     ],
 )
 def test_plain_code_stands_as_it_is(code: str) -> None:
@@ -44,6 +50,9 @@ def test_plain_code_stands_as_it_is(code: str) -> None:
         ("b = AOSUtils::Bernoulli(0.1);", "b = AOSUtils.Bernoulli(0.1);"),
         ("n = state__.tBoxObjects.size();", "n = state__.tBoxObjects().size();"),
         ("state.tBoxObjects[i]->x;", "state.tBoxObjects()[i]->x;"),
+        ("vector<int>& row = state__.row;", "auto& row = state__.row;"),
+        ("auto f = [&](string& s, int i) { s += i; };", "auto f = [&](auto& s, int i) { s += i; };"),
+        ("vector<int> a{1, eRed}; n = a[0];", "static const vector<int> a{1, eRed}; n = a[0];"),
         ("state->x = 1;", "state.x = 1;"),
         ("c = AOS.SampleDiscrete(tColour, {1, 2});", "c = tColour(AOS.SampleDiscrete(-1, {1, 2}));"),
         ("{c = AOS.SampleDiscrete(tColour, {1})}", "{c = tColour(AOS.SampleDiscrete(-1, {1}));}"),

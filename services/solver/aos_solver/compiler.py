@@ -57,8 +57,8 @@ class Compiler(msgspec.Struct, frozen=True):
 
     @property
     def deadline_s(self) -> float:
-        """How long one build may take; zig builds its C++ library the first time."""
-        return 240.0 if self.family == "zig" else 90.0
+        """How long one command may take; zig builds its C++ library when it links for the first time."""
+        return 600.0 if self.family == "zig" else 90.0
 
 
 async def find_compiler(environment: Mapping[str, str] = os.environ) -> Compiler:

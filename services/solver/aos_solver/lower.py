@@ -62,7 +62,7 @@ class _Lowering:
             self._types,
             self._pieces,
             frozenset(self._changes.object_types),
-            [enum.name for enum in environment.enums],
+            environment.enums,
             findings,
         )
 

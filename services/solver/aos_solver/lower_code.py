@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 import msgspec
 
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet, TemporaryVariable
+from aos_protocol.documents import (
+    Assignment,
+    EnumType,
+    Environment,
+    Iteration,
+    SkillModel,
+    Snippet,
+    TemporaryVariable,
+)
 from aos_runtime.snippets import (
     Cpp,
     DeclarationKind,
@@ -134,26 +142,24 @@ class SectionLowering:
         types: Types,
         pieces: Pieces,
         object_types: frozenset[str],
-        enum_types: Iterable[str],
+        enums: Iterable[EnumType],
         findings: Findings,
     ) -> None:
+        enums = tuple(enums)
+        values = frozenset(value for enum in enums for value in enum.values)
         self._types = types
         self._pieces = pieces
-        self._object_types = object_types
-        self._enums: Mapping[str, EnumValues] = dict.fromkeys(enum_types)
         self._findings = findings
-
-    @property
-    def outside(self) -> Rewriting:
+        self.outside = Rewriting(object_types, {enum.name: None for enum in enums}, values)
         """What names mean in code that stands alone."""
-        return Rewriting(self._object_types, self._enums)
 
     def section(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
         """The section's function; None if there is nothing in it."""
         read = list(snippets_of(assignments))
         if not any(a.temporary for a in assignments) and all(cpp.is_empty for _, cpp in read):
             return None
-        rewriting = Rewriting(self._object_types, {**self._enums, **_local_enums(cpp for _, cpp in read)})
+        enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
+        rewriting = msgspec.structs.replace(self.outside, enums=enums)
         statements = [part for a in assignments for part in self._assignment(phase, a, rewriting)]
         names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)
         return Section(tuple(statements), names | _looped_copies(phase, assignments))

@@ -10,6 +10,7 @@ import msgspec
 from aos_protocol.documents import Snippet
 from aos_runtime.snippets import Call, Cpp, Extent
 from aos_solver.program import Edit
+from aos_solver.rewrite_containers import container_edits
 
 __all__ = ["EnumValues", "Rewriting", "rewrite"]
 
@@ -20,10 +21,15 @@ EnumValues = tuple[str, ...] | None
 
 
 class Rewriting(msgspec.Struct, frozen=True):
-    """What names mean in a section: compound types with a list of objects, and enums that are types."""
+    """What names mean in a section.
+
+    `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
+    constants that every section sees.
+    """
 
     object_types: frozenset[str]
     enums: Mapping[str, EnumValues]
+    values: frozenset[str] = frozenset()
 
 
 def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tuple[Edit, ...]]:
@@ -34,8 +40,11 @@ def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tupl
     - `state.<Type>Objects`, a view made on demand, gets its `()`
     - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
     - `state->x` becomes `state.x`
+    - containers: see `rewrite_containers`
     """
     edits: list[tuple[Extent | int, str]] = list(_of_mentions(cpp, rewriting))
+    for start, end, text in container_edits(cpp, rewriting.values):
+        edits.append((_extent(cpp.code, start, end) if end > start else start, text))
     for call in cpp.calls:
         edits += _of_call(call, cpp.code, rewriting)
     # Last, since a bracket that goes to the same place has to come before it.

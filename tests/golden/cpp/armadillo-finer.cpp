@@ -169,7 +169,8 @@ struct skill__navigate : aos::SkillDefaults {
              {"easy_table", __draft.easy_table},
              {"hard_table", __draft.hard_table},
          })) {
-      groundings.push_back({aos::action_name("navigate", {{"destination", destination.name}}), {destination.value}});
+      groundings.push_back(
+          {aos::action_name("navigate", {{"destination", destination.name}}), {destination.value}});
     }
   }
 
@@ -178,7 +179,7 @@ struct skill__navigate : aos::SkillDefaults {
     aos::blame::at(19);
 #line 5 "navigate.sd"
 __meetPrecondition = state.robot_at != Unknown;
-#line 182 "model.cpp"
+#line 183 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -193,7 +194,7 @@ bool is_there = AOS.Bernoulli(1.0);
 if (is_there) state__.robot_at = destination.place;
 __moduleResponse = is_there ? arrived : failed;
 __reward = -5;
-#line 197 "model.cpp"
+#line 198 "model.cpp"
   }
 };
 
@@ -205,7 +206,8 @@ struct skill__observe_arm_outstretched : aos::SkillDefaults {
 
   static void ground(const Draft&) {
     groundings.clear();
-    groundings.push_back({aos::action_name("observe_arm_outstretched", {}), {}});
+    groundings.push_back(
+        {aos::action_name("observe_arm_outstretched", {}), {}});
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -217,7 +219,7 @@ struct skill__observe_arm_outstretched : aos::SkillDefaults {
 #line 4 "observe_arm_outstretched.sd"
 __moduleResponse = state.arm_outstretched ? outstretched : not_outstretched;
 __reward = -1;
-#line 221 "model.cpp"
+#line 223 "model.cpp"
   }
 };
 
@@ -229,7 +231,8 @@ struct skill__observe_holding : aos::SkillDefaults {
 
   static void ground(const Draft&) {
     groundings.clear();
-    groundings.push_back({aos::action_name("observe_holding", {}), {}});
+    groundings.push_back(
+        {aos::action_name("observe_holding", {}), {}});
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -242,7 +245,7 @@ struct skill__observe_holding : aos::SkillDefaults {
 // In 2 of 11 runs the fingers report nothing although they hold the can; never the other way round.
 __moduleResponse = state.holding_can && AOS.Bernoulli(0.818) ? holding : not_holding;
 __reward = -1;
-#line 246 "model.cpp"
+#line 249 "model.cpp"
   }
 };
 
@@ -255,7 +258,8 @@ struct skill__pick : aos::SkillDefaults {
 
   static void ground(const Draft&) {
     groundings.clear();
-    groundings.push_back({aos::action_name("pick", {}), {}});
+    groundings.push_back(
+        {aos::action_name("pick", {}), {}});
   }
 
   static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
@@ -264,7 +268,7 @@ struct skill__pick : aos::SkillDefaults {
 #line 4 "pick.sd"
 bool can_in_reach = state.easy_can_at == state.robot_at || state.hard_can_at == state.robot_at;
 __meetPrecondition = can_in_reach && !state.holding_can;
-#line 268 "model.cpp"
+#line 272 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -294,7 +298,7 @@ state__.arm_outstretched = ending == GraspedArmOut;
 // The skill notices an arm that stays out, and neither a missed nor a dropped can.
 __moduleResponse = ending == GraspedArmOut ? pick_failed : pick_succeeded;
 __reward = -2;
-#line 298 "model.cpp"
+#line 302 "model.cpp"
   }
 };
 
@@ -307,7 +311,8 @@ struct skill__serve : aos::SkillDefaults {
 
   static void ground(const Draft&) {
     groundings.clear();
-    groundings.push_back({aos::action_name("serve", {}), {}});
+    groundings.push_back(
+        {aos::action_name("serve", {}), {}});
   }
 
   static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
@@ -315,7 +320,7 @@ struct skill__serve : aos::SkillDefaults {
     aos::blame::at(25);
 #line 4 "serve.sd"
 __meetPrecondition = state.holding_can && !state.arm_outstretched && state.robot_at == Corridor;
-#line 319 "model.cpp"
+#line 324 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -331,7 +336,7 @@ state__.drink_served = __meetPrecondition && !state__.person_injured;
 // All 21 runs reported a delivery, whether or not there was a can in the hand.
 __moduleResponse = AOS.Bernoulli(1.0) ? delivered : not_delivered;
 __reward = state__.person_injured ? -20 : -8;
-#line 335 "model.cpp"
+#line 340 "model.cpp"
   }
 };
 
@@ -340,7 +345,7 @@ struct Environment : aos::EnvironmentDefaults {
     aos::blame::at(15);
 #line 64 "armadillo.ef"
 state.robot_at = state.hard_table.place;
-#line 344 "model.cpp"
+#line 349 "model.cpp"
   }
 
   static void special_state__1(const State& state, double& __reward, bool& __isGoalState,
@@ -351,7 +356,7 @@ if (state.drink_served) {
     __reward = 30;
     __isGoalState = true;
 }
-#line 355 "model.cpp"
+#line 360 "model.cpp"
   }
 
   static void special_state__2(const State& state, double& __reward, bool& __isGoalState,
@@ -362,7 +367,7 @@ if (state.person_injured) {
     __reward = -10;
     __isGoalState = true;
 }
-#line 366 "model.cpp"
+#line 371 "model.cpp"
   }
 
   static void special_state__3(const State& state, double& __reward, bool& __isGoalState,
@@ -373,7 +378,7 @@ if (state.person_injured) {
 if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
     __isGoalState = true;
 }
-#line 377 "model.cpp"
+#line 382 "model.cpp"
   }
 
   static double special_states(State& next, auto& random) {
@@ -446,6 +451,7 @@ struct Model {
     aos::add_actions(actions, 3, skill__pick::groundings);
     skill__serve::ground(draft);
     aos::add_actions(actions, 4, skill__serve::groundings);
+    if (actions.empty()) throw aos::ModelFault{"AOS119", "no skill has a grounded action"};
   }
 
   static int action_count() { return static_cast<int>(actions.size()); }
@@ -456,13 +462,19 @@ struct Model {
     return names[skill];
   }
   static int response_count(int skill) {
-    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) { return static_cast<int>(Skill::response_names.size()); });
+    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) {
+      return static_cast<int>(Skill::response_names.size());
+    });
   }
   static const char* response_name(int skill, int response) {
-    return with_skill(skill, [&]<class Skill>(std::type_identity<Skill>) { return Skill::response_names.begin()[response]; });
+    return with_skill(skill, [&]<class Skill>(std::type_identity<Skill>) {
+      return Skill::response_names.begin()[response];
+    });
   }
   static bool has_text_response(int skill) {
-    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) { return Skill::has_text_response; });
+    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) {
+      return Skill::has_text_response;
+    });
   }
   static void write_parameters(int action, aos::JsonWriter& json) {
     with_action(action, [&](auto, const auto& parameters) { aos::write_json(json, parameters); });

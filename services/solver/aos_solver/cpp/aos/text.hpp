@@ -25,22 +25,40 @@ class Text {
   Text& operator+=(std::string_view more) {
     if (length_ + more.size() > room) overflow(length_ + more.size());
     more.copy(characters_ + length_, more.size());
-    length_ = static_cast<std::uint8_t>(length_ + more.size());
+    set_length(length_ + more.size());
     return *this;
   }
   Text& operator+=(char more) { return *this += std::string_view{&more, 1}; }
   void push_back(char more) { *this += more; }
-  void clear() { length_ = 0; }
+  void clear() { set_length(0); }
   void assign(std::string_view text) {
     if (text.size() > room) overflow(text.size());
     text.copy(characters_, text.size());
-    length_ = static_cast<std::uint8_t>(text.size());
+    set_length(text.size());
+  }
+  Text& append(std::string_view more) { return *this += more; }
+  void pop_back() { set_length(checked(length_ - std::size_t{1})); }
+  void resize(std::size_t size, char filling = '\0') {
+    changed([&](std::string& text) { text.resize(size, filling); });
+  }
+  template <class... Arguments>
+  Text& insert(Arguments... arguments) {
+    return changed([&](std::string& text) { text.insert(arguments...); });
+  }
+  template <class... Arguments>
+  Text& erase(Arguments... arguments) {
+    return changed([&](std::string& text) { text.erase(arguments...); });
+  }
+  template <class... Arguments>
+  Text& replace(Arguments... arguments) {
+    return changed([&](std::string& text) { text.replace(arguments...); });
   }
 
   operator std::string() const { return str(); }
   operator std::string_view() const { return view(); }
   std::string str() const { return std::string{view()}; }
   std::string_view view() const { return {characters_, length_}; }
+  const char* c_str() const { return characters_; }
 
   std::size_t size() const { return length_; }
   std::size_t length() const { return length_; }
@@ -66,6 +84,10 @@ class Text {
   friend auto operator<=>(const Text& left, const Text& right) { return left.view() <=> right.view(); }
   friend std::string operator+(const Text& left, const Text& right) { return left.str().append(right.view()); }
   friend std::string operator+(const Text& left, char right) { return left.str() + right; }
+  template <class Stream>
+  friend Stream& operator<<(Stream& out, const Text& text) {
+    return static_cast<Stream&>(out << text.view());
+  }
 
  private:
   std::size_t checked(std::size_t index) const {
@@ -78,7 +100,18 @@ class Text {
                                    std::to_string(room)};
   }
 
-  char characters_[room] = {};
+  Text& changed(auto&& change) {
+    std::string text = str();
+    change(text);
+    assign(text);
+    return *this;
+  }
+  void set_length(std::size_t length) {
+    characters_[length] = '\0';
+    length_ = static_cast<std::uint8_t>(length);
+  }
+
+  char characters_[room + 1] = {};
   std::uint8_t length_ = 0;
 };
 

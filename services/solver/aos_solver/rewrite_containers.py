@@ -1,0 +1,68 @@
+"""Edits for what documents do with containers of the standard library.
+
+State variables are not std::vector, std::string and std::map, though they convert to them. And a table that a
+block of code fills with constants anew in each run costs more than the rest of the step.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from aos_runtime.snippets import Access, Cpp, Declaration, DeclarationKind
+
+__all__ = ["container_edits"]
+
+_CONTAINER_REFERENCE = re.compile(
+    r"((?:std\s*::\s*)?(?:vector|map)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
+)
+_VECTOR = re.compile(r"(?:^|[;{}])\s*((?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
+_STATES = frozenset({"state", "state_", "state__"})
+_READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
+_LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+
+
+def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int, str]]:
+    """Replacements (start, end, text) by offsets; `values` are the names of constants.
+
+    - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
+    - a vector of constants that is only read becomes `static const`
+    """
+    for declaration in cpp.declarations:
+        before = cpp.code[: declaration.extent.start]
+        if declaration.type.endswith("&") and not declaration.type.startswith("const"):
+            reference = _CONTAINER_REFERENCE.search(before)
+            if reference is not None and _may_bind_state(cpp, declaration, before):
+                yield reference.start(1), reference.end(1), "auto"
+        elif declaration.kind is DeclarationKind.VARIABLE and declaration.initial is not None:
+            vector = _VECTOR.search(before)
+            if vector is not None and _is_constant_table(cpp, declaration, values):
+                yield vector.start(1), vector.start(1), "static const "
+
+
+def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
+    if declaration.kind is DeclarationKind.PARAMETER:
+        return re.search(r"\]\s*\([^()]*$", before) is not None
+    initial = declaration.initial
+    if initial is None:
+        return False
+    return any(
+        mention.path[0] in _STATES and mention.extent.start == initial.start for mention in cpp.mentions
+    )
+
+
+def _is_constant_table(cpp: Cpp, declaration: Declaration, values: frozenset[str]) -> bool:
+    initial = declaration.initial
+    assert initial is not None
+    text = cpp.code[initial.start : initial.end]
+    rest = _WORD.sub(lambda word: "" if word[0] in values else word[0], _LITERAL.sub("", text))
+    if not text.startswith("{") or rest:
+        return False
+    same_names = [other for other in cpp.declarations if other.name == declaration.name]
+    uses = [mention for mention in cpp.mentions if mention.path[0] == declaration.name]
+    reads = (
+        mention.access is Access.READ and (len(mention.path) > 1 or mention.method in _READING_METHODS)
+        for mention in uses
+    )
+    return len(same_names) == 1 and all(reads)
