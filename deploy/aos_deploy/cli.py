@@ -17,7 +17,8 @@ __all__ = ["main", "up_main"]
 _COMMANDS = {
     "up": ("up",),
     "decisions": ("decisions",),
-    "bundle": ("bundle", "lint", "inspect"),
+    "documents": ("lint", "inspect"),
+    "bundle": ("bundle",),
     "plan": ("plan", "simulate", "rate"),
     "machine": ("doctor", "version"),
 }

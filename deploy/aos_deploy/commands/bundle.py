@@ -1,21 +1,19 @@
-"""`aos bundle`, `aos lint` and `aos inspect`: documents checked, looked at, and sent to a registry."""
+"""`aos bundle`: documents sent to a running registry, and what it holds."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Awaitable, Callable
 from datetime import UTC, datetime
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
-import msgspec
 import typer
 
+from aos_deploy.commands.documents import Folder, refusal
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.printing import print_diagnostics, print_json
 from aos_deploy.run_directory import RunDirectory
-from aos_protocol.diagnostics import Diagnostic, Severity, has_errors, render
-from aos_protocol.documents import Project
+from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DeployError, DocumentError
 from aos_protocol.messages import (
     BundleReport,
@@ -25,7 +23,7 @@ from aos_protocol.messages import (
     ProjectRevision,
     PushBundle,
 )
-from aos_registry.load import load_bundle, read_bundle_files
+from aos_registry.load import read_bundle_files
 from aos_registry.outline import outline
 
 if TYPE_CHECKING:
@@ -44,18 +42,6 @@ bundle_app = typer.Typer(
 )
 
 
-class Format(StrEnum):
-    TEXT = "text"
-    JSON = "json"
-
-
-class Stage(StrEnum):
-    DOCUMENTS = "documents"
-    MODEL = "model"
-    CPP = "cpp"
-    PYTHON = "python"
-
-
 Connect = Annotated[
     str,
     typer.Option("--connect", metavar="ENDPOINT", help="Where the system's bus listens; else the last run"),
@@ -63,94 +49,11 @@ Connect = Annotated[
 Robot = Annotated[str, typer.Option("--robot", help="The robot's name; else that of the last run")]
 Runs = Annotated[Path, typer.Option("--runs", help="Where the run directories are")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
-Folder = Annotated[
-    Path, typer.Argument(metavar="DIR", help="A directory with .ef, .sd, .am or .json documents")
-]
 
 
 def register(app: typer.Typer) -> None:
-    """Adds the commands to `aos`."""
+    """Adds `aos bundle` to `aos`."""
     app.add_typer(bundle_app, name="bundle")
-    app.command(epilog="Example: aos lint deploy/bundles/armadillo-finer")(lint)
-    app.command(epilog="Example: aos inspect deploy/bundles/armadillo-finer --stage documents")(inspect)
-
-
-# --- without a running system --------------------------------------------------------------------------
-
-
-def lint(
-    path: Folder,
-    form: Annotated[Format, typer.Option("--format", help="How to print the findings")] = Format.TEXT,
-) -> None:
-    """Check a bundle of documents and print everything that is wrong with it.
-
-    Exit code 0: clean, or warnings only. 1: errors.
-    """
-    loaded = load_bundle(path)
-    counts = Counter(diagnostic.severity for diagnostic in loaded.diagnostics)
-    if form is Format.JSON:
-        _print_json(
-            {
-                "bundle": str(path),
-                "errors": counts[Severity.ERROR],
-                "warnings": counts[Severity.WARNING],
-                "digest": loaded.digest,
-                "diagnostics": loaded.diagnostics,
-            }
-        )
-    else:
-        _print_diagnostics(loaded.diagnostics)
-        errors, warnings = counts[Severity.ERROR], counts[Severity.WARNING]
-        typer.echo(f"{path}: {_count(errors, 'error')}, {_count(warnings, 'warning')}")
-    if loaded.has_errors:
-        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
-
-
-def inspect(
-    bundle: Folder,
-    stage: Annotated[Stage, typer.Option(help="Which stage to print")] = Stage.DOCUMENTS,
-    skill: Annotated[str, typer.Option(help="Only this skill's module, for the stage python")] = "",
-) -> None:
-    """Print what becomes of a bundle: the typed documents, the lowered model, the C++ or the Python."""
-    loaded = load_bundle(bundle)
-    if loaded.project is None:
-        raise _refusal(bundle, loaded.diagnostics)
-    if stage is Stage.DOCUMENTS:
-        typer.echo(outline(loaded.project), nl=False)
-    elif stage is Stage.PYTHON:
-        typer.echo(_python_modules(loaded.project, skill), nl=False)
-    else:
-        typer.echo(_solver_stage(loaded.project, stage, bundle), nl=False)
-
-
-def _python_modules(project: Project, only: str) -> str:
-    from aos_middleware.emit import emit_mapping  # Keeps the other commands quick to start.
-
-    names = [skill.name for skill in project.skills]
-    if only and only not in names:
-        raise typer.BadParameter(f"the skills are {', '.join(names)}", param_hint="--skill")
-    chosen = [skill for skill in project.skills if only in ("", skill.name)]
-    return "\n\n".join(emit_mapping(skill, project.low_level).python for skill in chosen)
-
-
-def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:
-    from aos_solver.emit import emit  # As above.
-    from aos_solver.lower import lower
-
-    program, diagnostics = lower(project)
-    if program is None:
-        raise _refusal(bundle, diagnostics)
-    if stage is Stage.CPP:
-        return emit(program).cpp
-    return msgspec.json.format(msgspec.json.encode(program), indent=2).decode() + "\n"
-
-
-def _refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...]) -> DocumentError:
-    hint = "Mend the places named above"
-    return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=diagnostics)
-
-
-# --- a running system ----------------------------------------------------------------------------------
 
 
 @bundle_app.command(epilog="Example: aos bundle push deploy/bundles/armadillo-finer")
@@ -167,7 +70,7 @@ def push(
     """
     files, remarks = read_bundle_files(path)
     if has_errors(remarks):
-        raise _refusal(path, tuple(remarks))
+        raise refusal(path, tuple(remarks))
     if not files:
         hint = "Documents end in .ef, .sd, .am or .json"
         raise DocumentError(f"there are no documents in {path}", code="AOS120", hint=hint)
@@ -178,9 +81,9 @@ def push(
 
     report = _with_client(connect, robot, runs, send)
     if as_json:
-        _print_json(report)
+        print_json(report)
     else:
-        _print_diagnostics((*remarks, *report.diagnostics))
+        print_diagnostics((*remarks, *report.diagnostics))
         typer.echo(_sentence(report, path))
     if not report.is_accepted:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
@@ -198,7 +101,7 @@ def list_projects(
 
     catalogue = _with_client(connect, robot, runs, ask)
     if as_json:
-        _print_json(catalogue)
+        print_json(catalogue)
         return
     for entry in catalogue.entries:
         stored = datetime.fromtimestamp(entry.stored_ns / 1e9, UTC).isoformat(timespec="seconds")
@@ -224,7 +127,7 @@ def show(
 
     revision = _with_client(connect, robot, runs, ask)
     if as_json:
-        _print_json(revision)
+        print_json(revision)
         return
     typer.echo(f"revision {revision.revision}, digest {revision.digest}")
     typer.echo(outline(revision.project), nl=False)
@@ -256,9 +159,6 @@ def _running(directory: RunDirectory) -> RunDirectory:
     return directory
 
 
-# --- output --------------------------------------------------------------------------------------------
-
-
 def _sentence(report: BundleReport, path: Path) -> str:
     if not report.is_accepted:
         still = f"; the project stays at revision {report.revision}" if report.revision else ""
@@ -266,16 +166,3 @@ def _sentence(report: BundleReport, path: Path) -> str:
     changes = {"added": report.added, "changed": report.changed}
     new = [f"{verb} {', '.join(names)}" for verb, names in changes.items() if names]
     return f"{path}: project {report.project}, revision {report.revision}, {'; '.join(new) or 'nothing new'}"
-
-
-def _print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
-    for diagnostic in diagnostics:
-        typer.echo(render(diagnostic))
-
-
-def _print_json(value: object) -> None:
-    typer.echo(msgspec.json.format(msgspec.json.encode(value), indent=2).decode())
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'' if number == 1 else 's'}"

@@ -12,6 +12,7 @@ from typing import Annotated, TypeVar
 import msgspec
 import typer
 
+from aos_deploy.printing import print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.views.tables import print_runs, print_values
 from aos_protocol.diagnostics import render
@@ -82,7 +83,7 @@ def plan(
 
     decision = _with_engine(bundle, seed, decide)
     if as_json:
-        _print_json(decision)
+        print_json(decision)
     else:
         print_values(decision.actions, decision.simulations)
 
@@ -129,7 +130,7 @@ def simulate(
 
     missions = _with_engine(bundle, seed, run_all)
     if as_json:
-        _print_json(Campaign(missions, _summary(missions)))
+        print_json(Campaign(missions, _summary(missions)))
     else:
         print_runs(missions, _summary(missions))
 
@@ -169,7 +170,7 @@ def rate(
     rates = _with_engine(bundle, seed, measure)
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
     if as_json:
-        _print_json(result)
+        print_json(result)
     else:
         typer.echo(f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)")
 
@@ -200,7 +201,3 @@ async def _engine_of(bundle: Path, seed: int) -> AsyncIterator[Engine]:
         yield engine
     finally:
         await engine.close()
-
-
-def _print_json(value: object) -> None:
-    typer.echo(msgspec.json.format(msgspec.json.encode(value), indent=2).decode())

@@ -1,0 +1,28 @@
+"""What commands print: findings, JSON, numbers of things."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import msgspec
+import typer
+
+from aos_protocol.diagnostics import Diagnostic, render
+
+__all__ = ["count", "print_diagnostics", "print_json"]
+
+
+def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
+    """Each in its text form, on stdout."""
+    for diagnostic in diagnostics:
+        typer.echo(render(diagnostic))
+
+
+def print_json(value: object) -> None:
+    """A value as indented JSON, on stdout."""
+    typer.echo(msgspec.json.format(msgspec.json.encode(value), indent=2).decode())
+
+
+def count(number: int, noun: str) -> str:
+    """`1 error`, `2 errors`."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
