@@ -10,7 +10,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from aos_deploy.commands import bundle
+from aos_deploy.commands import bundle, documents
 from aos_protocol.errors import DocumentError
 
 
@@ -18,6 +18,7 @@ from aos_protocol.errors import DocumentError
 def app() -> typer.Typer:
     app = typer.Typer()
     bundle.register(app)
+    documents.register(app)
     return app
 
 

@@ -44,7 +44,7 @@ START_DEADLINE_S = 20.0
 ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
 """For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
-EXACT_DEADLINE_S = 600.0
+EXACT_TIME_S = 300.0
 EXIT_DEADLINE_S = 2.0
 EXACT_BELIEF_BUDGET = 20_000_000
 ADDRESS_SPACE_BYTES = 8 * 1024**3
@@ -126,8 +126,8 @@ class Engine:
 
     async def exact(self, horizon: int | None = None) -> ExactValues:
         """Finite-horizon values by enumeration; ModelError AOS220 where that is not tractable, and why."""
-        command = f"exact\t{horizon or 0}\t{EXACT_BELIEF_BUDGET}"
-        return await self._ask(command, ExactValues, deadline_s=EXACT_DEADLINE_S)
+        command = f"exact\t{horizon or 0}\t{EXACT_BELIEF_BUDGET}\t{EXACT_TIME_S}"
+        return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
     async def update(self, action: str, response: str) -> BeliefUpdate:
         """Bayes' rule after an action and its observation."""

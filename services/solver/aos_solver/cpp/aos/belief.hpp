@@ -22,6 +22,7 @@ namespace aos {
 
 inline constexpr std::size_t particle_count = 5000;
 inline constexpr std::size_t most_exact_states = 200'000;
+inline constexpr std::size_t most_enumerated_paths = 4'000'000;  // of one update
 inline constexpr std::size_t most_trials = 100 * particle_count;
 inline constexpr double negligible_weight = 1e-12;
 
@@ -65,19 +66,23 @@ class Belief {
   // After an action, before any observation.
   Belief predicted(int action, Sampler& random) const {
     Gathering gathering;
-    const bool is_exact = for_each_outcome(
-        action, random, [&](const State& next, Observation, double weight) { gathering.add(next, weight); },
-        [&] { gathering = {}; });
-    return gathering.belief(is_exact);
+    const Walk walk = for_each_outcome(action, random, gathering.reset(), [&](const State& next, Observation, double weight) {
+      gathering.add(next, weight);
+      return true;
+    });
+    return gathering.belief(walk.is_exact && is_exact_);
   }
 
   // How likely each observation is after an action, the likeliest first.
   ObservationOdds observations(int action, Sampler& random) const {
     std::unordered_map<Observation, double> odds;
-    for_each_outcome(
-        action, random, [&](const State&, Observation observation, double weight) { odds[observation] += weight; },
-        [&] { odds.clear(); });
+    const Walk walk =
+        for_each_outcome(action, random, [&] { odds.clear(); }, [&](const State&, Observation observation, double weight) {
+          odds[observation] += weight;
+          return true;
+        });
     ObservationOdds sorted(odds.begin(), odds.end());
+    for (auto& [observation, probability] : sorted) probability /= walk.weight;
     std::sort(sorted.begin(), sorted.end(), [](const auto& left, const auto& right) {
       return left.second != right.second ? left.second > right.second : left.first < right.first;
     });
@@ -87,14 +92,12 @@ class Belief {
   // The posterior and the probability of the observation; an empty belief and 0 where that is impossible.
   std::pair<Belief, double> posterior(int action, Observation observation, Sampler& random) const {
     Gathering gathering;
-    const bool is_exact = for_each_outcome(
-        action, random,
-        [&](const State& next, Observation seen, double weight) {
+    const Walk walk =
+        for_each_outcome(action, random, gathering.reset(), [&](const State& next, Observation seen, double weight) {
           if (seen == observation) gathering.add(next, weight);
-        },
-        [&] { gathering = {}; });
-    const double probability = gathering.total();
-    return {gathering.belief(is_exact && is_exact_), probability};
+          return seen == observation;
+        });
+    return {gathering.belief(walk.is_exact && is_exact_), gathering.total() / walk.weight};
   }
 
   // `share` of `other` and the rest of this one.
@@ -157,6 +160,10 @@ class Belief {
       if (is_new) particles_.push_back({state, 0});
       particles_[entry->second].weight += weight;
     }
+    // Forgets everything.
+    auto reset() {
+      return [this] { *this = {}; };
+    }
     double total() const {
       double sum = 0;
       for (const auto& particle : particles_) sum += particle.weight;
@@ -179,31 +186,40 @@ class Belief {
     std::vector<Particle> particles_;
   };
 
-  // Calls `visit(next, observation, weight)` for all outcomes, by enumeration, or after `restart()` by sampling.
-  // Returns whether it was exact.
-  template <class Visit, class Restart>
-  bool for_each_outcome(int action, Sampler& random, Visit&& visit, Restart&& restart) const {
-    if (particles_.size() <= most_exact_states) {
-      try {
-        Enumerator draws;
-        for (const auto& [state, weight] : particles_) {
-          draws.for_each_path([&](Enumerator& path) {
-            State next = state;
-            const Step step = Model::step(next, action, path);
-            visit(next, step.observation, weight * path.probability());
-          });
-        }
-        return true;
-      } catch (const NotEnumerable&) {
-        restart();
+  struct Walk {
+    bool is_exact;
+    double weight;  // of all outcomes, visited ones and others
+  };
+
+  // Calls `visit(next, observation, weight)`, which says whether it has a use for the outcome: for all outcomes, by
+  // enumeration; or else, after `restart()`, for drawn ones until `particle_count` were of use.
+  template <class Restart, class Visit>
+  Walk for_each_outcome(int action, Sampler& random, Restart&& restart, Visit&& visit) const {
+    try {
+      if (particles_.size() > most_exact_states) throw NotEnumerable{"too many states"};
+      Enumerator draws;
+      std::size_t paths = 0;
+      for (const auto& [state, weight] : particles_) {
+        draws.for_each_path([&](Enumerator& path) {
+          if (++paths > most_enumerated_paths) throw NotEnumerable{"too many outcomes"};
+          State next = state;
+          const Step step = Model::step(next, action, path);
+          visit(next, step.observation, weight * path.probability());
+        });
       }
+      return {true, 1};
+    } catch (const NotEnumerable&) {
+      restart();
     }
-    for (std::size_t trial = 0; trial < most_trials; ++trial) {
+    std::size_t used = 0;
+    std::size_t trials = 0;
+    while (trials < most_trials && used < particle_count) {
       State next = sample(random);
       const Step step = Model::step(next, action, random);
-      visit(next, step.observation, 1.0 / most_trials);
+      used += visit(next, step.observation, 1.0) ? 1 : 0;
+      ++trials;
     }
-    return false;
+    return {false, static_cast<double>(trials)};
   }
 
   using Marginal = std::pair<std::string, std::vector<std::pair<std::string, double>>>;

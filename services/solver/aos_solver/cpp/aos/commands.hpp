@@ -86,8 +86,8 @@ class Engine {
     json.member("seconds", spent.count()).end_object();
   }
 
-  void exact(JsonWriter& json, int horizon, std::uint64_t belief_budget) const {
-    ExactEvaluation<Model> evaluation{belief_budget};
+  void exact(JsonWriter& json, int horizon, std::uint64_t belief_budget, double seconds) const {
+    ExactEvaluation<Model> evaluation{belief_budget, seconds};
     const auto values = evaluation.action_values(belief_, horizon > 0 ? horizon : Model::horizon);
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -22,8 +23,11 @@ template <class Model>
 class ExactEvaluation {
  public:
   using State = typename Model::State;
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
 
-  explicit ExactEvaluation(std::uint64_t belief_budget) : belief_budget_(belief_budget) {}
+  ExactEvaluation(std::uint64_t belief_budget, double seconds)
+      : belief_budget_(belief_budget), latest_(Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds{seconds})) {}
 
   // The value of every action at the belief with so many decisions to go. Throws NotEnumerable.
   std::vector<double> action_values(const Belief<Model>& belief, int horizon) {
@@ -79,6 +83,7 @@ class ExactEvaluation {
 
   const Outcomes& outcomes(std::uint32_t number, int action) {
     if (!outcomes_[number][action].is_known) {
+      if (Clock::now() > latest_) throw NotEnumerable{"it takes longer than allowed"};
       Outcomes found;
       draws_.for_each_path([&](Enumerator& path) {
         State next = states_[number];
@@ -122,6 +127,7 @@ class ExactEvaluation {
     const BeliefKey key = key_of(belief);
     if (const auto found = known.find(key); found != known.end()) return total * found->second;
     if (++evaluated_ > belief_budget_) throw NotEnumerable{"more beliefs than the budget can be reached"};
+    if (evaluated_ % 256 == 0 && Clock::now() > latest_) throw NotEnumerable{"it takes longer than allowed"};
     double best = -std::numeric_limits<double>::infinity();
     for (int action = 0; action < Model::action_count(); ++action) {
       best = std::max(best, action_value(belief, action, horizon));
@@ -142,6 +148,7 @@ class ExactEvaluation {
   }
 
   std::uint64_t belief_budget_;
+  Clock::time_point latest_;
   std::uint64_t evaluated_ = 0;
   Enumerator draws_;
   std::vector<State> states_;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
@@ -17,20 +18,21 @@
 namespace aos {
 
 inline constexpr std::size_t most_known_states = 20'000;
+inline constexpr std::size_t most_known_outcomes = 1'000'000;
 
 template <class Model>
 class FullKnowledge {
  public:
   using State = typename Model::State;
 
-  // Prepares values for every number of decisions up to `horizon`. Returns whether the model is small enough; a belief
-  // whose states are known already costs nothing.
-  bool prepare(const Belief<Model>& belief, int horizon) {
+  // Prepares values for every number of decisions up to `horizon`. Returns whether the model is small enough, and quick
+  // enough for `latest`; a belief whose states are known already costs nothing.
+  bool prepare(const Belief<Model>& belief, int horizon, std::chrono::steady_clock::time_point latest) {
     if (is_too_large_) return false;
     try {
       const std::size_t known = states_.size();
       for (const auto& particle : belief.particles()) number_of(particle.state);
-      explore(known);
+      explore(known, latest);
     } catch (const NotEnumerable&) {
       is_too_large_ = true;
       return false;
@@ -64,13 +66,15 @@ class FullKnowledge {
     return entry->second;
   }
 
-  void explore(std::size_t from) {
+  void explore(std::size_t from, std::chrono::steady_clock::time_point latest) {
     Enumerator draws;
     for (std::size_t number = from; number < states_.size(); ++number) {
+      if (std::chrono::steady_clock::now() > latest) throw NotEnumerable{"no time"};
       for (int action = 0; action < Model::action_count(); ++action) {
         Outcomes found;
         if (Model::ending(states_[number]) == Ending::running) {
           draws.for_each_path([&](Enumerator& path) {
+            if (++known_outcomes_ > most_known_outcomes) throw NotEnumerable{"too many outcomes"};
             State next = states_[number];
             const Step step = Model::step(next, action, path);
             found.reward += path.probability() * step.reward;
@@ -99,6 +103,7 @@ class FullKnowledge {
   }
 
   bool is_too_large_ = false;
+  std::size_t known_outcomes_ = 0;
   std::vector<State> states_;
   std::unordered_map<State, std::uint32_t, Hash> numbers_;
   std::vector<Outcomes> outcomes_;

@@ -54,15 +54,17 @@ class Pomcp {
 
   // Runs the search and returns how many simulations it took.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
-    const auto start = std::chrono::steady_clock::now();
-    const auto is_over = [&] {
-      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-      return budget.seconds > 0 && spent.count() >= budget.seconds;
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    const auto after = [&](double seconds) {
+      return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     };
-    has_knowledge_ = knowledge_.prepare(belief, horizon);
+    const Clock::time_point end = budget.seconds > 0 ? after(budget.seconds) : Clock::time_point::max();
+    const Clock::time_point half = budget.seconds > 0 ? after(budget.seconds / 2) : Clock::time_point::max();
+    has_knowledge_ = knowledge_.prepare(belief, horizon, half);
     std::uint64_t done = 0;
     while (budget.simulations == 0 || done < budget.simulations) {
-      if (done % 64 == 0 && is_over()) break;
+      if (done % 64 == 0 && Clock::now() >= end) break;
       State state = belief.sample(random);
       ++done;
       if (Model::ending(state) != Ending::running) continue;
