@@ -1,0 +1,89 @@
+"""Beliefs that cannot be enumerated: held as particles, and right on average."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+MAPPING = """project: {project}
+
+response: high
+response_rule: level == 'high'
+response: low
+response_rule: True
+
+module_activation: skill
+path: /read
+
+local_variable: level
+type: string
+from_ros_service_response: true
+code:
+level = __input.level
+"""
+
+GAUGE = {
+    "gauge.ef": """project: gauge
+horizon: 5
+discount: 0.95
+
+state_variable: double level
+
+initial_belief:
+state.level = AOS.SampleNormal(0, 1);
+""",
+    "read.sd": """project: gauge
+
+dynamic_model:
+__reward = -1;
+if (state__.level + AOS.SampleNormal(0, 1) > 0) __moduleResponse = high;
+else __moduleResponse = low;
+""",
+    "read.am": MAPPING.format(project="gauge"),
+}
+"""A level that is never seen, only its sign under noise of the same size."""
+
+SWITCHES = {
+    "switches.ef": """project: switches
+horizon: 5
+discount: 0.95
+
+state_variable: int on
+
+initial_belief:
+for (int i = 0; i < 14; i++) if (AOS.Bernoulli(0.5)) state.on += 1;
+""",
+    "read.sd": """project: switches
+
+dynamic_model:
+__reward = -1;
+if (state__.on > 7) __moduleResponse = high;
+else __moduleResponse = low;
+""",
+    "read.am": MAPPING.format(project="switches"),
+}
+"""2^14 combinations of draws, of which only the number of ones is kept."""
+
+
+async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path) -> None:
+    async with engine_of(await built_text(GAUGE, cache_dir)) as engine:
+        first = await engine.update("read", "high")
+        plan = await engine.plan(simulations=1000, seed=1)
+        second = await engine.update("read", "high")
+    assert not first.summary.is_exact
+    assert first.probability == pytest.approx(1 / 2, abs=0.03)
+    # Two standard normals with correlation 1/2 have the same sign with probability 2/3.
+    assert second.probability == pytest.approx(2 / 3, abs=0.03)
+    assert plan.predicted[0].probability == pytest.approx(2 / 3, abs=0.03)
+
+
+async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> None:
+    async with engine_of(await built_text(SWITCHES, cache_dir)) as engine:
+        summary = await engine.summary()
+        update = await engine.update("read", "high")
+    assert not summary.is_exact
+    assert update.probability == pytest.approx(6476 / 16384, abs=0.03)  # of 14 fair coins, 8 or more show heads
+    assert sum(update.summary.marginals[0].values.values()) == pytest.approx(1)
+    assert min(int(value) for value in update.summary.marginals[0].values) >= 8
