@@ -96,17 +96,18 @@ make_venv() {
 
 # --- C++ -----------------------------------------------------------------------------------------------
 
-try_compiler() { "$VENV/bin/python" deploy/try_compiler.py; }
+prepare_compiler() { "$VENV/bin/python" deploy/prepare_compiler.py; }
 
 need_compiler() {
+    say "trying the C++ compiler; the first time, the planning engine is compiled with it: some ten seconds"
     status=0
-    compiler=$(try_compiler 2>"$VENV/compiler-messages") || status=$?
+    compiler=$(prepare_compiler 2>"$VENV/compiler-messages") || status=$?
     if [ "$status" = 1 ] && [ -z "${CXX:-}" ]; then
         say "no C++ compiler here: installing the one in the ziglang package, 100 MB to load, 400 MB on disk"
         install "$LOCK/compiler.txt"
-        say "building its C++ library: one to three minutes, once"
+        say "building its C++ library and the engine: one to three minutes, once"
         status=0
-        compiler=$(try_compiler 2>"$VENV/compiler-messages") || status=$?
+        compiler=$(prepare_compiler 2>"$VENV/compiler-messages") || status=$?
     fi
     [ "$status" = 0 ] || fail "no C++ compiler works:" "$(cat "$VENV/compiler-messages")"
     say "C++ compiler: $compiler"
