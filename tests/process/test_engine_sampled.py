@@ -84,6 +84,6 @@ async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> No
         summary = await engine.summary()
         update = await engine.update("read", "high")
     assert not summary.is_exact
-    assert update.probability == pytest.approx(6476 / 16384, abs=0.03)  # of 14 fair coins, 8 or more show heads
+    assert update.probability == pytest.approx(6476 / 16384, abs=0.03)  # 8 heads or more of 14
     assert sum(update.summary.marginals[0].values.values()) == pytest.approx(1)
     assert min(int(value) for value in update.summary.marginals[0].values) >= 8
