@@ -39,12 +39,11 @@ _BUILD_TIMEOUT_S = 600.0
 class MissionRun:
     """Runs a deployment once. `report` is told what happens, as it happens."""
 
-    def __init__(self, deployment: Deployment, report: Report, clock: Clock, begun_s: float) -> None:
-        """`begun_s` is when the user started aos-up, on the clock's monotonic scale."""
+    def __init__(self, deployment: Deployment, report: Report, clock: Clock) -> None:
         self._deployment = deployment
         self._report = report
         self._clock = clock
-        self._begun_s = begun_s
+        self._begun_s = clock.monotonic_s()
         self.error: AosError | None = None
         self._started = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
         self._supervisor: Supervisor | None = None

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import sys
-import time
 from pathlib import Path
 from typing import Annotated
 
@@ -56,8 +54,6 @@ def up(
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
 
-    clock = SystemClock()
-    begun_s = clock.monotonic_s() - _process_age_s()
     deployment = read_deploy_file(deploy)
     file = deployment.file
     if seed is not None:
@@ -70,16 +66,9 @@ def up(
     )
     title = f"{file.robot} · {deploy.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
-    mission = MissionRun(deployment, view, clock, begun_s)
+    mission = MissionRun(deployment, view, SystemClock())
     with view:
         code = asyncio.run(run_until_interrupted(mission))
     if mission.error is not None:
         print_fault("aos-up", mission.error)
     raise typer.Exit(code)
-
-
-def _process_age_s() -> float:
-    """How long ago this process was started: importing takes a good part of the way to the first decision."""
-    fields = Path("/proc/self/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-    started_s = int(fields[19]) / os.sysconf("SC_CLK_TCK")
-    return time.clock_gettime(time.CLOCK_BOOTTIME) - started_s
