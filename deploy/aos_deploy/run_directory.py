@@ -40,7 +40,7 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """`summary.json`: how a run ended. Times in seconds, counted from when aos-up has read the deploy file."""
+    """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file."""
 
     robot: str
     deploy_file: str
