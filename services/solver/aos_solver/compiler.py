@@ -48,7 +48,9 @@ class Compiler(msgspec.Struct, frozen=True):
             own += ["-fno-diagnostics-show-caret", "-fmax-errors=40"]
         else:
             own = ["-Wno-c++11-narrowing", "-fno-color-diagnostics", "-fno-caret-diagnostics"]
-            own += ["-ferror-limit=40", *(["-fno-sanitize=all"] if self.family == "zig" else [])]
+            # A null pointer shall crash where it is used, and not be optimised into a trap elsewhere.
+            own += ["-ferror-limit=40", "-fno-delete-null-pointer-checks"]
+            own += [*(["-fno-sanitize=all"] if self.family == "zig" else [])]
         return [*self.command, *common, *own, *defines, "-I", include, "-c", source, "-o", output]
 
     def linking(self, objects: list[str], output: str) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
+import json
 import sys
 from collections import Counter
 from pathlib import Path
@@ -12,28 +14,47 @@ from aos_skills.pybullet.skills import ArmadilloSkills
 from aos_skills.pybullet.world_file import load_world_file
 
 PLACES = {"easy": (0.0, 2.0, 1.5708), "hard": (0.0, -2.0, -1.5708)}
+OUTCOMES = ("held", "held, arm out", "missed", "lost")
+SETTLING_S = 1.0
 
 
 def outcome_of_pick(world: Path, table: str, seed: int) -> str:
-    """One pick in a fresh room: `held`, `held, arm out` or `not held`."""
+    """One pick in a fresh room: one of OUTCOMES; a missed can still stands in reach, a lost one does not."""
     scene = Scene(load_world_file(world))
     robot = Robot(scene, lambda: None)
     skills = ArmadilloSkills(scene, robot, seed)
     x, y, yaw = PLACES[table]
     skills.call("/navigate", {"x": x, "y": y, "yaw": yaw})
     answer = skills.call("/pick", {})
-    outcome = "held" if skills.is_holding else "not held"
+    robot.wait(SETTLING_S)
+    if skills.is_holding:
+        outcome = "held" if answer["success"] else "held, arm out"
+    else:
+        outcome = "missed" if skills.sees_can else "lost"
     scene.close()
-    return outcome if answer["success"] else f"{outcome}, arm out"
+    return outcome
 
 
 def main() -> None:
-    """Prints the table of outcomes."""
-    world, picks = Path(sys.argv[1]), int(sys.argv[2])
-    for table in PLACES:
-        counts = Counter(outcome_of_pick(world, table, seed) for seed in range(picks))
-        shares = ", ".join(f"{outcome} {count / picks:.2f}" for outcome, count in counts.most_common())
-        sys.stdout.write(f"{table} table, {picks} picks: {shares}\n")
+    """Prints the share of each outcome for each table, and says on stderr how far it is."""
+    parser = argparse.ArgumentParser(prog="frequencies", description=main.__doc__)
+    parser.add_argument("world", type=Path)
+    parser.add_argument("picks", type=int, nargs="?", default=60)
+    parser.add_argument("--first-seed", type=int, default=0)
+    parser.add_argument("--json", action="store_true", help="one JSON object with the counts")
+    options = parser.parse_args()
+    counts: dict[str, Counter[str]] = {table: Counter() for table in PLACES}
+    for table, counter in counts.items():
+        for number in range(options.picks):
+            counter[outcome_of_pick(options.world, table, options.first_seed + number)] += 1
+            sys.stderr.write(f"\r{table} table: {number + 1} of {options.picks} picks")
+        sys.stderr.write("\n")
+    if options.json:
+        sys.stdout.write(json.dumps({"picks": options.picks, **counts}) + "\n")
+        return
+    for table, counter in counts.items():
+        shares = ", ".join(f"{outcome} {counter[outcome] / options.picks:.2f}" for outcome in OUTCOMES)
+        sys.stdout.write(f"{table} table, {options.picks} picks: {shares}\n")
 
 
 if __name__ == "__main__":

@@ -91,6 +91,14 @@ class Robot:
             forces.append(sum(contact[9] for contact in contacts if contact[2] != self.body))
         return forces[0], forces[1]
 
+    def holds(self, body: int) -> bool:
+        """Whether both fingers touch a body."""
+        touched = (
+            self._client.getContactPoints(bodyA=self.body, linkIndexA=finger, bodyB=body)
+            for finger in self._fingers
+        )
+        return all(touched)
+
     def tip_place(self) -> tuple[float, float, float]:
         """The point between the finger tips, in metres."""
         x, y, z = self._client.getLinkState(self.body, self._tip, computeForwardKinematics=True)[0]

@@ -41,6 +41,10 @@ _PLANAR_JOINTS = """
 _SMALL_INERTIA = (
     '<inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>'
 )
+_UNIT_INERTIA = (
+    '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+)
+"""What Bullet takes for a link without any, with a page of warnings."""
 _CHASSIS_HEIGHT_M = 0.14493
 """Of Husky's base_link above the floor."""
 
@@ -58,6 +62,8 @@ def robot_urdf(data: Path, mount_m: tuple[float, float, float]) -> str:
             _drop(link, "collision")
         if link.get("name") == "base_footprint":
             link.append(ElementTree.fromstring(_SMALL_INERTIA))
+        if link.find("inertial") is None:
+            link.append(ElementTree.fromstring(_UNIT_INERTIA))
     return ElementTree.tostring(robot, encoding="unicode")
 
 

@@ -18,6 +18,8 @@ TABLE_HALF_M = (0.5, 0.4)
 TRAY_TOP_M = 0.72
 TRAY_HALF_M = 0.14
 TRAY_FROM_PERSON_M = 0.36
+UPRIGHT = 0.9
+"""The least cosine of a standing can's tilt."""
 
 _WOOD = (0.72, 0.53, 0.34, 1)
 _WALL = (0.87, 0.88, 0.84, 1)
@@ -49,6 +51,11 @@ class Scene:
         """Where a can's centre is, in metres."""
         x, y, z = self.client.getBasePositionAndOrientation(self.cans[name])[0]
         return x, y, z
+
+    def is_standing(self, name: str) -> bool:
+        """Whether a can stands upright, wherever that is."""
+        turned = self.client.getBasePositionAndOrientation(self.cans[name])[1]
+        return bool(self.client.getMatrixFromQuaternion(turned)[8] > UPRIGHT)
 
     def is_on_tray(self, name: str) -> bool:
         """Whether the person has that can."""

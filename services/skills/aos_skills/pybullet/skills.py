@@ -19,12 +19,13 @@ __all__ = ["ArmadilloSkills"]
 STRETCHED = (0.0, 0.75, 0.0, -0.75, 0.0, 1.5, 0.785)
 """Arm joint angles in radians of an arm that did not return."""
 REACH_M = 0.8
-HOLDING_GAP_M = 0.004
 CROSSING = (0.0, 0.0)
 """All ways between the places lead over the middle of the room."""
-LOWEST_GRASP_M = 0.009
-GRASP_SHARE = 0.36
-"""Of the perceived height, where the fingers grasp."""
+LOWEST_GRASP_M = 0.008
+"""Lower, the finger tips stand on the table and do not close."""
+GRASP_SHARE = 0.147
+"""Of the perceived height, where the fingers grasp: low, so that they lift a can from below its middle."""
+MISPLACED_BY_M = 0.08
 LIFT_M = 0.22
 SENSING_S = 0.5
 APPROACH_M = 0.25
@@ -60,8 +61,12 @@ class ArmadilloSkills:
     @property
     def is_holding(self) -> bool:
         """The truth, which the robot itself has to sense."""
-        left, right = self.robot.finger_forces_n()
-        return left > 0 and right > 0 and self.robot.gap_m > HOLDING_GAP_M
+        return any(self.robot.holds(can) for can in self.scene.cans.values())
+
+    @property
+    def sees_can(self) -> bool:
+        """Whether there is something to pick where the robot is."""
+        return self._can_in_reach() is not None
 
     def watch_person(self) -> None:
         """Remembers any touch of the person; called at every simulation step."""
@@ -118,12 +123,13 @@ class ArmadilloSkills:
         return {"success": True}
 
     def _can_in_reach(self) -> str | None:
-        """A can on a table, near enough to the arm; the robot sees it whatever it really is."""
+        """A can that stands on a table, near enough to the arm; a fallen one is not recognised."""
         x, y, yaw = self.robot.base_place
         foot = (x + 0.25 * math.cos(yaw), y + 0.25 * math.sin(yaw))
         for name in self.scene.cans:
             can_x, can_y, can_z = self.scene.can_place(name)
-            if can_z > TABLE_TOP_M - 0.01 and math.dist(foot, (can_x, can_y)) < REACH_M:
+            is_seen = can_z > TABLE_TOP_M - 0.01 and self.scene.is_standing(name)
+            if is_seen and math.dist(foot, (can_x, can_y)) < REACH_M:
                 return name
         return None
 
@@ -134,6 +140,10 @@ class ArmadilloSkills:
         x, y, _ = self.scene.can_place(name)
         noise = self._noise
         height = GRASP_SHARE * can.height * can.perceived_scale
+        if self._draw("the can is seen elsewhere", can.misplaced):
+            _, _, yaw = self.robot.base_place
+            x -= MISPLACED_BY_M * math.cos(yaw)
+            y -= MISPLACED_BY_M * math.sin(yaw)
         return (
             x + noise.gauss(0, file.faults.pose_noise_m),
             y + noise.gauss(0, file.faults.pose_noise_m),

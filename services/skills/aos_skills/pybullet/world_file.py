@@ -22,13 +22,16 @@ class Place(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A can as it is. The robot perceives it `perceived_scale` times as large."""
+    """A can as it is. The robot perceives it `perceived_scale` times as large, and with the probability
+    `misplaced` elsewhere: where there is nothing to grasp.
+    """
 
     x: float
     y: float
     radius: float
     height: float
     perceived_scale: float = 1.0
+    misplaced: float = 0.0
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
