@@ -24,6 +24,10 @@ class Adapter(Protocol):
         """The activation paths that it serves."""
         ...
 
+    async def prepare(self) -> None:
+        """Returns when it could run a call at once; raises if it never can. Calls may come before."""
+        ...
+
     async def call(
         self, id: ActivationId, path: str, fields: dict[str, Any], deadline_s: float
     ) -> dict[str, Any]:

@@ -47,13 +47,16 @@ class _Host:
         service = self._service
         for path, name in service.settings.bind.items():
             if name not in self._adapters:
-                self._adapters[name] = await self._start(name)
+                self._adapters[name] = self._adapter(name)
             if path not in self._adapters[name].paths:
                 known = ", ".join(sorted(self._adapters[name].paths))
                 raise DeployError(f"the adapter {name} has no skill at {path}", hint=f"It has {known}")
             await service.bus.answer(service.keys.call(path), SkillCall, self._call)
         await service.bus.answer(service.keys.cancel, Cancel, self._cancel)
         await service.ready()
+        # A world takes a second to build, and the first decision has not been taken yet.
+        for adapter in self._adapters.values():
+            await adapter.prepare()
         await asyncio.Event().wait()
 
     async def close(self) -> None:
@@ -61,7 +64,7 @@ class _Host:
             await adapter.close()
         self._ledger.close()
 
-    async def _start(self, name: str) -> Adapter:
+    def _adapter(self, name: str) -> Adapter:
         settings = self._service.settings
         if name not in ADAPTERS:
             near = difflib.get_close_matches(name, ADAPTERS, 1)
@@ -74,7 +77,7 @@ class _Host:
         from aos_skills.pybullet.world_file import load_world_file
 
         world = load_world_file(Path(settings.world))
-        return await PybulletAdapter.start(world, Path(settings.run_dir), settings.seed, self._publish)
+        return PybulletAdapter(world, Path(settings.run_dir), settings.seed, self._publish)
 
     async def _call(self, call: SkillCall, _: str) -> SkillResult:
         stored = self._ledger.stored(call.id)

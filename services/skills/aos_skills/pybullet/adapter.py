@@ -8,7 +8,7 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import ActivationId
@@ -16,7 +16,7 @@ from aos_skills.adapter import Publish
 from aos_skills.pybullet.camera import Camera
 from aos_skills.pybullet.robot import Robot
 from aos_skills.pybullet.scene import STEP_S, Scene
-from aos_skills.pybullet.skills import ArmadilloSkills
+from aos_skills.pybullet.skills import SKILL_PATHS, ArmadilloSkills
 from aos_skills.pybullet.world_file import WorldFile
 
 __all__ = ["PybulletAdapter"]
@@ -25,9 +25,11 @@ PUBLISH_EVERY_S = 0.05
 
 
 class PybulletAdapter:
-    """Everything of pybullet happens on one thread; `start` returns when the world stands."""
+    """Everything of pybullet happens on one thread, first of all the building of the world."""
 
-    def __init__(self, run_dir: Path, publish: Publish) -> None:
+    paths = SKILL_PATHS
+
+    def __init__(self, world: WorldFile, run_dir: Path, seed: int, publish: Publish) -> None:
         self._run_dir = run_dir
         self._publish = publish
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="world")
@@ -35,17 +37,10 @@ class PybulletAdapter:
         self._deadline_s = float("inf")
         self._next_publication_s = 0.0
         self._skills: ArmadilloSkills
+        self._building = self._thread.submit(self._build, world, seed)
 
-    @classmethod
-    async def start(cls, world: WorldFile, run_dir: Path, seed: int, publish: Publish) -> Self:
-        """Builds the world."""
-        adapter = cls(run_dir, publish)
-        await adapter._on_thread(adapter._build, world, seed)
-        return adapter
-
-    @property
-    def paths(self) -> frozenset[str]:
-        return frozenset(self._skills.by_path)
+    async def prepare(self) -> None:
+        await asyncio.wrap_future(self._building)
 
     async def call(
         self, id: ActivationId, path: str, fields: dict[str, Any], deadline_s: float
@@ -61,7 +56,9 @@ class PybulletAdapter:
     async def close(self) -> None:
         """Stops what moves and leaves the animated picture of the mission."""
         self.cancel()
-        await self._on_thread(self._finish)
+        await asyncio.wait([asyncio.wrap_future(self._building)])
+        if self._building.exception() is None:
+            await self._on_thread(self._finish)
         self._thread.shutdown()
 
     async def _on_thread(self, work: Any, *arguments: Any) -> Any:

@@ -6,10 +6,13 @@ In a world of its own: in the robot's body, Bullet would also move the base to b
 from __future__ import annotations
 
 import math
+import tempfile
 from pathlib import Path
 
 import pybullet
 from pybullet_utils.bullet_client import BulletClient
+
+from aos_skills.pybullet.robot_model import bare_arm_urdf
 
 __all__ = ["ArmKinematics"]
 
@@ -23,7 +26,10 @@ class ArmKinematics:
 
     def __init__(self, data: Path) -> None:
         self._client = BulletClient(connection_mode=pybullet.DIRECT)
-        self._arm: int = self._client.loadURDF(str(data / "franka_panda" / "panda.urdf"), useFixedBase=True)
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as urdf:
+            urdf.write(bare_arm_urdf(data))
+            urdf.flush()
+            self._arm: int = self._client.loadURDF(urdf.name, useFixedBase=True)
         joints = range(self._client.getNumJoints(self._arm))
         names = {self._client.getJointInfo(self._arm, joint)[12].decode(): joint for joint in joints}
         self._tip = names["panda_grasptarget"]

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Callable
-from pathlib import Path
 
 import pybullet
 
@@ -44,11 +43,11 @@ class Robot:
         self._client = client = scene.client
         self._scene = scene
         self.on_tick = on_tick
-        with tempfile.TemporaryDirectory() as folder:
-            urdf = Path(folder) / "armadillo.urdf"
-            urdf.write_text(robot_urdf(scene.data, ARM_MOUNT_M))
+        with tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as urdf:
+            urdf.write(robot_urdf(scene.data, ARM_MOUNT_M))
+            urdf.flush()
             self.body: int = client.loadURDF(
-                str(urdf), useFixedBase=True, flags=pybullet.URDF_ENABLE_CACHED_GRAPHICS_SHAPES
+                urdf.name, useFixedBase=True, flags=pybullet.URDF_ENABLE_CACHED_GRAPHICS_SHAPES
             )
         joints = range(client.getNumJoints(self.body))
         names = {client.getJointInfo(self.body, joint)[1].decode(): joint for joint in joints}

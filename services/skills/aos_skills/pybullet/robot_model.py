@@ -11,7 +11,7 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
-__all__ = ["ARM_JOINTS", "BASE_JOINTS", "FINGER_JOINTS", "robot_urdf"]
+__all__ = ["ARM_JOINTS", "BASE_JOINTS", "FINGER_JOINTS", "bare_arm_urdf", "robot_urdf"]
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 ARM_JOINTS = tuple(f"panda_joint{number}" for number in range(1, 8))
@@ -65,6 +65,15 @@ def robot_urdf(data: Path, mount_m: tuple[float, float, float]) -> str:
         if link.find("inertial") is None:
             link.append(ElementTree.fromstring(_UNIT_INERTIA))
     return ElementTree.tostring(robot, encoding="unicode")
+
+
+def bare_arm_urdf(data: Path) -> str:
+    """The arm without shapes, which take half a second to load: joints are all that kinematics needs."""
+    arm = ElementTree.parse(data / "franka_panda" / "panda.urdf").getroot()
+    for link in arm.iter("link"):
+        _drop(link, "visual")
+        _drop(link, "collision")
+    return ElementTree.tostring(arm, encoding="unicode")
 
 
 def _parts(urdf: Path) -> list[ElementTree.Element]:

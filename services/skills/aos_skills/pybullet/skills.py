@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Callable
 from typing import Any
 
 from aos_skills.pybullet.robot import TUCKED, Robot
 from aos_skills.pybullet.scene import TABLE_TOP_M, TRAY_FROM_PERSON_M, TRAY_TOP_M, Scene
 
-__all__ = ["ArmadilloSkills"]
+__all__ = ["SKILL_PATHS", "ArmadilloSkills"]
+
+SKILL_PATHS = frozenset({"/navigate", "/pick", "/sense", "/serve"})
 
 STRETCHED = (0.0, 0.75, 0.0, -0.75, 0.0, 1.5, 0.785)
 """Arm joint angles in radians of an arm that did not return."""
@@ -45,18 +46,21 @@ class ArmadilloSkills:
         self.has_injured = False
         self.drawn: list[str] = []
         """The faults of the current call, for the record."""
-        self.by_path: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
-            "/navigate": self._navigate,
-            "/pick": self._pick,
-            "/sense": self._sense,
-            "/serve": self._serve,
-        }
 
     def call(self, path: str, fields: dict[str, Any]) -> dict[str, Any]:
         """Runs a skill to its end."""
         self.drawn.clear()
         self.is_silent = self._draw("silent fingers", self.scene.file.faults.silent_fingers)
-        return self.by_path[path](fields)
+        match path:
+            case "/navigate":
+                return self._navigate(fields)
+            case "/pick":
+                return self._pick()
+            case "/sense":
+                return self._sense()
+            case "/serve":
+                return self._serve()
+        raise ValueError(f"there is no skill at {path}")
 
     @property
     def is_holding(self) -> bool:
@@ -81,7 +85,7 @@ class ArmadilloSkills:
         has_crossed = self.robot.drive_to(*CROSSING, at_yaw)
         return {"success": has_crossed and self.robot.drive_to(x, y, yaw)}
 
-    def _pick(self, _: dict[str, Any]) -> dict[str, Any]:
+    def _pick(self) -> dict[str, Any]:
         robot = self.robot
         robot.open_gripper()
         robot.move_arm(TUCKED)
@@ -102,11 +106,11 @@ class ArmadilloSkills:
         robot.move_arm(TUCKED)
         return {"success": True}
 
-    def _sense(self, _: dict[str, Any]) -> dict[str, Any]:
+    def _sense(self) -> dict[str, Any]:
         self.robot.wait(SENSING_S)
         return {}
 
-    def _serve(self, _: dict[str, Any]) -> dict[str, Any]:
+    def _serve(self) -> dict[str, Any]:
         """Holds out what it has, lets go, and reports a delivery whatever happened, as the original did."""
         robot = self.robot
         x, y, _yaw = robot.base_place

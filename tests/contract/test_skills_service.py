@@ -1,0 +1,186 @@
+"""The skills service on the real bus, with the simulated robot."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+import pytest_asyncio
+
+from aos_protocol.errors import AosError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import ActivationId, Cancel, Cancelled, SkillCall, SkillResult, TopicMessage
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+from aos_skills.settings import Settings
+
+pytestmark = pytest.mark.physics
+
+PATIENCE_S = 30.0
+ALL_PATHS = {"/navigate": "pybullet", "/pick": "pybullet", "/sense": "pybullet", "/serve": "pybullet"}
+FAR_AWAY = {"x": 4.0, "y": 0.0, "yaw": 0.0}
+
+
+class Robot:
+    """A skills process, and how the middleware speaks to it."""
+
+    def __init__(self, bus: Bus, keys: Keys, endpoint: str, run_dir: Path, world: Path) -> None:
+        self.bus = bus
+        self.keys = keys
+        self.endpoint = endpoint
+        self.run_dir = run_dir
+        self.world = world
+        self.child: Child | None = None
+
+    async def launch(self, **settings: Any) -> Child:
+        """Starts the process."""
+        values = Settings(
+            robot=self.keys.robot,
+            service="skills",
+            endpoint=self.endpoint,
+            run_dir=str(self.run_dir),
+            **({"bind": ALL_PATHS, "world": str(self.world)} | settings),
+        )
+        path = self.run_dir / "skills.json"
+        path.write_bytes(msgspec.json.encode(values))
+        with (self.run_dir / "skills.log").open("ab") as log:
+            self.child = await Child.start([sys.executable, "-m", "aos_skills", str(path)], stderr=log)
+        return self.child
+
+    async def start(self) -> None:
+        """Starts the process; returns when it answers."""
+        await self.launch()
+        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.live("skills")) as present:
+            async for _, is_alive in present:
+                if is_alive:
+                    return
+
+    async def call(
+        self,
+        path: str,
+        step: int = 1,
+        fields: dict[str, Any] | None = None,
+        *,
+        epoch: int = 1,
+        limit_s: float = 60.0,
+    ) -> SkillResult:
+        call = SkillCall(ActivationId("m", epoch, step), path, fields or {}, limit_s)
+        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=PATIENCE_S)
+
+    async def refusal(
+        self, path: str, step: int = 1, fields: dict[str, Any] | None = None, **how: Any
+    ) -> AosError:
+        """The error that a call ends with."""
+        with pytest.raises(AosError) as error:
+            await self.call(path, step, fields, **how)
+        return error.value
+
+    async def moving(self) -> None:
+        """Returns when simulated time passes: the sensors publish while a skill runs."""
+        async with (
+            asyncio.timeout(PATIENCE_S),
+            self.bus.listen(self.keys.topic("/joints"), TopicMessage) as joints,
+        ):
+            async for _ in joints:
+                return
+
+
+@pytest_asyncio.fixture
+async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path) -> AsyncIterator[Robot]:
+    """Not started yet; whatever a test starts is stopped."""
+    (tmp_path / "pictures").mkdir()
+    robot = Robot(bus, keys, endpoint, tmp_path, root / "deploy/worlds/armadillo.yaml")
+    try:
+        yield robot
+    finally:
+        if robot.child is not None:
+            await robot.child.stop(10.0)
+
+
+async def test_a_call_is_answered_with_its_fields_and_what_was_published(robot: Robot) -> None:
+    await robot.start()
+    async with robot.bus.listen(robot.keys.topic("/gripper"), TopicMessage) as gripper:
+        result = await robot.call("/sense")
+        messages = [message async for _, message in _first(gripper, result.published["/gripper"])]
+    assert result.fields == {}
+    assert [message.number for message in messages] == list(range(1, len(messages) + 1))
+    assert set(messages[-1].fields) == {"gap_m", "left_force_n", "right_force_n"}
+    assert result.published["/joints"] == result.published["/gripper"]
+
+
+async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> None:
+    await robot.start()
+    driving = asyncio.create_task(robot.refusal("/navigate", 1, FAR_AWAY))
+    await robot.moving()
+    refused = await robot.refusal("/pick", 2)
+    assert refused.code == "AOS502"
+    assert "/navigate is running" in str(refused)
+    answer = await robot.bus.ask(robot.keys.cancel, Cancel("enough"), Cancelled, timeout_s=PATIENCE_S)
+    assert answer.ids == ("m-1-1",)
+    assert (await driving).code == "AOS507"
+    # It can move again, and what was refused never ran.
+    assert (await robot.call("/sense", 3)).fields == {}
+    assert (await robot.call("/sense", 2)).fields == {}
+
+
+async def test_a_skill_that_takes_too_long_is_stopped_and_said_to_be(robot: Robot) -> None:
+    await robot.start()
+    assert (await robot.refusal("/navigate", 1, FAR_AWAY, limit_s=0.01)).code == "AOS503"
+    assert (await robot.call("/sense", 2)).fields == {}
+
+
+async def test_fields_that_a_skill_cannot_use_are_refused_with_a_hint(robot: Robot) -> None:
+    await robot.start()
+    refused = await robot.refusal("/navigate", 1, {"x": "far"})
+    assert refused.code == "AOS502"
+    assert "abstraction mapping" in str(refused)
+
+
+async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused(robot: Robot) -> None:
+    await robot.start()
+    first = await robot.call("/sense", 1, epoch=2)
+    assert await robot.call("/sense", 1, epoch=2) == first
+    assert (await robot.refusal("/sense", 2, epoch=1)).code == "AOS506"
+
+
+async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(robot: Robot) -> None:
+    await robot.start()
+    assert (await robot.call("/sense", 1)).fields == {}
+    driving = asyncio.create_task(robot.refusal("/navigate", 2, FAR_AWAY))
+    await robot.moving()
+    assert robot.child is not None
+    robot.child.kill()
+    await driving
+    await robot.child.wait()
+    await robot.start()
+    assert (await robot.refusal("/navigate", 2, FAR_AWAY)).code == "AOS504"
+    assert (await robot.call("/sense", 1)).published  # What ended before is answered from the ledger.
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"bind": {"/pick": "pybulet"}}, "unknown adapter, pybulet. Did you mean pybullet?"),
+        ({"bind": {"/dance": "pybullet"}}, "the adapter pybullet has no skill at /dance"),
+        ({"world": ""}, "the adapter pybullet needs a world file"),
+        ({"world": "nowhere.yaml"}, "nowhere.yaml: cannot be read"),
+    ],
+)
+async def test_what_cannot_be_bound_ends_the_service_with_one_message(
+    robot: Robot, settings: dict[str, Any], message: str
+) -> None:
+    child = await robot.launch(**settings)
+    async with asyncio.timeout(PATIENCE_S):
+        assert await child.wait() == 1
+    assert message in (robot.run_dir / "skills.log").read_text()
+
+
+async def _first(messages: Any, count: int) -> AsyncIterator[Any]:
+    async with asyncio.timeout(PATIENCE_S):
+        for _ in range(count):
+            yield await anext(aiter(messages))
