@@ -24,7 +24,7 @@ CROSSING = (0.0, 0.0)
 """All ways between the places lead over the middle of the room."""
 LOWEST_GRASP_M = 0.008
 """Lower, the finger tips stand on the table and do not close."""
-GRASP_SHARE = 0.147
+GRASP_SHARE = 0.138
 """Of the perceived height, where the fingers grasp: low, so that they lift a can from below its middle."""
 MISPLACED_BY_M = 0.08
 LIFT_M = 0.22
