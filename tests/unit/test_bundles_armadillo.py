@@ -134,7 +134,10 @@ def test_the_two_bundles_differ_in_the_picking_model_only(bundles: Path) -> None
     assert {name for name in finer if finer[name] != rough[name]} == {"pick.sd"}
 
 
-def test_our_bundles_say_nothing_but_that_the_weights_do_not_add_up_to_one(bundles: Path) -> None:
-    for name in FIGURES:
-        codes = {diagnostic.code for diagnostic in load_bundle(bundles / f"armadillo-{name}").diagnostics}
-        assert codes == {"AOS122"}
+def test_our_bundles_say_nothing_but_that_the_rough_weights_do_not_add_up_to_one(bundles: Path) -> None:
+    """The published figures of the rough bundle add up to 1.095, those of the finer one are only rounded."""
+    codes = {
+        name: {diagnostic.code for diagnostic in load_bundle(bundles / f"armadillo-{name}").diagnostics}
+        for name in FIGURES
+    }
+    assert codes == {"rough": {"AOS122"}, "finer": set()}

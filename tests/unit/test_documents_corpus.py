@@ -12,7 +12,6 @@ pytestmark = pytest.mark.corpus
 
 WARNINGS = {
     "armadillo-finer": [
-        "IROS.basic_pick.json:32:183 AOS122",
         "IROS.serve_can_to_person glue.json:16:30 AOS117",
     ],
     "armadillo-rough": [

@@ -33,16 +33,17 @@ def check_weights(
             span = span_of(call.arguments[0])
             findings.error("AOS122", f"{probability:g} is no probability", span, "It lies between 0 and 1")
     elif call.name[1] == "SampleDiscrete" and arguments:
-        weights = _weights(arguments[-1])
+        weights, rounding = _weights(arguments[-1])
         if weights:
             size = enum_sizes.get(arguments[0]) if len(arguments) > 1 else None
             span = span_of(call.arguments[-1])
-            _check_list(weights, size, span, findings, is_normalised=call.name[0] == "AOS")
+            _check_list(weights, size, span, findings, rounding if call.name[0] == "AOS" else None)
 
 
 def _check_list(
-    weights: list[float], size: int | None, span: Span, findings: Findings, *, is_normalised: bool
+    weights: list[float], size: int | None, span: Span, findings: Findings, rounding: float | None
 ) -> None:
+    """`rounding` is what the sum may miss because of the digits left out; None where nothing is divided."""
     total = sum(weights)
     if min(weights) < 0.0:
         findings.error("AOS122", f"{min(weights):g} is no weight", span, "Weights are not negative")
@@ -50,21 +51,25 @@ def _check_list(
         findings.error("AOS122", "these weights are all zero", span, "At least one must be above 0")
     elif size is not None and len(weights) > size:
         findings.error("AOS122", f"{len(weights)} weights for {size} values", span)
-    elif abs(total - 1.0) > _TOLERANCE and is_normalised:
+    elif rounding is not None and abs(total - 1.0) > rounding + _TOLERANCE:
         hint = "They are divided by their sum"
         findings.warning("AOS122", f"these weights add up to {total:.6g}", span, hint)
-    elif abs(total - 1.0) > _TOLERANCE:
+    elif rounding is None and abs(total - 1.0) > _TOLERANCE:
         hint = "AOSUtils does not divide by the sum: a missing part gives -1, a surplus is cut off"
         findings.warning("AOS122", f"these weights add up to {total:.6g}", span, hint)
 
 
-def _weights(text: str) -> list[float]:
-    """The numbers of a literal list; none where one of them is an expression."""
+def _weights(text: str) -> tuple[list[float], float]:
+    """The numbers of a literal list, none where one is an expression; how far rounding moves their sum."""
     match = _WEIGHT_LIST.fullmatch(text.strip())
     if match is None:
-        return []
-    numbers = [_number(item) for item in match.group(1).rstrip(", \n").split(",")]
-    return [number for number in numbers if number is not None] if None not in numbers else []
+        return [], 0.0
+    items = [item.strip() for item in match.group(1).rstrip(", \n").split(",")]
+    numbers = [number for item in items if (number := _number(item)) is not None]
+    if len(numbers) < len(items):
+        return [], 0.0
+    decimals = max(len(item.rstrip("fF").partition(".")[2]) for item in items)
+    return numbers, len(items) * 0.5 * 10.0**-decimals
 
 
 def _number(text: str) -> float | None:
