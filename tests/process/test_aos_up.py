@@ -44,10 +44,19 @@ def deploy_file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _cache(cache_dir: Path) -> Iterator[None]:
+def scratch(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """The folder for temporary files of everything that is started."""
+    folder = tmp_path_factory.mktemp("scratch")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("AOS_CACHE_DIR", str(cache_dir))
-        yield
+        patch.setenv("TMPDIR", str(folder))
+        yield folder
+
+
+def files_left(scratch: Path) -> list[Path]:
+    """Temporary files and shared memory that nobody removed."""
+    shared = [path for path in Path("/dev/shm").iterdir() if "aos" in path.name or "zenoh" in path.name]
+    return [*scratch.iterdir(), *shared]
 
 
 class Up:
@@ -177,33 +186,33 @@ def test_a_finished_mission_can_be_read(mission: Mission) -> None:
     assert text.splitlines()[-1].startswith("mission ended: ")
 
 
-def test_nothing_is_left_after_a_normal_end(mission: Mission) -> None:
+def test_nothing_is_left_after_a_normal_end(mission: Mission, scratch: Path) -> None:
     assert len(mission.up.pids) >= 6
     assert not any(is_running(pid) for pid in mission.up.pids)
     assert not has_listener(port_of(mission.run))
-    assert not [
-        path.name for path in Path("/dev/shm").iterdir() if "aos" in path.name or "zenoh" in path.name
-    ]
+    assert not files_left(scratch)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["Ctrl-C", "SIGTERM"])
-def test_nothing_is_left_after_an_interrupt(deploy_file: Path, number: signal.Signals) -> None:
+def test_nothing_is_left_after_an_interrupt(deploy_file: Path, scratch: Path, number: signal.Signals) -> None:
     with up(deploy_file) as running:
         running.until("decision")
         os.kill(running.process.pid, number)
         assert running.rest() == 130
     assert not any(is_running(pid) for pid in running.pids)
     assert not has_listener(port_of(latest(deploy_file)))
+    assert not files_left(scratch)
     assert json.loads((latest(deploy_file) / "summary.json").read_text())["ending"] == "cancelled"
 
 
-async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path) -> None:
+async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch: Path) -> None:
     with up(deploy_file) as running:
         running.until("decision")
         os.kill(running.process.pid, signal.SIGKILL)
         running.process.wait()
     await until_ended(running.pids)
     assert not has_listener(port_of(latest(deploy_file)))
+    assert not files_left(scratch)
 
 
 def test_a_service_that_dies_ends_the_mission_with_its_name(deploy_file: Path) -> None:

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import signal
-import tempfile
-from pathlib import Path
 from typing import Literal, Self, TypeVar
 
 import msgspec
@@ -75,8 +74,7 @@ class Engine:
         self._child: Child | None = None
         self._belief: ExportedBelief | None = None
         self._asking = asyncio.Lock()
-        self._folder = tempfile.TemporaryDirectory(prefix="aos-engine-")
-        self._blame = Path(self._folder.name) / "blame"
+        self._blame: int | None = None
         self.description: EngineDescription
 
     @classmethod
@@ -95,7 +93,6 @@ class Engine:
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
         await self._drop_child()
-        self._folder.cleanup()
 
     @property
     def pid(self) -> int | None:
@@ -186,8 +183,10 @@ class Engine:
                 return await self._exchange(command, kind, deadline_s)
 
     async def _start_child(self) -> None:
-        self._blame.write_bytes(bytes(4))
-        arguments = [str(self._blame), str(self._seed), self._policy]
+        # In memory, so that nothing is left behind however we end; the child opens it through us.
+        self._blame = os.memfd_create("aos-blame")
+        os.write(self._blame, bytes(4))
+        arguments = [f"/proc/{os.getpid()}/fd/{self._blame}", str(self._seed), self._policy]
         self._child = await Child.start(
             guarded(
                 [str(self._built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)
@@ -234,7 +233,7 @@ class Engine:
 
     async def _lost(self, code: str, message: str) -> AosError:
         """The error for a child that is gone or has to go; the blame page tells what ran last."""
-        piece = int.from_bytes(self._blame.read_bytes()[:4], "little")
+        piece = int.from_bytes(os.pread(self._blame, 4, 0), "little") if self._blame is not None else 0
         status = None if code == "AOS211" else await self._status()
         await self._drop_child()
         if status == -signal.SIGKILL:
@@ -267,6 +266,9 @@ class Engine:
         if child is not None:
             child.kill()
             await child.wait()
+        if self._blame is not None:
+            os.close(self._blame)
+            self._blame = None
 
 
 def _import_command(belief: ExportedBelief) -> str:

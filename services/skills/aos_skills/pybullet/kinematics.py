@@ -6,13 +6,12 @@ In a world of its own: in the robot's body, Bullet would also move the base to b
 from __future__ import annotations
 
 import math
-import tempfile
 from pathlib import Path
 
 import pybullet
 from pybullet_utils.bullet_client import BulletClient
 
-from aos_skills.pybullet.robot_model import bare_arm_urdf
+from aos_skills.pybullet.robot_model import bare_arm_urdf, urdf_file
 
 __all__ = ["ArmKinematics"]
 
@@ -26,10 +25,8 @@ class ArmKinematics:
 
     def __init__(self, data: Path) -> None:
         self._client = BulletClient(connection_mode=pybullet.DIRECT)
-        with tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as urdf:
-            urdf.write(bare_arm_urdf(data))
-            urdf.flush()
-            self._arm: int = self._client.loadURDF(urdf.name, useFixedBase=True)
+        with urdf_file(bare_arm_urdf(data)) as path:
+            self._arm: int = self._client.loadURDF(path, useFixedBase=True)
         joints = range(self._client.getNumJoints(self._arm))
         names = {self._client.getJointInfo(self._arm, joint)[12].decode(): joint for joint in joints}
         self._tip = names["panda_grasptarget"]

@@ -7,7 +7,6 @@ and looks whether somebody wants the robot to stop.
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Callable
 
 import pybullet
@@ -18,6 +17,7 @@ from aos_skills.pybullet.robot_model import (
     BASE_JOINTS,
     FINGER_JOINTS,
     robot_urdf,
+    urdf_file,
 )
 from aos_skills.pybullet.scene import STEP_S, Scene
 
@@ -43,11 +43,9 @@ class Robot:
         self._client = client = scene.client
         self._scene = scene
         self.on_tick = on_tick
-        with tempfile.NamedTemporaryFile("w", suffix=".urdf", encoding="utf-8") as urdf:
-            urdf.write(robot_urdf(scene.data, ARM_MOUNT_M))
-            urdf.flush()
+        with urdf_file(robot_urdf(scene.data, ARM_MOUNT_M)) as path:
             self.body: int = client.loadURDF(
-                urdf.name, useFixedBase=True, flags=pybullet.URDF_ENABLE_CACHED_GRAPHICS_SHAPES
+                path, useFixedBase=True, flags=pybullet.URDF_ENABLE_CACHED_GRAPHICS_SHAPES
             )
         joints = range(client.getNumJoints(self.body))
         names = {client.getJointInfo(self.body, joint)[1].decode(): joint for joint in joints}

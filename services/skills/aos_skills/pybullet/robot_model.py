@@ -8,10 +8,13 @@ limited force, step by step, so that the base still has mass, gathers speed, bum
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from xml.etree import ElementTree
 
-__all__ = ["ARM_JOINTS", "BASE_JOINTS", "FINGER_JOINTS", "bare_arm_urdf", "robot_urdf"]
+__all__ = ["ARM_JOINTS", "BASE_JOINTS", "FINGER_JOINTS", "bare_arm_urdf", "robot_urdf", "urdf_file"]
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 ARM_JOINTS = tuple(f"panda_joint{number}" for number in range(1, 8))
@@ -74,6 +77,17 @@ def bare_arm_urdf(data: Path) -> str:
         _drop(link, "visual")
         _drop(link, "collision")
     return ElementTree.tostring(arm, encoding="unicode")
+
+
+@contextmanager
+def urdf_file(text: str) -> Iterator[str]:
+    """A path where Bullet can read a description from; in memory, so that a crash leaves nothing behind."""
+    file = os.memfd_create("aos-urdf")
+    try:
+        os.write(file, text.encode())
+        yield f"/proc/self/fd/{file}"
+    finally:
+        os.close(file)
 
 
 def _parts(urdf: Path) -> list[ElementTree.Element]:
