@@ -32,9 +32,40 @@ def broken(bundles: Path, tmp_path: Path) -> Path:
 
 
 def test_lint_of_a_good_bundle_ends_with_zero(app: typer.Typer, bundles: Path) -> None:
-    result = CliRunner().invoke(app, ["lint", str(bundles / "armadillo-finer")])
+    result = CliRunner().invoke(app, ["lint", str(bundles / "armadillo-rough"), "--no-compile"])
     assert result.exit_code == 0
     assert result.output.endswith("0 errors, 1 warning\n")
+
+
+def test_lint_asks_the_compiler_and_tells_its_errors_at_the_document(
+    app: typer.Typer, bundles: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    folder = shutil.copytree(bundles / "armadillo-finer", tmp_path / "broken")
+    path = folder / "pick.sd"
+    path.write_text(path.read_text().replace("bool in_hand =", "bool in_hand = in_the_hand &&"))
+    line = next(n for n, text in enumerate(path.read_text().split("\n"), 1) if "in_the_hand" in text)
+    assert CliRunner().invoke(app, ["lint", str(folder), "--no-compile"]).exit_code == 0
+    result = CliRunner().invoke(app, ["lint", str(folder)])
+    assert result.exit_code == 1
+    assert f"pick.sd:{line}:16: error[AOS201]" in result.output
+    assert "bool in_hand = in_the_hand &&" in result.output
+
+
+def test_lint_gives_sarif_with_rules_and_regions(app: typer.Typer, broken: Path) -> None:
+    result = CliRunner().invoke(app, ["lint", str(broken), "--format", "sarif"])
+    log = json.loads(result.output)
+    assert log["version"] == "2.1.0"
+    (run,) = log["runs"]
+    ids = [rule["id"] for rule in run["tool"]["driver"]["rules"]]
+    assert ids == ["AOS115", "AOS116", "AOS117"]
+    found = next(each for each in run["results"] if each["ruleId"] == "AOS116")
+    assert found["level"] == "error"
+    assert ids[found["ruleIndex"]] == "AOS116"
+    place = found["locations"][0]["physicalLocation"]
+    assert place["artifactLocation"]["uri"] == f"{broken}/serve.sd"
+    assert place["region"]["startLine"] == 12
+    assert place["region"]["startColumn"] == 41
 
 
 def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(app: typer.Typer, broken: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from enum import StrEnum
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -12,10 +13,11 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.printing import count, print_diagnostics, print_json
-from aos_protocol.diagnostics import Diagnostic, Severity
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
-from aos_protocol.errors import DocumentError
-from aos_registry.load import load_bundle
+from aos_protocol.errors import AosError, DocumentError
+from aos_protocol.sarif import sarif_log
+from aos_registry.load import load_bundle, read_bundle_files, with_excerpts
 from aos_registry.outline import outline
 
 __all__ = ["Folder", "refusal", "register"]
@@ -24,6 +26,7 @@ __all__ = ["Folder", "refusal", "register"]
 class Format(StrEnum):
     TEXT = "text"
     JSON = "json"
+    SARIF = "sarif"
 
 
 class Stage(StrEnum):
@@ -47,13 +50,21 @@ def register(app: typer.Typer) -> None:
 def lint(
     path: Folder,
     form: Annotated[Format, typer.Option("--format", help="How to print the findings")] = Format.TEXT,
+    compiles: Annotated[
+        bool, typer.Option("--compile/--no-compile", help="Whether the compiler looks at the C++ as well")
+    ] = True,
 ) -> None:
     """Check a bundle of documents and print everything that is wrong with it.
 
-    Exit code 0: clean, or warnings only. 1: errors.
+    Where the documents are in order, the model is generated and compiled too, and mistakes in its C++ are
+    told at their place in the documents; the built model is kept for later. Exit code 0: clean, or warnings
+    only. 1: errors.
     """
     loaded = load_bundle(path)
-    counts = Counter(diagnostic.severity for diagnostic in loaded.diagnostics)
+    found = loaded.diagnostics
+    if compiles and loaded.project is not None:
+        found = (*found, *_model_findings(path, loaded.project))
+    counts = Counter(diagnostic.severity for diagnostic in found)
     if form is Format.JSON:
         print_json(
             {
@@ -61,15 +72,37 @@ def lint(
                 "errors": counts[Severity.ERROR],
                 "warnings": counts[Severity.WARNING],
                 "digest": loaded.digest,
-                "diagnostics": loaded.diagnostics,
+                "diagnostics": found,
             }
         )
+    elif form is Format.SARIF:
+        print_json(sarif_log(found, folder=str(path), version=version("aos")))
     else:
-        print_diagnostics(loaded.diagnostics)
+        print_diagnostics(found)
         errors, warnings = counts[Severity.ERROR], counts[Severity.WARNING]
         typer.echo(f"{path}: {count(errors, 'error')}, {count(warnings, 'warning')}")
-    if loaded.has_errors:
+    if has_errors(found):
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+
+
+def _model_findings(path: Path, project: Project) -> tuple[Diagnostic, ...]:
+    """What generating and compiling the model finds."""
+    import asyncio  # These would make the other commands start slower.
+
+    from aos_deploy.program import cache_dir
+    from aos_solver.hot_plug import build_project
+
+    def tell(progress: str) -> None:
+        typer.echo(f"aos: {progress}", err=True)
+
+    try:
+        asyncio.run(build_project(project, cache_dir(), tell))
+    except AosError as error:
+        if not error.diagnostics:
+            return (Diagnostic(Severity.ERROR, error.code, error.message, Span(path.name), error.hint),)
+        files, _ = read_bundle_files(path)
+        return with_excerpts(error.diagnostics, files)
+    return ()
 
 
 def inspect(

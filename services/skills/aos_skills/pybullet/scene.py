@@ -17,6 +17,8 @@ TABLE_TOP_M = 0.5
 TABLE_HALF_M = (0.5, 0.4)
 TRAY_TOP_M = 0.72
 TRAY_HALF_M = 0.14
+TRAY_RIM_HALF_M = (0.006, 0.015)
+"""Half its thickness and half its height."""
 TRAY_FROM_PERSON_M = 0.36
 UPRIGHT = 0.9
 """The least cosine of a standing can's tilt."""
@@ -129,4 +131,10 @@ class Scene:
             self._box((TRAY_FROM_PERSON_M / 2, 0.035, 0.035), arm, _SKIN)
         tray = (x - TRAY_FROM_PERSON_M, y, TRAY_TOP_M - 0.01)
         self._box((TRAY_HALF_M, TRAY_HALF_M, 0.01), tray, _TRAY)
+        rim = TRAY_HALF_M - TRAY_RIM_HALF_M[0]
+        thin, high = TRAY_RIM_HALF_M
+        for side in (-1, 1):
+            at_x, at_y, at_z = tray[0] + side * rim, y + side * rim, TRAY_TOP_M + high
+            self._box((thin, TRAY_HALF_M, high), (at_x, y, at_z), _TRAY)
+            self._box((TRAY_HALF_M, thin, high), (tray[0], at_y, at_z), _TRAY)
         return body

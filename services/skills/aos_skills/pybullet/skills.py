@@ -24,13 +24,15 @@ CROSSING = (0.0, 0.0)
 """All ways between the places lead over the middle of the room."""
 LOWEST_GRASP_M = 0.008
 """Lower, the finger tips stand on the table and do not close."""
-GRASP_SHARE = 0.138
-"""Of the perceived height, where the fingers grasp: low, so that they lift a can from below its middle."""
+GRASP_ABOVE_CENTRE_M = 0.006
+"""What is grasped above its centre hangs, and does not turn over."""
+GRASPABLE_RADII_M = (0.02, 0.038)
+"""What looks larger does not fit between the fingers; what looks smaller is no can."""
 MISPLACED_BY_M = 0.08
 LIFT_M = 0.22
 SENSING_S = 0.5
 APPROACH_M = 0.25
-RELEASE_HEIGHT_M = 0.07
+RELEASE_HEIGHT_M = 0.05
 
 
 class ArmadilloSkills:
@@ -118,8 +120,10 @@ class ArmadilloSkills:
         tray = (person.x - TRAY_FROM_PERSON_M, person.y)
         if math.dist((x, y), tray) < 1.5:
             robot.creep(APPROACH_M)
-            robot.move_tip((*tray, TRAY_TOP_M + RELEASE_HEIGHT_M))
+            robot.move_tip((*tray, TRAY_TOP_M + LIFT_M))
+            robot.move_tip((*tray, TRAY_TOP_M + RELEASE_HEIGHT_M), speed_m_s=0.15)
             robot.open_gripper()
+            robot.move_tip((*tray, TRAY_TOP_M + LIFT_M), speed_m_s=0.15)
             robot.move_arm(TUCKED)
             robot.creep(-APPROACH_M)
         else:
@@ -132,7 +136,10 @@ class ArmadilloSkills:
         foot = (x + 0.25 * math.cos(yaw), y + 0.25 * math.sin(yaw))
         for name in self.scene.cans:
             can_x, can_y, can_z = self.scene.can_place(name)
+            can = self.scene.file.tables[name].can
+            smallest, largest = GRASPABLE_RADII_M
             is_seen = can_z > TABLE_TOP_M - 0.01 and self.scene.is_standing(name)
+            is_seen = is_seen and smallest < can.radius * can.perceived_scale < largest
             if is_seen and math.dist(foot, (can_x, can_y)) < REACH_M:
                 return name
         return None
@@ -141,9 +148,9 @@ class ArmadilloSkills:
         """Where to grasp, as far as the robot can see: x, y, and the height above the table, in metres."""
         file = self.scene.file
         can = file.tables[name].can
-        x, y, _ = self.scene.can_place(name)
+        x, y, z = self.scene.can_place(name)
         noise = self._noise
-        height = GRASP_SHARE * can.height * can.perceived_scale
+        height = z - TABLE_TOP_M + GRASP_ABOVE_CENTRE_M
         if self._draw("the can is seen elsewhere", can.misplaced):
             _, _, yaw = self.robot.base_place
             x -= MISPLACED_BY_M * math.cos(yaw)
