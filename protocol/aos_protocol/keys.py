@@ -2,10 +2,12 @@
 
     aos/<robot>/live/<service>      token   the service is ready
     aos/<robot>/bundle/push         query   a bundle for the registry              PushBundle -> BundleReport
+    aos/<robot>/bundle/remove       query   a skill or a project to be given up RemoveDocuments -> BundleReport
+    aos/<robot>/bundle/history      query   all revisions of a project               RevisionsQuery -> Revisions
     aos/<robot>/bundle/project      query   the documents of a project        ProjectQuery -> ProjectRevision
     aos/<robot>/bundle/list         query   what the catalogue holds              CatalogueQuery -> Catalogue
     aos/<robot>/bundle/announced    stream  a new project revision                            ProjectRevision
-    aos/<robot>/bundle/report       stream  what became of a dropped bundle                      BundleReport
+    aos/<robot>/bundle/report       stream  what became of a bundle                              BundleReport
     aos/<robot>/activate/<skill>    query   run a grounded action                         Activate -> Outcome
     aos/<robot>/middleware/ready    query   which skills are generated           MappingQuery -> MappingState
     aos/<robot>/call/<path>         query   the adapter runs a skill's code          SkillCall -> SkillResult
@@ -50,6 +52,14 @@ class Keys:
     @property
     def push_bundle(self) -> str:
         return f"{self._root}/bundle/push"
+
+    @property
+    def remove_bundle(self) -> str:
+        return f"{self._root}/bundle/remove"
+
+    @property
+    def bundle_history(self) -> str:
+        return f"{self._root}/bundle/history"
 
     @property
     def project(self) -> str:

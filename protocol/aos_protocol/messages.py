@@ -40,6 +40,10 @@ __all__ = [
     "ProjectQuery",
     "ProjectRevision",
     "PushBundle",
+    "RemoveDocuments",
+    "RevisionEntry",
+    "Revisions",
+    "RevisionsQuery",
     "SkillCall",
     "SkillResult",
     "StartMission",
@@ -89,12 +93,49 @@ class BundleReport(Message, frozen=True):
     added: tuple[str, ...] = ()
     changed: tuple[str, ...] = ()
     source: str = ""
+    removed: tuple[str, ...] = ()
+
+
+class RemoveDocuments(Message, frozen=True):
+    """Asks the registry to give up a skill of a project, or with no skill named the whole project.
+
+    Answered by a BundleReport. A mission that runs keeps the model it has until a revision follows.
+    """
+
+    project: str
+    skill: str = ""
+
+
+class RevisionsQuery(Message, frozen=True):
+    """Asks for all revisions of a project; an empty name asks for the only one there is."""
+
+    project: str = ""
+
+
+class RevisionEntry(Message, frozen=True):
+    """One revision. The names of files tell it from the one before; a removed project has no skills."""
+
+    revision: int
+    digest: str
+    stored_ns: int
+    skills: tuple[str, ...]
+    added: tuple[str, ...]
+    changed: tuple[str, ...]
+    removed: tuple[str, ...]
+
+
+class Revisions(Message, frozen=True):
+    """A project's revisions, the oldest first."""
+
+    project: str
+    entries: tuple[RevisionEntry, ...]
 
 
 class ProjectQuery(Message, frozen=True):
-    """Asks for a project's current revision; an empty name asks for the only one there is."""
+    """Asks for a revision of a project, 0 for the current one; an empty name asks for the only project."""
 
     project: str = ""
+    revision: int = 0
 
 
 class ProjectRevision(Message, frozen=True):

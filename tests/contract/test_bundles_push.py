@@ -14,7 +14,7 @@ import pytest_asyncio
 import typer
 from typer.testing import CliRunner, Result
 
-from aos_deploy.commands import bundle
+from aos_deploy.commands import bundle, documents
 from aos_protocol.keys import Keys
 from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
@@ -38,6 +38,7 @@ async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncItera
                 break
     app = typer.Typer()
     bundle.register(app)
+    documents.register(app)
 
     async def run(*arguments: str) -> Result:
         where = ["--connect", endpoint, "--robot", "test"]
@@ -80,3 +81,28 @@ async def test_an_unknown_project_is_named_with_the_nearest(aos: Aos, bundles: P
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
     shown = await aos("bundle", "show", "armadilo")
     assert "Did you mean `armadillo`?" in str(shown.exception)
+
+
+async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos: Aos, bundles: Path) -> None:
+    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    removed = await aos("bundle", "rm", "armadillo", "observe_holding")
+    assert (
+        removed.output
+        == "armadillo observe_holding: project armadillo, revision 2, removed observe_holding\n"
+    )
+    assert "observe_holding" not in (await aos("bundle", "show")).output
+    assert "skill observe_holding" in (await aos("bundle", "show", "--revision", "1")).output
+    await aos("bundle", "rm", "armadillo")
+    assert (await aos("bundle", "list")).output == "The registry holds no projects.\n"
+    history = json.loads((await aos("bundle", "history", "armadillo", "--json")).output)["entries"]
+    assert [entry["revision"] for entry in history] == [1, 2, 3]
+    assert history[1]["removed"] == ["observe_holding.am", "observe_holding.sd"]
+    assert history[2]["skills"] == []
+    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    assert "revision 4" in (await aos("bundle", "list")).output
+
+
+async def test_what_is_not_there_is_not_removed(aos: Aos, bundles: Path) -> None:
+    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    assert "Did you mean `pick`?" in str((await aos("bundle", "rm", "armadillo", "pik")).exception)
+    assert "no project armadilo" in str((await aos("bundle", "rm", "armadilo")).exception)

@@ -22,6 +22,9 @@ from aos_protocol.messages import (
     ProjectQuery,
     ProjectRevision,
     PushBundle,
+    RemoveDocuments,
+    Revisions,
+    RevisionsQuery,
 )
 from aos_registry.load import read_bundle_files
 from aos_registry.outline import outline
@@ -48,6 +51,7 @@ Connect = Annotated[
 ]
 Robot = Annotated[str, typer.Option("--robot", help="The robot's name; else that of the last run")]
 Runs = Annotated[Path, typer.Option("--runs", help="Where the run directories are")]
+OneProject = Annotated[str, typer.Argument(help="The project; may be left out if there is one only")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 
 
@@ -104,7 +108,7 @@ def list_projects(
         print_json(catalogue)
         return
     for entry in catalogue.entries:
-        stored = datetime.fromtimestamp(entry.stored_ns / 1e9, UTC).isoformat(timespec="seconds")
+        stored = _time(entry.stored_ns)
         typer.echo(f"{entry.project}  revision {entry.revision}  {entry.digest[:12]}  {stored}")
         typer.echo(f"  {', '.join(entry.skills)}")
     if not catalogue.entries:
@@ -113,16 +117,19 @@ def list_projects(
 
 @bundle_app.command(epilog="Example: aos bundle show armadillo")
 def show(
-    project: Annotated[str, typer.Argument(help="The project; may be left out if there is one only")] = "",
+    project: OneProject = "",
+    number: Annotated[
+        int, typer.Option("--revision", min=0, help="An older revision; 0 is the current one")
+    ] = 0,
     connect: Connect = "",
     robot: Robot = "",
     runs: Runs = Path("runs"),
     as_json: AsJson = False,
 ) -> None:
-    """Print a project's documents as the registry holds them now."""
+    """Print a project's documents as the registry holds them."""
 
     async def ask(client: AosClient) -> ProjectRevision:
-        key, query = client.keys.project, ProjectQuery(project)
+        key, query = client.keys.project, ProjectQuery(project, number)
         return await client.bus.ask(key, query, ProjectRevision, timeout_s=ANSWER_TIMEOUT_S)
 
     revision = _with_client(connect, robot, runs, ask)
@@ -131,6 +138,62 @@ def show(
         return
     typer.echo(f"revision {revision.revision}, digest {revision.digest}")
     typer.echo(outline(revision.project), nl=False)
+
+
+@bundle_app.command(epilog="Example: aos bundle history armadillo")
+def history(
+    project: OneProject = "",
+    connect: Connect = "",
+    robot: Robot = "",
+    runs: Runs = Path("runs"),
+    as_json: AsJson = False,
+) -> None:
+    """List a project's revisions: when each was stored, and which documents it added, changed or removed."""
+
+    async def ask(client: AosClient) -> Revisions:
+        key, query = client.keys.bundle_history, RevisionsQuery(project)
+        return await client.bus.ask(key, query, Revisions, timeout_s=ANSWER_TIMEOUT_S)
+
+    found = _with_client(connect, robot, runs, ask)
+    if as_json:
+        print_json(found)
+        return
+    for entry in found.entries:
+        state = entry.digest[:12] if entry.digest else "removed"
+        typer.echo(f"{found.project}  revision {entry.revision}  {state}  {_time(entry.stored_ns)}")
+        for sign, names in (("+", entry.added), ("~", entry.changed), ("-", entry.removed)):
+            if names:
+                typer.echo(f"  {sign} {', '.join(names)}")
+
+
+@bundle_app.command("rm", epilog="Example: aos bundle rm armadillo observe_holding")
+def remove(
+    project: Annotated[str, typer.Argument(help="The project")],
+    skill: Annotated[str, typer.Argument(help="Only this skill; else the whole project")] = "",
+    connect: Connect = "",
+    robot: Robot = "",
+    runs: Runs = Path("runs"),
+    as_json: AsJson = False,
+) -> None:
+    """Take a skill, or a whole project, out of the catalogue.
+
+    A mission that runs does without the skill from its next decision on; without the project it goes on with
+    what it has. The history keeps what was. Exit code 1: refused, because what is left has mistakes.
+    """
+
+    async def ask(client: AosClient) -> BundleReport:
+        request = RemoveDocuments(project, skill)
+        key = client.keys.remove_bundle
+        return await client.bus.ask(key, request, BundleReport, timeout_s=PUSH_TIMEOUT_S)
+
+    report = _with_client(connect, robot, runs, ask)
+    if as_json:
+        print_json(report)
+    else:
+        print_diagnostics(report.diagnostics)
+        typer.echo(_sentence(report, f"{project} {skill}".strip()))
+    if not report.is_accepted:
+        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 
 
 def _with_client(connect: str, robot: str, runs: Path, ask: Callable[[AosClient], Awaitable[T]]) -> T:
@@ -159,10 +222,14 @@ def _running(directory: RunDirectory) -> RunDirectory:
     return directory
 
 
-def _sentence(report: BundleReport, path: Path) -> str:
+def _time(stamp_ns: int) -> str:
+    return datetime.fromtimestamp(stamp_ns / 1e9, UTC).isoformat(timespec="seconds")
+
+
+def _sentence(report: BundleReport, what: Path | str) -> str:
     if not report.is_accepted:
         still = f"; the project stays at revision {report.revision}" if report.revision else ""
-        return f"{path}: refused{still}"
-    changes = {"added": report.added, "changed": report.changed}
+        return f"{what}: refused{still}"
+    changes = {"added": report.added, "changed": report.changed, "removed": report.removed}
     new = [f"{verb} {', '.join(names)}" for verb, names in changes.items() if names]
-    return f"{path}: project {report.project}, revision {report.revision}, {'; '.join(new) or 'nothing new'}"
+    return f"{what}: project {report.project}, revision {report.revision}, {'; '.join(new) or 'nothing new'}"

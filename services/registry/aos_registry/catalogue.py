@@ -16,7 +16,7 @@ from typing import Self
 import msgspec
 
 from aos_protocol.errors import StorageError
-from aos_protocol.messages import CatalogueEntry
+from aos_protocol.messages import CatalogueEntry, RevisionEntry
 
 __all__ = ["Catalogue", "Revision"]
 
@@ -113,12 +113,21 @@ class Catalogue:
             self._db.execute("INSERT INTO file VALUES (?, ?, ?, ?)", (project, number, name, content))
         return number
 
+    def remove(self, project: str, stored_ns: int) -> int:
+        """Gives a project up: its next revision, whose number is returned, has no files."""
+        return self.store(project, "", {}, (), stored_ns)
+
     def current(self, project: str) -> Revision | None:
-        """The newest revision of a project; None where there is none."""
+        """The newest revision of a project; None where there is none, or where it was removed."""
+        row = self._db.execute("SELECT max(number) FROM revision WHERE project = ?", (project,)).fetchone()
+        return self.revision(project, int(row[0] or 0))
+
+    def revision(self, project: str, number: int) -> Revision | None:
+        """A revision with its files; None where there is none, or where the project was removed by it."""
         row = self._db.execute(
-            "SELECT number, digest FROM revision WHERE project = ? ORDER BY number DESC LIMIT 1", (project,)
+            "SELECT number, digest FROM revision WHERE project = ? AND number = ?", (project, number)
         ).fetchone()
-        if row is None:
+        if row is None or not row[1]:
             return None
         files = self._db.execute(
             "SELECT name, data FROM file JOIN content ON content = digest WHERE project = ? AND number = ?",
@@ -126,8 +135,37 @@ class Catalogue:
         )
         return Revision(project, row[0], row[1], dict(files.fetchall()))
 
+    def history(self, project: str) -> tuple[RevisionEntry, ...]:
+        """All revisions of a project, the oldest first."""
+        entries = []
+        before: dict[str, str] = {}
+        for number, digest, stored_ns, skills in self._db.execute(
+            "SELECT number, digest, stored_ns, skills FROM revision WHERE project = ? ORDER BY number",
+            (project,),
+        ).fetchall():
+            files: dict[str, str] = dict(
+                self._db.execute(
+                    "SELECT name, content FROM file WHERE project = ? AND number = ?", (project, number)
+                ).fetchall()
+            )
+            entries.append(
+                RevisionEntry(
+                    number,
+                    digest,
+                    stored_ns,
+                    tuple(json.loads(skills)),
+                    added=tuple(sorted(files.keys() - before.keys())),
+                    changed=tuple(
+                        sorted(name for name in files if before.get(name, files[name]) != files[name])
+                    ),
+                    removed=tuple(sorted(before.keys() - files.keys())),
+                )
+            )
+            before = files
+        return tuple(entries)
+
     def entries(self) -> tuple[CatalogueEntry, ...]:
-        """The newest revision of each project, by name."""
+        """The newest revision of each project that was not removed, by name."""
         rows = self._db.execute(
             "SELECT project, max(number), digest, stored_ns, skills FROM revision "
             "GROUP BY project ORDER BY project"
@@ -135,4 +173,5 @@ class Catalogue:
         return tuple(
             CatalogueEntry(project, number, digest, stored_ns, tuple(json.loads(skills)))
             for project, number, digest, stored_ns, skills in rows
+            if digest
         )

@@ -7,12 +7,12 @@ from collections.abc import Awaitable, Callable, Mapping
 from aos_protocol.codec import encode
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
-from aos_protocol.errors import BusError
+from aos_protocol.errors import BusError, DocumentError
 from aos_protocol.messages import BundleReport, ProjectRevision
 from aos_registry.catalogue import Catalogue
 from aos_registry.documents.document import DocumentKind
 from aos_registry.documents.source import Findings, did_you_mean, quoted
-from aos_registry.load import load_files, with_excerpts
+from aos_registry.load import LoadedBundle, load_files, with_excerpts
 from aos_registry.merge import changed_skills, merge, pushed_project
 from aos_registry.reading import read_documents
 from aos_runtime.clock import Clock
@@ -66,12 +66,59 @@ class Intake:
             return BundleReport(project, False, number, (*diagnostics, too_large), source=source), False
         before = self.revisions.get(project)
         added, changed = changed_skills(before.project if before else None, loaded.project)
-        names = tuple(skill.name for skill in loaded.project.skills)
-        documents = {name: merged.files[name] for name in loaded.files}
-        number = self._catalogue.store(project, loaded.digest, documents, names, self._clock.now_ns())
-        self.revisions[project] = ProjectRevision(number, loaded.digest, loaded.project)
+        number = self._stored(project, loaded, merged.files)
         report = BundleReport(project, True, number, diagnostics, added, changed, source)
         return report, True
+
+    async def remove(self, project: str, skill: str) -> tuple[BundleReport, bool]:
+        """What became of giving up a skill, or with none named the project; whether there is a new revision.
+
+        As for a push, what is left has to pass the checks, else nothing changes.
+        """
+        current = self._catalogue.current(project)
+        known = self.revisions.get(project)
+        if current is None:
+            hint = did_you_mean(project, self.revisions) or f"It holds {quoted(sorted(self.revisions))}"
+            raise DocumentError(f"the catalogue holds no project {project}", code="AOS110", hint=hint)
+        names = [each.name for each in known.project.skills] if known is not None else []
+        if not skill:
+            number = self._catalogue.remove(project, self._clock.now_ns())
+            self.revisions.pop(project, None)
+            return BundleReport(project, True, number, removed=tuple(names)), False
+        if known is None or skill not in names:
+            hint = did_you_mean(skill, names) or f"It has {quoted(names)}"
+            raise DocumentError(f"{project} has no skill {skill}", code="AOS110", hint=hint)
+        gone = next(each for each in known.project.skills if each.name == skill)
+        homes = {gone.model.span.file, gone.mapping.span.file}
+        files = {name: data for name, data in current.files.items() if name not in homes}
+        loaded = load_files(files, name=project)
+        diagnostics = loaded.diagnostics
+        if loaded.project is not None:
+            diagnostics += with_excerpts(await self._check_model(loaded.project), files)
+        if loaded.project is None or has_errors(diagnostics):
+            return BundleReport(project, False, current.number, diagnostics), False
+        number = self._stored(project, loaded, files)
+        return BundleReport(project, True, number, diagnostics, removed=(skill,)), True
+
+    def past(self, project: str, number: int) -> ProjectRevision:
+        """A revision as it was stored; DocumentError where there is none that passes the checks."""
+        stored = self._catalogue.revision(project, number)
+        loaded = load_files(stored.files, name=project) if stored is not None else None
+        if loaded is None or loaded.project is None:
+            message = f"the catalogue holds no usable revision {number} of {project}"
+            hint = "`aos bundle history` lists them"
+            found = loaded.diagnostics if loaded is not None else ()
+            raise DocumentError(message, code="AOS110", hint=hint, diagnostics=found)
+        return ProjectRevision(number, loaded.digest, loaded.project)
+
+    def _stored(self, project: str, loaded: LoadedBundle, files: Mapping[str, bytes]) -> int:
+        """Stores a checked project as its next revision, whose number is returned."""
+        assert loaded.project is not None
+        names = tuple(skill.name for skill in loaded.project.skills)
+        documents = {name: files[name] for name in loaded.files}
+        number = self._catalogue.store(project, loaded.digest, documents, names, self._clock.now_ns())
+        self.revisions[project] = ProjectRevision(number, loaded.digest, loaded.project)
+        return number
 
     def _unknown_project(self, project: str, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
         """The error for documents that extend a project which is not there; a misspelt name, most likely."""

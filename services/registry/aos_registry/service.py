@@ -17,6 +17,9 @@ from aos_protocol.messages import (
     ProjectQuery,
     ProjectRevision,
     PushBundle,
+    RemoveDocuments,
+    Revisions,
+    RevisionsQuery,
 )
 from aos_protocol.messages import Catalogue as CatalogueAnswer
 from aos_registry.catalogue import Catalogue
@@ -60,6 +63,8 @@ class _Registry:
             _log_diagnostics(report)
         folder = _made(Path(self._settings.watch or Path(self._settings.run_dir) / "drop"))
         await self._bus.answer(self._keys.push_bundle, PushBundle, self._answer_push)
+        await self._bus.answer(self._keys.remove_bundle, RemoveDocuments, self._answer_remove)
+        await self._bus.answer(self._keys.bundle_history, RevisionsQuery, self._answer_history)
         await self._bus.answer(self._keys.project, ProjectQuery, self._answer_project)
         await self._bus.answer(self._keys.catalogue, CatalogueQuery, self._answer_catalogue)
         await self._service.ready()
@@ -70,20 +75,40 @@ class _Registry:
     async def _answer_push(self, bundle: PushBundle, _: str) -> BundleReport:
         return await self._push(bundle.files, bundle.source)
 
+    async def _answer_remove(self, request: RemoveDocuments, _: str) -> BundleReport:
+        async with self._turn:
+            report, is_new = await self._intake.remove(request.project, request.skill)
+            if is_new:
+                self._bus.tell(self._keys.announced, self._intake.revisions[report.project])
+        self._tell_report(report)
+        return report
+
     async def _answer_project(self, query: ProjectQuery, _: str) -> ProjectRevision:
+        project = self._named(query.project)
+        current = self._intake.revisions[project]
+        return self._intake.past(project, query.revision) if query.revision else current
+
+    async def _answer_history(self, query: RevisionsQuery, _: str) -> Revisions:
+        entries = self._catalogue.history(query.project)
+        if not entries:  # A removed project still has a history, by its name.
+            entries = self._catalogue.history(self._named(query.project))
+        return Revisions(query.project or self._named(""), entries)
+
+    def _named(self, project: str) -> str:
+        """The project of that name, or the only one there is; DocumentError says which there are."""
         revisions = self._intake.revisions
-        if query.project in revisions:
-            return revisions[query.project]
-        if not query.project and len(revisions) == 1:
-            return next(iter(revisions.values()))
+        if project in revisions:
+            return project
+        if not project and len(revisions) == 1:
+            return next(iter(revisions))
         if not revisions:
             raise DocumentError("the catalogue is empty", code="AOS110", hint="Push a bundle")
         names = quoted(sorted(revisions))
-        if not query.project:
+        if not project:
             message = f"the catalogue holds {len(revisions)} projects"
             raise DocumentError(message, code="AOS110", hint=f"Name one of {names}")
-        hint = did_you_mean(query.project, revisions) or f"It holds {names}"
-        raise DocumentError(f"the catalogue holds no project {query.project}", code="AOS110", hint=hint)
+        hint = did_you_mean(project, revisions) or f"It holds {names}"
+        raise DocumentError(f"the catalogue holds no project {project}", code="AOS110", hint=hint)
 
     async def _answer_catalogue(self, _: CatalogueQuery, __: str) -> CatalogueAnswer:
         return CatalogueAnswer(self._catalogue.entries())
@@ -96,23 +121,27 @@ class _Registry:
         if not files and not has_errors(remarks):
             return
         if has_errors(remarks):
-            report = BundleReport("", False, 0, tuple(remarks), source=str(path))
+            self._tell_report(BundleReport("", False, 0, tuple(remarks), source=str(path)))
         else:
             try:
-                report = await self._push(files, path.name)
+                await self._push(files, path.name)
             except AosError as error:
                 diagnostic = Diagnostic(
                     Severity.ERROR, error.code, error.message, Span(path.name), error.hint
                 )
-                report = BundleReport("", False, 0, (diagnostic,), source=path.name)
+                self._tell_report(BundleReport("", False, 0, (diagnostic,), source=path.name))
+
+    def _tell_report(self, report: BundleReport) -> None:
+        """Whoever follows the registry hears of everything that was pushed, dropped or removed."""
         self._bus.tell(self._keys.bundle_report, report)
+        _log_report(report)
 
     async def _push(self, files: dict[str, bytes], source: str) -> BundleReport:
         async with self._turn:
             report, is_new = await self._intake.push(files, source)
             if is_new:
                 self._bus.tell(self._keys.announced, self._intake.revisions[report.project])
-        _log_report(report)
+        self._tell_report(report)
         return report
 
     async def _check_model(self, project: Project) -> tuple[Diagnostic, ...]:
@@ -146,7 +175,8 @@ def _log_report(report: BundleReport) -> None:
     if not report.is_accepted:
         _log.warning("a bundle of project %s is refused (%s)", report.project or "?", report.source)
     else:
-        new = ", ".join((*report.added, *report.changed)) or "nothing new"
+        removed = [f"{name} removed" for name in report.removed]
+        new = ", ".join((*report.added, *report.changed, *removed)) or "nothing new"
         _log.info("project %s, revision %d: %s", report.project, report.revision, new)
     _log_diagnostics(report)
 
