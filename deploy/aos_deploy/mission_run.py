@@ -49,6 +49,7 @@ class MissionRun:
         self._supervisor: Supervisor | None = None
         self._state: MissionState | None = None
         self._steps: dict[int, DecisionRecord] = {}
+        self._own_pushes: set[str] = set()
         self._services_ready_s: float | None = None
         self._first_decision_s: float | None = None
 
@@ -129,6 +130,7 @@ class MissionRun:
     async def _push(self, supervisor: Supervisor, bundle: Path) -> None:
         """Brings a bundle into the registry; DocumentError with all diagnostics if it is refused."""
         files = await asyncio.to_thread(_files_of_bundle, bundle, self._deployment.file.leave_out)
+        self._own_pushes.add(str(bundle))
         report = await supervisor.bus.ask(
             supervisor.keys.push_bundle,
             PushBundle(files, str(bundle)),
@@ -149,6 +151,10 @@ class MissionRun:
     async def _follow(self, supervisor: Supervisor) -> None:
         client = AosClient(supervisor.bus, self._deployment.file.robot)
         async for event in client.follow():
+            if isinstance(event, BundleReport) and event.source in self._own_pushes:
+                # Told already, with the way to the files; another push of the same is news.
+                self._own_pushes.remove(event.source)
+                continue
             self._take(event)
             self._report(event)
 

@@ -2,8 +2,8 @@
 
     aos/<robot>/live/<service>      token   the service is ready
     aos/<robot>/bundle/push         query   a bundle for the registry              PushBundle -> BundleReport
-    aos/<robot>/bundle/remove       query   a skill or a project to be given up RemoveDocuments -> BundleReport
-    aos/<robot>/bundle/history      query   all revisions of a project               RevisionsQuery -> Revisions
+    aos/<robot>/bundle/remove       query   a skill or project to give up     RemoveDocuments -> BundleReport
+    aos/<robot>/bundle/history      query   all revisions of a project            RevisionsQuery -> Revisions
     aos/<robot>/bundle/project      query   the documents of a project        ProjectQuery -> ProjectRevision
     aos/<robot>/bundle/list         query   what the catalogue holds              CatalogueQuery -> Catalogue
     aos/<robot>/bundle/announced    stream  a new project revision                            ProjectRevision

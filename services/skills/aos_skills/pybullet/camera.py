@@ -58,7 +58,7 @@ class Camera:
         close_eye = (hand[0] + CLOSE_EYE_M[0], hand[1] + CLOSE_EYE_M[1], hand[2] + CLOSE_EYE_M[2])
         picture = self._seen(EYE_M, LOOKS_AT_M, PICTURE_SIZE)
         close_up = ImageOps.expand(self._seen(close_eye, hand, CLOSE_UP_SIZE), BORDER_PX, "white")
-        picture.paste(close_up, (PICTURE_SIZE[0] - close_up.width, 0))
+        picture.paste(close_up, (0, 0))
         return picture
 
     def _seen(self, eye: Vector, target: Vector, size: tuple[int, int]) -> Image.Image:
