@@ -28,6 +28,7 @@ from aos_protocol.messages import (
     ProjectQuery,
     ProjectRevision,
     PushBundle,
+    RemoveDocuments,
 )
 from aos_registry.load import read_bundle_files
 from aos_registry.settings import Settings
@@ -196,6 +197,26 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
             assert (report.is_accepted, report.revision) == (False, 1)
             assert {d.code for d in report.diagnostics if d.is_error} == {"AOS105", "AOS108"}
             break
+
+
+async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Keys, bundles: Path) -> None:
+    async with asyncio.timeout(TIMEOUT_S), bus.listen(keys.bundle_report, BundleReport) as reports:
+        shutil.make_archive(str(registry / "drop" / "armadillo"), "zip", bundles / "armadillo-finer")
+        async for _, report in reports:
+            assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo.zip")
+            break
+
+
+async def test_every_push_and_removal_is_told_on_the_bus(
+    registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    async with asyncio.timeout(TIMEOUT_S), other.listen(keys.bundle_report, BundleReport) as reports:
+        pushed = await push(bus, keys, finer)
+        request = RemoveDocuments("armadillo", "observe_holding")
+        removed = await bus.ask(keys.remove_bundle, request, BundleReport, timeout_s=TIMEOUT_S)
+        assert removed.removed == ("observe_holding",)
+        told = [(await anext(aiter(reports)))[1] for _ in range(2)]
+    assert told == [pushed, removed]
 
 
 async def test_the_catalogue_survives_a_restart(

@@ -37,7 +37,10 @@ class Stage(StrEnum):
 
 
 Folder = Annotated[
-    Path, typer.Argument(metavar="DIR", help="A directory with .ef, .sd, .am or .json documents")
+    Path,
+    typer.Argument(
+        metavar="BUNDLE", help="A directory with .ef, .sd, .am or .json documents, or an archive of one"
+    ),
 ]
 
 

@@ -13,6 +13,7 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
+from aos_registry.archive import is_archive_name, read_archive
 from aos_registry.assembly import assemble
 from aos_registry.check import check
 from aos_registry.documents.source import Findings, open_source
@@ -35,7 +36,7 @@ class LoadedBundle(msgspec.Struct, frozen=True):
 
 
 def load_bundle(path: Path) -> LoadedBundle:
-    """The bundle in a directory. Folders inside it and hidden files are not part of it."""
+    """The bundle in a directory or an archive. Folders in a directory and hidden files are not part of it."""
     files, remarks = read_bundle_files(path)
     return load_files(files, name=path.name or str(path), remarks=remarks)
 
@@ -81,14 +82,16 @@ def with_excerpts(diagnostics: Iterable[Diagnostic], files: Mapping[str, bytes])
 
 
 def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
-    """The files of a directory, and a remark for each thing in it that is left out."""
+    """The files of a directory or an archive, and a remark for each thing in it that is left out."""
+    if is_archive_name(path.name) and path.is_file():
+        return read_archive(path)
     files: dict[str, bytes] = {}
     remarks: list[Diagnostic] = []
     try:
         entries = sorted(path.iterdir())
     except OSError as error:
         reason = error.strerror or "cannot be read"
-        hint = "A bundle is a directory with .ef, .sd, .am or .json files"
+        hint = "A bundle is a directory with .ef, .sd, .am or .json files, or an archive of one"
         return {}, [Diagnostic(Severity.ERROR, "AOS101", reason, Span(str(path)), hint)]
     total = 0
     for entry in entries:

@@ -1,0 +1,146 @@
+"""Bundles in archives: tar, also compressed, and zip, read within limits and without touching the disk."""
+
+from __future__ import annotations
+
+import lzma
+import tarfile
+import zipfile
+import zlib
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path, PurePosixPath
+from stat import S_ISDIR, S_ISREG
+from typing import IO
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_registry.reading import MAX_BUNDLE_BYTES, MAX_BUNDLE_FILES, is_document_name
+
+__all__ = ["ARCHIVE_SUFFIXES", "is_archive_name", "read_archive"]
+
+ARCHIVE_SUFFIXES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip")
+
+_UNREADABLE = (
+    OSError,
+    EOFError,
+    LookupError,
+    NotImplementedError,
+    RuntimeError,  # An encrypted zip file.
+    ValueError,
+    lzma.LZMAError,
+    tarfile.TarError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What the readers of archives raise at broken ones."""
+
+
+class _Entry(msgspec.Struct, frozen=True):
+    """One thing in an archive, before it is read. `kind` is `file`, `folder`, or what is refused."""
+
+    name: str
+    kind: str
+    size_bytes: int
+
+
+class _RefusedError(Exception):
+    """The archive cannot be taken; the diagnostic says why."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+def is_archive_name(name: str) -> bool:
+    """Whether a file of this name is taken for an archive; hidden files are not."""
+    return not name.startswith(".") and name.lower().endswith(ARCHIVE_SUFFIXES)
+
+
+def read_archive(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
+    """The documents in an archive by plain file name, and remarks on what is left out.
+
+    They lie side by side, at the top or in one folder. With an error in the diagnostics there are no files:
+    links, devices, ways out of the archive, and more files or bytes than a bundle may have.
+    """
+    files: dict[PurePosixPath, bytes] = {}
+    remarks: list[Diagnostic] = []
+    try:
+        entries = _in_zip(path) if path.suffix.lower() == ".zip" else _in_tar(path)
+        for number, (entry, content) in enumerate(entries, 1):
+            _check(entry, number, path)
+            name = PurePosixPath(entry.name)
+            if entry.kind == "folder" or any(part.startswith(".") for part in name.parts):
+                continue
+            if not is_document_name(name.name):
+                hint = "It is left out; documents end in .ef, .sd, .am or .json"
+                remarks.append(_remark("this is not an AOS document", entry.name, hint))
+                continue
+            data = content.read(MAX_BUNDLE_BYTES + 1)
+            if sum(map(len, files.values())) + len(data) > MAX_BUNDLE_BYTES:
+                raise _RefusedError(_error(f"more than {MAX_BUNDLE_BYTES} bytes of documents", path.name))
+            files[name] = data
+        return _in_one_folder(files, path), remarks
+    except _RefusedError as refused:
+        return {}, [refused.diagnostic]
+    except _UNREADABLE as error:
+        reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+        message = f"the archive cannot be read: {reason}"
+        hint = f"A bundle is a directory, or an archive in {', '.join(ARCHIVE_SUFFIXES)}"
+        return {}, [Diagnostic(Severity.ERROR, "AOS101", message, Span(path.name), hint)]
+
+
+def _in_tar(path: Path) -> Iterator[tuple[_Entry, IO[bytes]]]:
+    """As a stream, so that nothing is unpacked before it was looked at."""
+    with tarfile.open(path, "r|*") as archive:
+        for member in archive:
+            kind = "file" if member.isreg() else "folder" if member.isdir() else _tar_kind(member)
+            content = archive.extractfile(member) if kind == "file" else None
+            yield _Entry(member.name, kind, member.size), content or BytesIO()
+
+
+def _tar_kind(member: tarfile.TarInfo) -> str:
+    return "link" if member.issym() or member.islnk() else "device"
+
+
+def _in_zip(path: Path) -> Iterator[tuple[_Entry, IO[bytes]]]:
+    with zipfile.ZipFile(path) as archive:
+        for member in archive.infolist():
+            mode = member.external_attr >> 16
+            is_plain = mode == 0 or S_ISREG(mode) or S_ISDIR(mode) or mode < 0o10000
+            kind = ("folder" if member.is_dir() else "file") if is_plain else "link"
+            entry = _Entry(member.filename, kind, member.file_size)
+            if kind == "file":
+                with archive.open(member) as content:
+                    yield entry, content
+            else:
+                yield entry, BytesIO()
+
+
+def _check(entry: _Entry, number: int, path: Path) -> None:
+    name = PurePosixPath(entry.name)
+    if name.is_absolute() or ".." in name.parts or "\\" in entry.name or "\0" in entry.name:
+        raise _RefusedError(_error(f"the entry {entry.name!r} leads out of the archive", path.name))
+    if entry.kind not in ("file", "folder"):
+        message = f"the entry {entry.name!r} is a {entry.kind}"
+        raise _RefusedError(_error(message, path.name, "Pack plain files"))
+    if number > MAX_BUNDLE_FILES:
+        raise _RefusedError(_error(f"more than {MAX_BUNDLE_FILES} entries", path.name))
+    if entry.size_bytes > MAX_BUNDLE_BYTES:
+        raise _RefusedError(_error(f"the entry {entry.name!r} has {entry.size_bytes} bytes", path.name))
+
+
+def _in_one_folder(files: dict[PurePosixPath, bytes], path: Path) -> dict[str, bytes]:
+    folders = sorted({str(name.parent) for name in files})
+    if len(folders) > 1:
+        message = f"documents in several folders: {', '.join(folders)}"
+        raise _RefusedError(_error(message, path.name, "Pack one bundle, its files side by side"))
+    return {name.name: data for name, data in files.items()}
+
+
+def _error(message: str, archive: str, hint: str = "") -> Diagnostic:
+    return Diagnostic(Severity.ERROR, "AOS120", message, Span(archive), hint)
+
+
+def _remark(message: str, name: str, hint: str) -> Diagnostic:
+    return Diagnostic(Severity.REMARK, "AOS107", message, Span(name), hint)
