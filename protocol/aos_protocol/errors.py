@@ -61,6 +61,7 @@ CODES: dict[str, str] = {
     "AOS126": "a name that cannot be used",
     "AOS127": "a tolerated spelling",
     "AOS128": "a constant is written",
+    "AOS129": "a version that is not higher",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",

@@ -51,7 +51,7 @@ def _may_be_bundle(path: Path) -> bool:
 
 
 def _bundle_of(folder: Path, path: Path) -> Path | None:
-    """The sub-folder or archive that a changed path belongs to; None for hidden things and `folder` itself."""
+    """The sub-folder or archive that a changed path belongs to; None for hidden things and the folder."""
     parts = path.relative_to(folder).parts
     if not parts or any(part.startswith(".") for part in parts):
         return None
