@@ -116,20 +116,24 @@ class _Registry:
     # --- intake ----------------------------------------------------------------------------------------
 
     async def _take_dropped(self, path: Path) -> None:
-        """Takes a dropped folder; whatever becomes of it is told on the bus."""
-        files, remarks = read_bundle_files(path)
-        if not files and not has_errors(remarks):
-            return
-        if has_errors(remarks):
-            self._tell_report(BundleReport("", False, 0, tuple(remarks), source=str(path)))
-        else:
-            try:
+        """Takes a dropped folder or archive; whatever becomes of it is told on the bus."""
+        try:
+            files, remarks = read_bundle_files(path)
+            if has_errors(remarks):
+                self._tell_report(BundleReport("", False, 0, tuple(remarks), source=path.name))
+            elif files:
                 await self._push(files, path.name)
-            except AosError as error:
-                diagnostic = Diagnostic(
-                    Severity.ERROR, error.code, error.message, Span(path.name), error.hint
-                )
-                self._tell_report(BundleReport("", False, 0, (diagnostic,), source=path.name))
+        except AosError as error:
+            self._refuse_dropped(path, error.code, error.message, error.hint)
+        except Exception as error:  # No bundle may take the registry down, whatever reading it runs into.
+            _log.exception("the dropped bundle %s could not be taken", path.name)
+            self._refuse_dropped(
+                path, "AOS606", f"it could not be taken: {error!r}", "See the registry's log"
+            )
+
+    def _refuse_dropped(self, path: Path, code: str, message: str, hint: str) -> None:
+        diagnostic = Diagnostic(Severity.ERROR, code, message, Span(path.name), hint)
+        self._tell_report(BundleReport("", False, 0, (diagnostic,), source=path.name))
 
     def _tell_report(self, report: BundleReport) -> None:
         """Whoever follows the registry hears of everything that was pushed, dropped or removed."""
