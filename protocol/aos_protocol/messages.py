@@ -113,7 +113,10 @@ class RevisionsQuery(Message, frozen=True):
 
 
 class RevisionEntry(Message, frozen=True):
-    """One revision. The names of files tell it from the one before; a removed project has no skills."""
+    """One revision. The names of files tell it from the one before; a removed project has no skills.
+
+    `versions` gives the version of each file that declares one.
+    """
 
     revision: int
     digest: str
@@ -122,6 +125,7 @@ class RevisionEntry(Message, frozen=True):
     added: tuple[str, ...]
     changed: tuple[str, ...]
     removed: tuple[str, ...]
+    versions: dict[str, str] = {}
 
 
 class Revisions(Message, frozen=True):

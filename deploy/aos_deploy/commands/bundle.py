@@ -70,6 +70,8 @@ def push(
 ) -> None:
     """Send a bundle to the registry: a new project, new skills, or better documents of old ones.
 
+    A changed document that replaces one with a declared version needs a higher one.
+
     Exit code 0: accepted, or nothing new. 1: refused; nothing has changed then.
     """
     files, remarks = read_bundle_files(path)
@@ -163,7 +165,7 @@ def history(
         typer.echo(f"{found.project}  revision {entry.revision}  {state}  {_time(entry.stored_ns)}")
         for sign, names in (("+", entry.added), ("~", entry.changed), ("-", entry.removed)):
             if names:
-                typer.echo(f"  {sign} {', '.join(names)}")
+                typer.echo(f"  {sign} {', '.join(_with_version(name, entry.versions) for name in names)}")
 
 
 @bundle_app.command("rm", epilog="Example: aos bundle rm armadillo observe_holding")
@@ -192,6 +194,8 @@ def remove(
     else:
         print_diagnostics(report.diagnostics)
         typer.echo(_sentence(report, f"{project} {skill}".strip()))
+        if report.is_accepted and not skill:
+            typer.echo("A mission that runs goes on with the documents it has.")
     if not report.is_accepted:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 
@@ -220,6 +224,10 @@ def _running(directory: RunDirectory) -> RunDirectory:
         hint = "Start a system with aos-up, or name a running one with --connect"
         raise DeployError(f"the last run, {directory.path.name}, is over", code="AOS605", hint=hint)
     return directory
+
+
+def _with_version(name: str, versions: dict[str, str]) -> str:
+    return f"{name} ({versions[name]})" if name in versions else name
 
 
 def _time(stamp_ns: int) -> str:

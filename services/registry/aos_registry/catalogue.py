@@ -20,7 +20,7 @@ from aos_protocol.messages import CatalogueEntry, RevisionEntry
 
 __all__ = ["Catalogue", "Revision"]
 
-_SCHEMA_VERSION = 1
+_SCHEMA_VERSION = 2
 _BUSY_TIMEOUT_S = 5.0
 _SCHEMA = """
 CREATE TABLE content (digest TEXT PRIMARY KEY, data BLOB NOT NULL) STRICT;
@@ -37,9 +37,11 @@ CREATE TABLE file (
     number INTEGER NOT NULL,
     name TEXT NOT NULL,
     content TEXT NOT NULL REFERENCES content (digest),
+    version TEXT NOT NULL DEFAULT '',
     PRIMARY KEY (project, number, name)
 ) STRICT;
 """
+_FROM_SCHEMA_1 = "ALTER TABLE file ADD COLUMN version TEXT NOT NULL DEFAULT '';"
 
 
 class Revision(msgspec.Struct, frozen=True):
@@ -66,11 +68,12 @@ class Catalogue:
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute("PRAGMA synchronous = FULL")
             version = connection.execute("PRAGMA user_version").fetchone()[0]
-            if version == 0:
-                connection.executescript(f"BEGIN; {_SCHEMA} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
+            if version in (0, 1):
+                change = _SCHEMA if version == 0 else _FROM_SCHEMA_1
+                connection.executescript(f"BEGIN; {change} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
         except (OSError, sqlite3.Error) as error:
             raise StorageError(f"the catalogue {path} cannot be opened: {error}", code="AOS702") from error
-        if version not in (0, _SCHEMA_VERSION):
+        if version not in (0, 1, _SCHEMA_VERSION):
             connection.close()
             raise StorageError(
                 f"the catalogue {path} has schema {version}, this program knows {_SCHEMA_VERSION}",
@@ -83,13 +86,22 @@ class Catalogue:
         self._db.close()
 
     def store(
-        self, project: str, digest: str, files: Mapping[str, bytes], skills: tuple[str, ...], stored_ns: int
+        self,
+        project: str,
+        digest: str,
+        files: Mapping[str, bytes],
+        skills: tuple[str, ...],
+        stored_ns: int,
+        versions: Mapping[str, str] | None = None,
     ) -> int:
-        """Makes the files the project's next revision and returns its number, from 1."""
+        """Makes the files the project's next revision and returns its number, from 1.
+
+        `versions` gives the declared version of each file that declares one.
+        """
         try:
             self._db.execute("BEGIN IMMEDIATE")
             try:
-                number = self._write(project, digest, files, skills, stored_ns)
+                number = self._write(project, digest, files, skills, stored_ns, versions or {})
             except BaseException:
                 self._db.execute("ROLLBACK")
                 raise
@@ -99,7 +111,13 @@ class Catalogue:
         return number
 
     def _write(
-        self, project: str, digest: str, files: Mapping[str, bytes], skills: tuple[str, ...], stored_ns: int
+        self,
+        project: str,
+        digest: str,
+        files: Mapping[str, bytes],
+        skills: tuple[str, ...],
+        stored_ns: int,
+        versions: Mapping[str, str],
     ) -> int:
         row = self._db.execute("SELECT max(number) FROM revision WHERE project = ?", (project,)).fetchone()
         number = int(row[0] or 0) + 1
@@ -110,7 +128,8 @@ class Catalogue:
         for name, data in files.items():
             content = hashlib.sha256(data).hexdigest()
             self._db.execute("INSERT OR IGNORE INTO content VALUES (?, ?)", (content, data))
-            self._db.execute("INSERT INTO file VALUES (?, ?, ?, ?)", (project, number, name, content))
+            row_of_file = (project, number, name, content, versions.get(name, ""))
+            self._db.execute("INSERT INTO file VALUES (?, ?, ?, ?, ?)", row_of_file)
         return number
 
     def remove(self, project: str, stored_ns: int) -> int:
@@ -143,11 +162,10 @@ class Catalogue:
             "SELECT number, digest, stored_ns, skills FROM revision WHERE project = ? ORDER BY number",
             (project,),
         ).fetchall():
-            files: dict[str, str] = dict(
-                self._db.execute(
-                    "SELECT name, content FROM file WHERE project = ? AND number = ?", (project, number)
-                ).fetchall()
-            )
+            rows = self._db.execute(
+                "SELECT name, content, version FROM file WHERE project = ? AND number = ?", (project, number)
+            ).fetchall()
+            files: dict[str, str] = {name: content for name, content, _ in rows}
             entries.append(
                 RevisionEntry(
                     number,
@@ -159,6 +177,7 @@ class Catalogue:
                         sorted(name for name in files if before.get(name, files[name]) != files[name])
                     ),
                     removed=tuple(sorted(before.keys() - files.keys())),
+                    versions={name: version for name, _, version in sorted(rows) if version},
                 )
             )
             before = files

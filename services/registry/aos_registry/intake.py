@@ -116,7 +116,9 @@ class Intake:
         assert loaded.project is not None
         names = tuple(skill.name for skill in loaded.project.skills)
         documents = {name: files[name] for name in loaded.files}
-        number = self._catalogue.store(project, loaded.digest, documents, names, self._clock.now_ns())
+        number = self._catalogue.store(
+            project, loaded.digest, documents, names, self._clock.now_ns(), loaded.versions
+        )
         self.revisions[project] = ProjectRevision(number, loaded.digest, loaded.project)
         return number
 

@@ -23,12 +23,14 @@ __all__ = ["LoadedBundle", "bundle_digest", "load_bundle", "load_files", "read_b
 
 
 class LoadedBundle(msgspec.Struct, frozen=True):
-    """`project` is there when no diagnostic is an error. `files` gives the digest of each document's file."""
+    """`project` is there when no diagnostic is an error. `files` gives the digest of each document's file,
+    `versions` the version of each that declares one."""
 
     project: Project | None
     diagnostics: tuple[Diagnostic, ...]
     digest: str
     files: dict[str, str]
+    versions: dict[str, str] = {}
 
     @property
     def has_errors(self) -> bool:
@@ -57,7 +59,9 @@ def load_files(
     check(assembly, findings)
     project = None if findings.has_errors else assembly.project()
     digests = {file: hashlib.sha256(files[file]).hexdigest() for file in documents}
-    return LoadedBundle(project, (*remarks, *findings.sorted()), bundle_digest(files, documents), digests)
+    versions = {file: each.version.text for file, each in documents.items() if each.version is not None}
+    digest = bundle_digest(files, documents)
+    return LoadedBundle(project, (*remarks, *findings.sorted()), digest, digests, versions)
 
 
 def bundle_digest(files: Mapping[str, bytes], documents: Iterable[str]) -> str:

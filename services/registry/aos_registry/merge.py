@@ -10,6 +10,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Project
 from aos_registry.documents.document import Document, DocumentKind
 from aos_registry.documents.source import Findings
+from aos_registry.documents.version import is_higher
 from aos_registry.reading import is_document_name, read_documents
 
 __all__ = ["MergedFiles", "changed_skills", "merge", "pushed_project"]
@@ -44,9 +45,14 @@ def merge(current: Mapping[str, bytes], new: Mapping[str, bytes]) -> MergedFiles
         if name not in current_documents or current_documents[name].identity not in identities
     }
     taken = [name for name in new if name in kept and name in new_documents]
-    diagnostics = tuple(_name_taken(name, current_documents[name]) for name in sorted(taken))
+    diagnostics = [_name_taken(name, current_documents[name]) for name in sorted(taken)]
+    stored = {each.identity: (name, each) for name, each in current_documents.items()}
+    for name, document in new_documents.items():
+        old_name, old = stored.get(document.identity, ("", None))
+        if old is not None and _has_name(document) and current[old_name] != new[name]:
+            diagnostics += _not_higher(document, old)
     files = kept | {name: data for name, data in new.items() if is_document_name(name)}
-    return MergedFiles(files, diagnostics)
+    return MergedFiles(files, tuple(diagnostics))
 
 
 def changed_skills(before: Project | None, after: Project) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -62,6 +68,26 @@ def _has_name(document: Document) -> bool:
         DocumentKind.ENVIRONMENT,
         DocumentKind.LOW_LEVEL,
     )
+
+
+def _not_higher(new: Document, old: Document) -> list[Diagnostic]:
+    """The error for a changed document whose declared version does not say that it is newer.
+
+    Where the stored document declares none, its revisions are numbered by the catalogue, and a push counts
+    as newer.
+    """
+    if old.version is None or (new.version and is_higher(new.version.text, old.version.text)):
+        return []
+    title = f"the {new.kind.value} {new.name}"
+    stored = old.version.text
+    if new.version is None:
+        message, span = f"{title} declares no version, the stored one {stored}", new.span
+    else:
+        message, span = (
+            f"{title} has changed, and version {new.version.text} is not above {stored}",
+            new.version.span,
+        )
+    return [Diagnostic(Severity.ERROR, "AOS129", message, span, f"Declare a version above {stored}")]
 
 
 def _name_taken(name: str, document: Document) -> Diagnostic:

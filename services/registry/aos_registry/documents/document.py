@@ -46,6 +46,7 @@ class Document(msgspec.Struct, frozen=True):
     name: str
     span: Span
     content: Environment | SkillModel | AbstractionMapping | LowLevelDocument | None
+    version: Text | None = None
 
     @property
     def identity(self) -> tuple[DocumentKind, str]:

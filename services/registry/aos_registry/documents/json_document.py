@@ -10,6 +10,7 @@ from aos_registry.documents.json_record import Record
 from aos_registry.documents.json_skill import read_skill
 from aos_registry.documents.json_text import JsonObject, parse_json
 from aos_registry.documents.source import Findings, Source, Text, nearest
+from aos_registry.documents.version import read_version
 
 __all__ = ["read_json"]
 
@@ -85,6 +86,7 @@ def _read(record: Record, header_key: str, source: Source, findings: Findings) -
     kind_name = header.text("Type", required=True)
     name = header.text("Name")
     header.ignore("Version", "Comment")
+    version = read_version(header.text("Version") if header.is_text("Version") else None, findings)
     header.finish()
     if kind_name is None:
         return None
@@ -95,7 +97,8 @@ def _read(record: Record, header_key: str, source: Source, findings: Findings) -
         findings.error("AOS106", f"unknown kind of document {kind_name.text!r}", kind_name.span, hint)
         return None
     record.what = f"the {kind.value}"
-    document = _document(record, kind, project, name or _skill_name(header, kind, findings), findings)
+    name = name or _skill_name(header, kind, findings)
+    document = _document(record, kind, project, name, version, findings)
     record.ignore("Comment")
     record.finish()
     return document
@@ -109,7 +112,12 @@ def _skill_name(header: Record, kind: DocumentKind, findings: Findings) -> Text 
 
 
 def _document(
-    record: Record, kind: DocumentKind, project: Text | None, name: Text | None, findings: Findings
+    record: Record,
+    kind: DocumentKind,
+    project: Text | None,
+    name: Text | None,
+    version: Text | None,
+    findings: Findings,
 ) -> Document:
     project_name = project.text if project else ""
     is_skill = kind in (DocumentKind.SKILL, DocumentKind.MAPPING)
@@ -126,4 +134,4 @@ def _document(
             content = read_skill(record, project_name, title, span)
         case DocumentKind.MAPPING:
             content = read_mapping(record, project_name, title, span)
-    return Document(kind, project_name, title, span, content)
+    return Document(kind, project_name, title, span, content, version)

@@ -49,6 +49,10 @@ class Record:
         self._known[key] = None
         return key in self._members
 
+    def is_text(self, key: str) -> bool:
+        """Whether the key's value is a string."""
+        return isinstance(self._value(key), JsonString)
+
     def key_span(self, key: str) -> Span:
         """Where the key stands; the object where it does not."""
         member = self._members.get(key)

@@ -11,6 +11,7 @@ from aos_registry.documents.sdl_sections import GRAMMARS, Sections, places_of_wo
 from aos_registry.documents.sdl_skill import read_skill
 from aos_registry.documents.sdl_text import Section, parse_sdl
 from aos_registry.documents.source import Findings, Source, Text
+from aos_registry.documents.version import read_version
 
 __all__ = ["read_sdl"]
 
@@ -26,13 +27,17 @@ def read_sdl(source: Source, findings: Findings) -> Document:
     parsed = parse_sdl(source, GRAMMARS[suffix], places_of_words(suffix), findings)
     sections = Sections(parsed, span, findings)
     project = _project(parsed, sections, findings)
+    given = sections.last("version")
+    version = read_version(given.value if given is not None else None, findings)
     if kind is DocumentKind.ENVIRONMENT:
         content = read_environment(sections, project, span, findings)
-        return Document(kind, project, "environment", span, content)
+        return Document(kind, project, "environment", span, content, version)
     name = path.stem if check_name(Text(path.stem, span), "a skill", findings) else ""
     if kind is DocumentKind.SKILL:
-        return Document(kind, project, name, span, read_skill(sections, project, name, span, findings))
-    return Document(kind, project, name, span, read_mapping(sections, project, name, span, findings))
+        skill = read_skill(sections, project, name, span, findings)
+        return Document(kind, project, name, span, skill, version)
+    mapping = read_mapping(sections, project, name, span, findings)
+    return Document(kind, project, name, span, mapping, version)
 
 
 def _project(parsed: list[Section], sections: Sections, findings: Findings) -> str:

@@ -21,6 +21,7 @@ _VARIABLE_PARTS = {"code": _CPP, "ml_max_value": _LINE, "ml_ignore": _LINE}
 GRAMMARS: Mapping[str, Grammar] = {
     ".ef": {
         "project": _LINE,
+        "version": _LINE,
         "horizon": _LINE,
         "discount": _LINE,
         "define_type": Word(parts={"variable": _LINE, "enum_members": _LINE}),
@@ -33,6 +34,7 @@ GRAMMARS: Mapping[str, Grammar] = {
     },
     ".sd": {
         "project": _LINE,
+        "version": _LINE,
         "parameter": _LINE,
         "available_parameters_code": _CPP,
         "precondition": _CPP,
@@ -42,6 +44,7 @@ GRAMMARS: Mapping[str, Grammar] = {
     },
     ".am": {
         "project": _LINE,
+        "version": _LINE,
         "response": Word(parts={"response_rule": _PYTHON}),
         "response_local_variable": _LINE,
         "module_activation": Word(
@@ -69,7 +72,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         ),
     },
 }
-"""What AOS 2.0 writes; `max_duration` and `module_activation: skill` are ours."""
+"""What AOS 2.0 writes; `version`, `max_duration` and `module_activation: skill` are ours."""
 
 _KINDS = {".ef": "the environment file (.ef)", ".sd": "a skill document (.sd)", ".am": "a mapping (.am)"}
 

@@ -1,0 +1,85 @@
+"""`aos new`: documents to start from, that lint clean and can be planned with at once."""
+
+from __future__ import annotations
+
+import re
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import Annotated
+
+import typer
+
+from aos_protocol.errors import DocumentError
+from aos_registry.load import read_bundle_files
+from aos_registry.merge import pushed_project
+
+__all__ = ["register"]
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+
+new_app = typer.Typer(no_args_is_help=True, help="Write documents to start from.")
+
+
+def register(app: typer.Typer) -> None:
+    """Adds `aos new` to `aos`."""
+    app.add_typer(new_app, name="new")
+
+
+@new_app.command(epilog="Example: aos new project fetch")
+def project(
+    name: Annotated[str, typer.Argument(help="The project's name, in small letters")],
+    folder: Annotated[Path, typer.Option("--in", help="Where the bundle's directory is made")] = Path(),
+) -> None:
+    """Write a small project: an environment and two skills, one that senses and one that acts."""
+    _check_name(name, "project")
+    bundle = folder / name
+    texts = {file: text for file, text in _filled("project", project=name).items() if file != "project.ef"}
+    texts[f"{name}.ef"] = _filled("project", project=name)["project.ef"]
+    _write(bundle, texts)
+    typer.echo(f"Look at it:  aos plan {bundle}\nPlay it:     aos simulate {bundle} --runs 20")
+    typer.echo(f"Add a skill: aos new skill NAME --in {bundle}")
+
+
+@new_app.command(epilog="Example: aos new skill wipe --in fetch")
+def skill(
+    name: Annotated[str, typer.Argument(help="The skill's name, in small letters")],
+    bundle: Annotated[Path, typer.Option("--in", help="The bundle's directory")] = Path(),
+) -> None:
+    """Write a skill's two documents into a bundle: NAME.sd and NAME.am."""
+    _check_name(name, "skill")
+    documents, _ = read_bundle_files(bundle)
+    owner = pushed_project(documents)
+    if not owner:
+        hint = "Name a bundle with --in, or start one: aos new project NAME"
+        raise DocumentError(f"there are no documents in {bundle}", code="AOS120", hint=hint)
+    texts = _filled("skill", project=owner, skill=name)
+    _write(bundle, {file.replace("skill.", f"{name}."): text for file, text in texts.items()})
+    typer.echo(f"Check it: aos lint {bundle}")
+
+
+def _check_name(name: str, kind: str) -> None:
+    if not _NAME.fullmatch(name):
+        hint = "It starts with a small letter; small letters, digits and _ follow"
+        raise DocumentError(f"{name!r} is no name for a {kind}", code="AOS126", hint=hint)
+
+
+def _filled(kind: str, **names: str) -> dict[str, str]:
+    """The templates of a kind by file name, with the names put in."""
+    folder = files("aos_deploy") / "templates" / kind
+    return {each.name: Template(each.read_text("utf-8")).substitute(names) for each in folder.iterdir()}
+
+
+def _write(folder: Path, texts: dict[str, str]) -> None:
+    """All files, or none if one of them is there already."""
+    there = [file for file in sorted(texts) if (folder / file).exists()]
+    if there:
+        hint = "Nothing was written; take another name"
+        raise DocumentError(f"{folder} has {', '.join(there)} already", code="AOS111", hint=hint)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, text in sorted(texts.items()):
+            (folder / file).write_text(text, encoding="utf-8")
+            typer.echo(f"wrote {folder / file}")
+    except OSError as error:
+        raise DocumentError(f"{folder} cannot be written: {error.strerror}", code="AOS101") from error

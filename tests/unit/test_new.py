@@ -1,0 +1,68 @@
+"""`aos new`: what it writes lints clean, plans and plays."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import typer
+from typer.testing import CliRunner, Result
+
+from aos_deploy.commands import documents, new, plan
+from aos_registry.load import load_bundle
+
+
+@pytest.fixture
+def aos(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    app = typer.Typer()
+    for module in (new, documents, plan):
+        module.register(app)
+    return app
+
+
+def run(app: typer.Typer, line: str) -> Result:
+    return CliRunner().invoke(app, line.split())
+
+
+def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal(aos: typer.Typer) -> None:
+    made = run(aos, "new project fetch")
+    assert made.exit_code == 0
+    assert "wrote fetch/fetch.ef\n" in made.output
+    assert "aos plan fetch" in made.output
+    assert run(aos, "new skill wipe --in fetch").exit_code == 0
+    linted = run(aos, "lint fetch")
+    assert linted.exit_code == 0
+    assert linted.output.endswith("fetch: 0 errors, 0 warnings\n")
+    planned = run(aos, "plan fetch --simulations 20000 --json")
+    assert json.loads(planned.stdout)["action"] == "look"
+    played = run(aos, "simulate fetch --runs 5 --simulations 20000 --json")
+    assert json.loads(played.stdout)["summary"]["goal_rate"] == 1.0
+
+
+def test_nothing_is_overwritten(aos: typer.Typer) -> None:
+    run(aos, "new project fetch")
+    Path("fetch/look.sd").write_text("mine")
+    again = run(aos, "new project fetch")
+    assert "already" in str(again.exception)
+    assert Path("fetch/look.sd").read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["Fetch", "../fetch", "2do", "a-b"])
+def test_a_name_that_documents_cannot_have_is_refused(aos: typer.Typer, name: str) -> None:
+    assert "is no name for a project" in str(run(aos, f"new project {name}").exception)
+    assert not list(Path().iterdir())
+
+
+def test_a_skill_needs_a_bundle(aos: typer.Typer) -> None:
+    assert "aos new project" in str(run(aos, "new skill wipe").exception)
+
+
+def test_a_new_skill_belongs_to_the_bundles_project(aos: typer.Typer) -> None:
+    run(aos, "new project fetch")
+    run(aos, "new skill wipe --in fetch")
+    project = load_bundle(Path("fetch")).project
+    assert project is not None
+    assert [each.name for each in project.skills] == ["look", "take", "wipe"]
