@@ -35,6 +35,7 @@ def piece_of(code: str) -> Piece:
         "vector<int> a{1, 2}; a[0] = 3;",
         "vector<int> a{1, 2}; sort(a.begin(), a.end());",
         "vector<int> a{1, n};",
+        "const tBox* box = other; int* n = 0;",
         "vector<int> local; vector<int>& row = local;",
     ],
 )
@@ -54,6 +55,8 @@ def test_plain_code_stands_as_it_is(code: str) -> None:
         ("auto f = [&](string& s, int i) { s += i; };", "auto f = [&](auto& s, int i) { s += i; };"),
         ("vector<int> a{1, eRed}; n = a[0];", "static const vector<int> a{1, eRed}; n = a[0];"),
         ("state->x = 1;", "state.x = 1;"),
+        ("for (tBox* box : state.tBoxObjects) n++;", "for (auto* box : state.tBoxObjects()) n++;"),
+        ("auto f = [](tBox* box) { return box->x; };", "auto f = [](auto* box) { return box->x; };"),
         ("c = AOS.SampleDiscrete(tColour, {1, 2});", "c = tColour(AOS.SampleDiscrete(-1, {1, 2}));"),
         ("{c = AOS.SampleDiscrete(tColour, {1})}", "{c = tColour(AOS.SampleDiscrete(-1, {1}));}"),
         (

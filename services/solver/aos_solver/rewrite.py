@@ -43,7 +43,7 @@ def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tupl
     - containers: see `rewrite_containers`
     """
     edits: list[tuple[Extent | int, str]] = list(_of_mentions(cpp, rewriting))
-    for start, end, text in container_edits(cpp, rewriting.values):
+    for start, end, text in container_edits(cpp, rewriting.values, rewriting.object_types):
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))
     for call in cpp.calls:
         edits += _of_call(call, cpp.code, rewriting)

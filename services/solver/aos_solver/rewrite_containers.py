@@ -16,6 +16,7 @@ __all__ = ["container_edits"]
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
 )
+_POINTER = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*\*\s*$")
 _VECTOR = re.compile(r"(?:^|[;{}])\s*((?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
 _STATES = frozenset({"state", "state_", "state__"})
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
@@ -23,15 +24,21 @@ _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
-def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int, str]]:
+def container_edits(
+    cpp: Cpp, values: frozenset[str], object_types: frozenset[str]
+) -> Iterator[tuple[int, int, str]]:
     """Replacements (start, end, text) by offsets; `values` are the names of constants.
 
+    - `tCup* cup` becomes `auto* cup`: what a list of objects holds is const where its state is
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
     - a vector of constants that is only read becomes `static const`
     """
     for declaration in cpp.declarations:
         before = cpp.code[: declaration.extent.start]
-        if declaration.type.endswith("&") and not declaration.type.startswith("const"):
+        pointer = _POINTER.search(before)
+        if pointer is not None and pointer[2] in object_types and not pointer[1]:
+            yield pointer.start(2), pointer.end(2), "auto"
+        elif declaration.type.endswith("&") and not declaration.type.startswith("const"):
             reference = _CONTAINER_REFERENCE.search(before)
             if reference is not None and _may_bind_state(cpp, declaration, before):
                 yield reference.start(1), reference.end(1), "auto"
