@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import shutil
-import signal
-import sqlite3
 import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -229,33 +226,18 @@ async def test_the_catalogue_survives_a_restart(
         assert await current(bus, keys) == before
 
 
-async def test_sigkill_while_a_bundle_is_pushed_leaves_the_old_or_the_new_revision(
-    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
+async def test_a_changed_document_with_the_version_it_had_is_refused_and_a_higher_one_taken(
+    registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:
-    run_dir = tmp_path / "run"
-    async with running_registry(run_dir, endpoint, bus, keys):
-        first = await push(bus, keys, finer)
-    for delay_s in (0.0, 0.02, 0.05):
-        files = {"pick.sd": finer["pick.sd"] + b"// " + str(delay_s).encode()}
-        async with running_registry(run_dir, endpoint, bus, keys) as child:
-            before = await current(bus, keys)
-            question = asyncio.ensure_future(push(bus, keys, files))
-            await asyncio.wait({question}, timeout=delay_s)
-            os.kill(child.pid, signal.SIGKILL)
-            (answer,) = await asyncio.gather(question, return_exceptions=True)
-        revisions = stored_revisions(run_dir / "catalogue.db")
-        assert revisions[-1] in (before.revision, before.revision + 1)
-        assert all(count == len(finer) for count in files_of_revisions(run_dir / "catalogue.db"))
-        if isinstance(answer, BundleReport):
-            assert revisions[-1] == answer.revision
-    assert first.revision == 1
+    def pick(version: str, reward: str) -> dict[str, bytes]:
+        text = finer["pick.sd"].replace(b"__reward = -2;", f"__reward = {reward};".encode())
+        first, rest = text.split(b"\n", 1)
+        return {"pick.sd": b"\n".join([first, f"version: {version}".encode(), rest])}
 
-
-def stored_revisions(path: Path) -> list[int]:
-    with sqlite3.connect(path) as db:
-        return [number for (number,) in db.execute("SELECT number FROM revision ORDER BY number")]
-
-
-def files_of_revisions(path: Path) -> list[int]:
-    with sqlite3.connect(path) as db:
-        return [count for (count,) in db.execute("SELECT count(*) FROM file GROUP BY number")]
+    await push(bus, keys, finer | pick("1.2", "-2"))
+    assert (await push(bus, keys, pick("1.2", "-2"))).is_accepted
+    refused = await push(bus, keys, pick("1.2", "-3"))
+    assert (refused.is_accepted, refused.revision) == (False, 1)
+    assert [each.code for each in refused.diagnostics if each.is_error] == ["AOS129"]
+    taken = await push(bus, keys, pick("1.10", "-3"))
+    assert (taken.is_accepted, taken.revision, taken.changed) == (True, 2, ("pick",))

@@ -1,0 +1,74 @@
+"""A registry that is killed while it stores: every accepted push is there whole when it is back."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import random
+import signal
+from pathlib import Path
+
+import pytest
+from test_registry_service import current, push, running_registry
+
+from aos_protocol.keys import Keys
+from aos_protocol.messages import BundleReport
+from aos_registry.catalogue import Catalogue, Revision
+from aos_registry.load import bundle_digest, read_bundle_files
+from aos_runtime.bus import Bus
+
+SEED = 20261121
+KILLS = 20
+LATEST_KILL_S = 0.15
+
+Accepted = dict[int, bytes]
+"""What each accepted revision has in pick.sd."""
+
+
+@pytest.fixture
+def finer(bundles: Path) -> dict[str, bytes]:
+    return read_bundle_files(bundles / "armadillo-finer")[0]
+
+
+async def push_on(bus: Bus, keys: Keys, pick: bytes, accepted: Accepted) -> None:
+    """Pushes one changed document after the other, for as long as it is answered."""
+    while True:
+        document = pick + f"// {os.urandom(8).hex()}\n".encode()
+        report: BundleReport = await push(bus, keys, {"pick.sd": document})
+        assert report.is_accepted
+        accepted[report.revision] = document
+
+
+def stored_revisions(path: Path) -> list[Revision]:
+    """All revisions of the project as a catalogue finds them that is opened anew."""
+    catalogue = Catalogue.open(path)
+    found = [catalogue.revision("armadillo", entry.revision) for entry in catalogue.history("armadillo")]
+    catalogue.close()
+    return [revision for revision in found if revision is not None]
+
+
+async def test_sigkill_at_any_moment_loses_no_accepted_push_and_leaves_no_half(
+    tmp_path: Path, endpoint: str, bus: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    chance = random.Random(SEED)
+    run_dir = tmp_path / "run"
+    accepted: Accepted = {}
+    async with running_registry(run_dir, endpoint, bus, keys):
+        await push(bus, keys, finer)
+    for _ in range(KILLS):
+        async with running_registry(run_dir, endpoint, bus, keys) as child:
+            assert (await current(bus, keys)).revision == len(stored_revisions(run_dir / "catalogue.db"))
+            pushing = asyncio.ensure_future(push_on(bus, keys, finer["pick.sd"], accepted))
+            await asyncio.wait({pushing}, timeout=chance.uniform(0.0, LATEST_KILL_S))
+            os.kill(child.pid, signal.SIGKILL)
+            await asyncio.gather(pushing, return_exceptions=True)
+            assert not isinstance(pushing.exception(), AssertionError)
+        revisions = stored_revisions(run_dir / "catalogue.db")
+        assert [revision.number for revision in revisions] == list(range(1, len(revisions) + 1))
+        assert max(accepted, default=1) <= len(revisions)
+        for revision in revisions:
+            assert revision.digest == bundle_digest(revision.files, revision.files)
+            assert set(revision.files) == set(finer)
+            assert revision.files["pick.sd"] == accepted.get(revision.number, revision.files["pick.sd"])
+    assert len(accepted) > KILLS
+    print(f"{KILLS} kills, {len(accepted)} accepted pushes, 0 lost")
