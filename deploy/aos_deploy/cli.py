@@ -19,6 +19,7 @@ _COMMANDS = {
     "decisions": ("decisions",),
     "documents": ("lint", "inspect"),
     "bundle": ("bundle",),
+    "convert": ("convert",),
     "new": ("new",),
     "plan": ("plan", "simulate", "rate"),
     "machine": ("doctor", "version"),

@@ -89,6 +89,7 @@ class Field(msgspec.Struct, frozen=True):
     span: Span
     default: Snippet | None = None
     low_level_type: str | None = None
+    type_span: Span | None = None
 
 
 class CompoundType(msgspec.Struct, frozen=True):
@@ -115,6 +116,7 @@ class StateVariable(msgspec.Struct, frozen=True):
     default_code: Snippet | None = None
     key_types: tuple[str, ...] = ()
     low_level_type: str | None = None
+    type_span: Span | None = None
 
 
 # --- code blocks ---------------------------------------------------------------------------------------
@@ -195,6 +197,7 @@ class Parameter(msgspec.Struct, frozen=True):
     name: str
     type: str
     span: Span
+    type_span: Span | None = None
 
 
 class SkillModel(msgspec.Struct, frozen=True):

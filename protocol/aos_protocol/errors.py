@@ -62,6 +62,7 @@ CODES: dict[str, str] = {
     "AOS127": "a tolerated spelling",
     "AOS128": "a constant is written",
     "AOS129": "a version that is not higher",
+    "AOS130": "the other dialect cannot say this exactly",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from aos_registry.convert import without_origins
 from aos_registry.documents.sdl_sections import GRAMMARS
 from aos_registry.load import load_files
 
-EXAMPLE = re.compile(r"^```(sdl|json) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+EXAMPLE = re.compile(r"^```(sdl|json|ours) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def examples(root: Path, dialect: str) -> dict[str, bytes]:
@@ -35,3 +36,9 @@ def test_the_page_names_every_word_of_sdl(root: Path) -> None:
     words = {word for grammar in GRAMMARS.values() for word in grammar}
     words |= {part for grammar in GRAMMARS.values() for word in grammar.values() for part in word.parts}
     assert {word for word in words if word not in text} == set()
+
+
+def test_sdl_with_our_words_says_what_the_json_examples_say(root: Path) -> None:
+    ours, json = (load_files(examples(root, dialect)) for dialect in ("ours", "json"))
+    assert ours.diagnostics == ()
+    assert without_origins(ours.project) == without_origins(json.project)

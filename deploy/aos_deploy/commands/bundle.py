@@ -78,7 +78,7 @@ def push(
     if has_errors(remarks):
         raise refusal(path, tuple(remarks))
     if not files:
-        hint = "Documents end in .ef, .sd, .am or .json"
+        hint = "Documents end in .ef, .sd, .am, .lf or .json"
         raise DocumentError(f"there are no documents in {path}", code="AOS120", hint=hint)
 
     async def send(client: AosClient) -> BundleReport:

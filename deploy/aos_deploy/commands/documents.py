@@ -39,7 +39,7 @@ class Stage(StrEnum):
 Folder = Annotated[
     Path,
     typer.Argument(
-        metavar="BUNDLE", help="A directory with .ef, .sd, .am or .json documents, or an archive of one"
+        metavar="BUNDLE", help="A directory with .ef, .sd, .am, .lf or .json documents, or an archive of one"
     ),
 ]
 

@@ -99,7 +99,7 @@ def read_archive(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
             if entry.kind == "folder" or any(part.startswith(".") for part in name.parts):
                 continue
             if not is_document_name(name.name):
-                hint = "It is left out; documents end in .ef, .sd, .am or .json"
+                hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
                 remarks.append(_remark("this is not an AOS document", entry.name, hint))
                 continue
             data = content.read(MAX_BUNDLE_BYTES + 1)

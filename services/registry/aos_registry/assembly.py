@@ -86,7 +86,7 @@ def _check_projects(documents: Mapping[str, Document], findings: Findings) -> No
         if leading is not None and document.project != leading.project:
             message = f"this document is of project {document.project}, not of {leading.project}"
             hint = f"{leading.span.file} says {leading.project}"
-            findings.error("AOS113", message, document.span, hint)
+            findings.error("AOS113", message, document.project_span or document.span, hint)
 
 
 def _check_complete(

@@ -95,7 +95,7 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
         entries = sorted(path.iterdir())
     except OSError as error:
         reason = error.strerror or "cannot be read"
-        hint = "A bundle is a directory with .ef, .sd, .am or .json files, or an archive of one"
+        hint = "A bundle is a directory with .ef, .sd, .am, .lf or .json files, or an archive of one"
         return {}, [Diagnostic(Severity.ERROR, "AOS101", reason, Span(str(path)), hint)]
     total = 0
     for entry in entries:
@@ -105,7 +105,7 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
             remarks.append(_remark("a folder inside a bundle", entry, "It is left out"))
             continue
         if not is_document_name(entry.name) or not entry.is_file():
-            hint = "It is left out; documents end in .ef, .sd, .am or .json"
+            hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
             remarks.append(_remark("this is not an AOS document", entry, hint))
             continue
         try:

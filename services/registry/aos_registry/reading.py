@@ -46,7 +46,7 @@ def _read(name: str, data: bytes, findings: Findings) -> Document | None:
         findings.error("AOS120", f"{name!r} is no plain file name", Span(name))
         return None
     if not is_document_name(name):
-        hint = "It is left out; documents end in .ef, .sd, .am or .json"
+        hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
         findings.remark("AOS107", "this is not an AOS document", Span(name), hint)
         return None
     source = open_source(name, data, findings)

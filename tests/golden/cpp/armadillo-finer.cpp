@@ -1,5 +1,5 @@
 // Model of the project armadillo: 7 state variables, 5 skills.
-// Emitted by aos 0.1.0 from the documents of digest 8bc42fde5fadc645. Change the documents, not this file;
+// Emitted by aos 0.1.0 from the documents of digest 09f9a4089f81b197. Change the documents, not this file;
 // `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 
 #include "aos/model_support.hpp"

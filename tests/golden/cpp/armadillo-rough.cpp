@@ -1,5 +1,5 @@
 // Model of the project armadillo: 7 state variables, 5 skills.
-// Emitted by aos 0.1.0 from the documents of digest 363c4deda2dd73da. Change the documents, not this file;
+// Emitted by aos 0.1.0 from the documents of digest aac27cf9017b846f. Change the documents, not this file;
 // `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 
 #include "aos/model_support.hpp"

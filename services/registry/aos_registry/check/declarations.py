@@ -36,11 +36,11 @@ def check_environment_names(environment: Environment, scope: Scope, findings: Fi
     for compound in environment.compounds:
         _check_unique([(f.name, f.span) for f in compound.fields], f"a field of {compound.name}", findings)
         for field in compound.fields:
-            _check_type(field.type, field.span, scope, findings)
+            _check_type(field.type, field.type_span or field.span, scope, findings)
             _check_low_level_type(field.low_level_type, field.span, scope, findings)
     _check_cycles(environment.compounds, scope, findings)
     for variable in environment.variables:
-        _check_type(variable.type, variable.span, scope, findings)
+        _check_type(variable.type, variable.type_span or variable.span, scope, findings)
         _check_low_level_type(variable.low_level_type, variable.span, scope, findings)
         for key in variable.key_types:
             if not key.startswith("(") and key not in scope.enums:
@@ -54,7 +54,8 @@ def check_skill_declarations(model: SkillModel, scope: Scope, findings: Findings
     _check_unique(parameters, "a parameter", findings)
     _check_unique([(model.name, model.span)], "a skill", findings)
     for parameter in model.parameters:
-        if not _check_type(parameter.type, parameter.span, scope, findings) or model.possible_parameters:
+        type_span = parameter.type_span or parameter.span
+        if not _check_type(parameter.type, type_span, scope, findings) or model.possible_parameters:
             continue
         values = [v for v in scope.variables.values() if v.is_parameter_value and v.type == parameter.type]
         if not values:

@@ -136,7 +136,9 @@ def _parse(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
             warnings.simplefilter("ignore")
             return ast.parse(snippet.code, mode=mode)
     except SyntaxError as error:
-        span = snippet.locate(error.lineno or 1, error.offset or 1)
+        # Python gives no column where the code ends too early.
+        end = len(snippet.code) - (snippet.code.rfind("\n") + 1) + 1
+        span = snippet.locate(error.lineno or 1, error.offset or end)
         findings.error("AOS121", f"this is not Python: {error.msg}", span)
     except (ValueError, RecursionError, MemoryError) as error:
         findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Environment, SkillModel
@@ -12,6 +13,7 @@ from aos_registry.check.weights import check_weights
 from aos_registry.documents.source import Findings, did_you_mean, quoted
 from aos_runtime.snippets import (
     Access,
+    Call,
     Cpp,
     DeclarationKind,
     Extent,
@@ -49,8 +51,9 @@ def check_environment_code(environment: Environment, scope: Scope, findings: Fin
     )
     for block in blocks:
         _check_loops(block, scope, findings)
+    temporaries = _temporary_enums(blocks)
     for piece in environment_blocks(environment):
-        _BlockCheck(piece, scope, findings, {}).run()
+        _BlockCheck(piece, scope, findings, temporaries).run()
 
 
 def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> None:
@@ -63,12 +66,9 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
         model.dynamic_model,
         model.state_given_observation,
     )
-    temporaries: dict[str, int] = {}
     for block in blocks:
         _check_loops(block, scope, findings)
-        for assignment in block:
-            if assignment.temporary is not None and assignment.temporary.enum_values:
-                temporaries[assignment.temporary.enum_name] = len(assignment.temporary.enum_values)
+    temporaries = _temporary_enums(blocks)
     for piece in skill_blocks(model):
         _BlockCheck(piece, scope, findings, temporaries).run()
 
@@ -76,6 +76,12 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
 def read_block(block: Block) -> Cpp:
     """A block's snippet, read."""
     return (read_cpp_expression if block.is_expression else read_cpp)(block.snippet.code)
+
+
+def _temporary_enums(blocks: Iterable[tuple[Assignment, ...]]) -> dict[str, int]:
+    """The enums that temporary variables declare, with how many values they have."""
+    temporaries = (assignment.temporary for block in blocks for assignment in block)
+    return {each.enum_name: len(each.enum_values) for each in temporaries if each and each.enum_values}
 
 
 def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings) -> None:
@@ -137,7 +143,19 @@ class _BlockCheck:
                 span = self._part_span(call.function, call.name[1])
                 self._findings.error("AOS110", f"{owner} has no `{call.name[1]}`", span, hint)
             elif owner in _BUILT_INS:
+                self._check_enum(call)
                 check_weights(call, self._cpp.code, self._enum_sizes, self._span, self._findings)
+
+    def _check_enum(self, call: Call) -> None:
+        """The first of two arguments of SampleDiscrete is an enum."""
+        if call.name[1] != "SampleDiscrete" or len(call.arguments) != 2:
+            return
+        place = call.arguments[0]
+        name = self._cpp.code[place.start : place.end].strip()
+        declared = {declaration.name for declaration in self._cpp.declarations}
+        if name.isidentifier() and name not in self._enum_sizes and name not in declared:
+            hint = did_you_mean(name, self._enum_sizes) or f"The enums are {quoted(sorted(self._enum_sizes))}"
+            self._findings.error("AOS110", f"unknown enum `{name}`", self._span(place), hint)
 
     def _check_lone_name(self) -> None:
         """A default that is one name must be an enum's value, or low-level."""

@@ -47,6 +47,7 @@ class Document(msgspec.Struct, frozen=True):
     span: Span
     content: Environment | SkillModel | AbstractionMapping | LowLevelDocument | None
     version: Text | None = None
+    project_span: Span | None = None
 
     @property
     def identity(self) -> tuple[DocumentKind, str]:

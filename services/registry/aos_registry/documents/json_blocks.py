@@ -20,7 +20,7 @@ def _assignment(record: Record) -> Assignment | None:
     temporary = record.record("TempVar", "a temporary variable")
     block = Assignment(
         span=record.span,
-        name=name.text if name else "",
+        name=" ".join(name.text.split()) if name else "",
         temporary=_temporary(temporary) if temporary else None,
         over_previous=_iterations(record, "IteratePreviousStateVars"),
         over_next=_iterations(record, "IterateNextStateVars"),

@@ -134,4 +134,4 @@ def _document(
             content = read_skill(record, project_name, title, span)
         case DocumentKind.MAPPING:
             content = read_mapping(record, project_name, title, span)
-    return Document(kind, project_name, title, span, content, version)
+    return Document(kind, project_name, title, span, content, version, project.span if project else None)

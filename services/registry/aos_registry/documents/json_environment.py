@@ -123,7 +123,7 @@ def _field(record: Record) -> Field | None:
     record.finish()
     if name is None or kind is None or not check_name(name, "a field", record.findings):
         return None
-    return Field(name.text, type_name, name.span, default, low_level_type)
+    return Field(name.text, type_name, name.span, default, low_level_type, kind.span)
 
 
 def _low_level_type(record: Record, type_name: str) -> str | None:
@@ -167,6 +167,7 @@ def _variable(record: Record) -> StateVariable | None:
         default_code=code,
         key_types=tuple(key.text for key in keys),
         low_level_type=low_level_type,
+        type_span=kind.span,
     )
 
 
@@ -203,5 +204,5 @@ def _parameters(record: Record, key: str, what: str) -> tuple[Parameter, ...]:
         name, kind = item.text("Name", required=True), item.text("Type", required=True)
         item.finish()
         if name and kind and check_name(name, what, record.findings):
-            found.append(Parameter(name.text, kind.text, name.span))
+            found.append(Parameter(name.text, kind.text, name.span, kind.span))
     return tuple(found)

@@ -61,5 +61,6 @@ def _parameters(record: Record) -> tuple[Parameter, ...]:
         item.ignore("Comment")
         item.finish()
         if name and kind and check_name(name, "a parameter", record.findings):
-            found.append(Parameter(name.text, normal_type(kind, record.findings), name.span))
+            type_name = normal_type(kind, record.findings)
+            found.append(Parameter(name.text, type_name, name.span, kind.span))
     return tuple(found)

@@ -6,6 +6,7 @@ from pathlib import PurePath
 
 from aos_registry.documents.document import Document, DocumentKind, check_name
 from aos_registry.documents.sdl_environment import read_environment
+from aos_registry.documents.sdl_low_level import read_low_level
 from aos_registry.documents.sdl_mapping import read_mapping
 from aos_registry.documents.sdl_sections import GRAMMARS, Sections, places_of_words
 from aos_registry.documents.sdl_skill import read_skill
@@ -15,7 +16,12 @@ from aos_registry.documents.version import read_version
 
 __all__ = ["read_sdl"]
 
-_KINDS = {".ef": DocumentKind.ENVIRONMENT, ".sd": DocumentKind.SKILL, ".am": DocumentKind.MAPPING}
+_KINDS = {
+    ".ef": DocumentKind.ENVIRONMENT,
+    ".sd": DocumentKind.SKILL,
+    ".am": DocumentKind.MAPPING,
+    ".lf": DocumentKind.LOW_LEVEL,
+}
 
 
 def read_sdl(source: Source, findings: Findings) -> Document:
@@ -27,17 +33,21 @@ def read_sdl(source: Source, findings: Findings) -> Document:
     parsed = parse_sdl(source, GRAMMARS[suffix], places_of_words(suffix), findings)
     sections = Sections(parsed, span, findings)
     project = _project(parsed, sections, findings)
+    place = next((given.value.span for given in sections.all("project")), None)
     given = sections.last("version")
     version = read_version(given.value if given is not None else None, findings)
     if kind is DocumentKind.ENVIRONMENT:
         content = read_environment(sections, project, span, findings)
-        return Document(kind, project, "environment", span, content, version)
+        return Document(kind, project, "environment", span, content, version, place)
+    if kind is DocumentKind.LOW_LEVEL:
+        low_level = read_low_level(sections, project, span, findings)
+        return Document(kind, project, "environment", span, low_level, version, place)
     name = path.stem if check_name(Text(path.stem, span), "a skill", findings) else ""
     if kind is DocumentKind.SKILL:
         skill = read_skill(sections, project, name, span, findings)
-        return Document(kind, project, name, span, skill, version)
+        return Document(kind, project, name, span, skill, version, place)
     mapping = read_mapping(sections, project, name, span, findings)
-    return Document(kind, project, name, span, mapping, version)
+    return Document(kind, project, name, span, mapping, version, place)
 
 
 def _project(parsed: list[Section], sections: Sections, findings: Findings) -> str:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
-    Assignment,
     CompoundType,
     EnumType,
     Environment,
@@ -16,13 +16,22 @@ from aos_protocol.documents import (
 )
 from aos_registry.documents.code import expression
 from aos_registry.documents.document import check_name, enum_type
-from aos_registry.documents.sdl_declaration import read_declaration, read_number
+from aos_registry.documents.sdl_blocks import read_block
+from aos_registry.documents.sdl_declaration import (
+    Declaration,
+    read_declaration,
+    read_number,
+    read_truth,
+)
 from aos_registry.documents.sdl_sections import DEFAULT_DISCOUNT, Sections
-from aos_registry.documents.sdl_text import Part, Section
+from aos_registry.documents.sdl_text import Part, Section, enum_values
 from aos_registry.documents.source import Findings, Text
 
 __all__ = ["read_environment"]
 
+_KEY = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)|\w+")
+_KEYS = re.compile(rf"(?:{_KEY.pattern})(?:\s*,\s*(?:{_KEY.pattern}))*")
+_LOW_LEVEL_TYPE = re.compile(r"(?:^|(?<=\s)|(?<=\]))of\s+([A-Za-z_]\w*)(?:\s+|$)")
 _ARRAY_MARKS = {"[]": True, "true": True, "false": False, "": False}
 
 
@@ -41,9 +50,11 @@ def read_environment(sections: Sections, project: str, span: Span, findings: Fin
         compounds=tuple(kind for kind in types if isinstance(kind, CompoundType)),
         variables=tuple(variable for variable in variables if variable is not None),
         initial_belief=sections.block("initial_belief"),
-        special_states=tuple(_rewards(sections)),
+        special_states=tuple(_special_states(sections, findings)),
         extrinsic_changes=sections.block("extrinsic_code"),
         state_heuristic=sections.block("heuristic_code"),
+        print_state=sections.block("print_code"),
+        is_one_state_model=read_truth(sections.last("one_state_model"), findings),
     )
 
 
@@ -73,13 +84,31 @@ def _discount(sections: Sections, findings: Findings) -> float:
     return number
 
 
-def _rewards(sections: Sections) -> list[SpecialState]:
-    found = []
-    for section in sections.all("reward_code"):
-        code = section.code()
-        if code is not None:
-            found.append(SpecialState(section.span, code=(Assignment(code.span, code=code),)))
-    return found
+def _special_states(sections: Sections, findings: Findings) -> Iterator[SpecialState]:
+    for section in sections.of("reward_code", "special_state"):
+        if section.word == "special_state":
+            special = _form_a(section, findings)
+        else:
+            code = read_block(section, findings)
+            special = SpecialState(section.span, code=code) if code else None
+        if special is not None:
+            yield special
+
+
+def _form_a(section: Section, findings: Findings) -> SpecialState | None:
+    condition, reward = section.last("state_condition", findings), section.last("reward", findings)
+    is_goal = read_truth(section.last("is_goal_state", findings), findings)
+    is_one_time = read_truth(section.last("is_one_time_reward", findings), findings)
+    code = condition.code() if condition is not None else None
+    if code is None:
+        findings.error("AOS105", "a special state needs `state_condition:`", section.span)
+    if reward is None:
+        findings.error("AOS105", "a special state needs `reward:`", section.span)
+    number = read_number(reward, findings) if reward is not None else None
+    if code is None or number is None:
+        return None
+    holds = expression(code, drop_semicolon=True)
+    return SpecialState(section.span, holds, number, is_goal, is_one_time)
 
 
 def _type(section: Section, findings: Findings) -> EnumType | CompoundType | None:
@@ -95,30 +124,31 @@ def _type(section: Section, findings: Findings) -> EnumType | CompoundType | Non
         message = f"the type {name.text} is an enum or has variables, not both"
         findings.error("AOS106", message, members.span)
     if members is not None:
-        return enum_type(name, _enum_values(members.value, findings), findings)
+        return enum_type(name, enum_values(members.value, findings), findings)
     if not fields:
         hint = "Add `enum_members:` or `variable:` lines"
         findings.error("AOS105", f"the type {name.text} is empty", name.span, hint)
     return CompoundType(name.text, tuple(field for field in fields if field is not None), name.span)
 
 
-def _enum_values(text: Text, findings: Findings) -> list[Text]:
-    pieces = [text.after(match.start()) for match in re.finditer(r"(?<![^,])[^,]*", text.text)]
-    values = [Text(piece.text.split(",")[0], piece.span).strip() for piece in pieces]
-    if values and not values[-1].text:  # A comma at the end.
-        values.pop()
-    if not values:
-        findings.error("AOS105", "`enum_members:` needs names between commas", text.span)
-    return values
-
-
 def _field(part: Part, findings: Findings) -> Field | None:
     declaration = read_declaration(part, "a field", findings)
     if declaration is None:
         return None
-    default = _without_learning_scale(declaration.rest)
+    rest, low_level_type = _low_level_type(declaration)
+    default = _without_learning_scale(rest)
     snippet = expression(default.snippet(), drop_semicolon=True) if default.text else None
-    return Field(declaration.name.text, declaration.type, declaration.name.span, snippet)
+    name = declaration.name
+    return Field(name.text, declaration.type, name.span, snippet, low_level_type, declaration.type_text.span)
+
+
+def _low_level_type(declaration: Declaration) -> tuple[Text, str | None]:
+    """What follows the name of an `anyValue` without `of <low-level type>`, and that type."""
+    rest = declaration.rest
+    match = _LOW_LEVEL_TYPE.search(rest.text) if declaration.type == "anyValue" else None
+    if match is None:
+        return rest, None
+    return Text(rest.text[: match.start()] + rest.text[match.end() :], rest.span).strip(), match.group(1)
 
 
 def _without_learning_scale(rest: Text) -> Text:
@@ -132,12 +162,16 @@ def _variable(section: Section, findings: Findings) -> StateVariable | None:
     declaration = read_declaration(section, "a variable", findings)
     if declaration is None:
         return None
-    rest = declaration.rest
+    rest, low_level_type = _low_level_type(declaration)
     mark = rest.text.replace(" ", "").lower()
     if mark not in _ARRAY_MARKS:
         hint = "After the name stands `[]` for an array, or nothing; values go into `code:`"
         findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
-    code = section.last("code", findings)
+    code, value = section.last("code", findings), section.last("default_value", findings)
+    default_value = value.code() if value is not None else None
+    if code is not None and default_value is not None:
+        findings.error("AOS106", "a variable has `default_value:` or `code:`, not both", code.span)
+    keys = section.last("key_types", findings)
     kind = declaration.type
     return StateVariable(
         name=declaration.name.text,
@@ -145,5 +179,18 @@ def _variable(section: Section, findings: Findings) -> StateVariable | None:
         span=declaration.name.span,
         is_array=_ARRAY_MARKS.get(mark, False) or kind.rstrip().endswith("]"),
         is_parameter_value=is_parameter_value,
+        default_value=expression(default_value, drop_semicolon=True) if default_value else None,
         default_code=code.code() if code is not None else None,
+        key_types=_key_types(keys.value, findings) if keys is not None else (),
+        low_level_type=low_level_type,
+        type_span=declaration.type_text.span,
     )
+
+
+def _key_types(text: Text, findings: Findings) -> tuple[str, ...]:
+    """Enum names and ranges between commas."""
+    if not _KEYS.fullmatch(text.text):
+        hint = "Write enum names and ranges (start,stop,step) between commas"
+        findings.error("AOS104", f"these keys cannot be read: {text.text!r}", text.span, hint)
+        return ()
+    return tuple(match.group() for match in _KEY.finditer(text.text))

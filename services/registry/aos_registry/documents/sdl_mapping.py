@@ -155,5 +155,6 @@ def _local_variable(section: Section, findings: Findings) -> LocalVariable | Non
         initial_value=initial.expression() if initial is not None else None,
         code=code.code() if code is not None else None,
         imports=_imports(section, findings),
+        is_heavy=read_truth(section.last("is_heavy_variable", findings), findings),
     )
     return build_local_variable(parts, findings)

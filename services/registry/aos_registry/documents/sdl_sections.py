@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment
+from aos_registry.documents.sdl_blocks import read_block
 from aos_registry.documents.sdl_text import Body, Grammar, Section, Word, last_of
 from aos_registry.documents.source import Findings
 
@@ -16,7 +17,25 @@ DEFAULT_DISCOUNT = 0.9999
 _LINE = Word()
 _CPP = Word(Body.CPP)
 _PYTHON = Word(Body.PYTHON)
-_VARIABLE_PARTS = {"code": _CPP, "ml_max_value": _LINE, "ml_ignore": _LINE}
+_VARIABLE_PARTS = {
+    "code": _CPP,
+    "default_value": _CPP,
+    "key_types": _LINE,
+    "ml_max_value": _LINE,
+    "ml_ignore": _LINE,
+}
+_BLOCK = Word(
+    Body.CPP,
+    parts={
+        "assignment": _LINE,
+        "temporary_variable": _LINE,
+        "loop_previous": _LINE,
+        "loop_next": _LINE,
+        "loop_condition": _CPP,
+        "loop_body": _CPP,
+        "code": _CPP,
+    },
+)
 
 GRAMMARS: Mapping[str, Grammar] = {
     ".ef": {
@@ -27,20 +46,32 @@ GRAMMARS: Mapping[str, Grammar] = {
         "define_type": Word(parts={"variable": _LINE, "enum_members": _LINE}),
         "state_variable": Word(parts=_VARIABLE_PARTS),
         "action_parameter": Word(parts=_VARIABLE_PARTS),
-        "initial_belief": _CPP,
-        "reward_code": _CPP,
-        "extrinsic_code": _CPP,
-        "heuristic_code": _CPP,
+        "one_state_model": _LINE,
+        "initial_belief": _BLOCK,
+        "reward_code": _BLOCK,
+        "special_state": Word(
+            parts={
+                "state_condition": _CPP,
+                "reward": _LINE,
+                "is_goal_state": _LINE,
+                "is_one_time_reward": _LINE,
+            }
+        ),
+        "extrinsic_code": _BLOCK,
+        "heuristic_code": _BLOCK,
+        "print_code": _BLOCK,
     },
     ".sd": {
         "project": _LINE,
         "version": _LINE,
         "parameter": _LINE,
-        "available_parameters_code": _CPP,
-        "precondition": _CPP,
+        "available_parameters_code": _BLOCK,
+        "precondition": _BLOCK,
         "violate_penalty": _LINE,
-        "rollout_policy": _CPP,
-        "dynamic_model": _CPP,
+        "rollout_policy": _BLOCK,
+        "execution_time": _BLOCK,
+        "dynamic_model": _BLOCK,
+        "state_given_observation": _BLOCK,
     },
     ".am": {
         "project": _LINE,
@@ -67,14 +98,26 @@ GRAMMARS: Mapping[str, Grammar] = {
                 "action_parameter": _LINE,
                 "from_ros_service_response": _LINE,
                 "from_ros_reservice_response": Word(canonical="from_ros_service_response"),
+                "is_heavy_variable": _LINE,
                 "code": _PYTHON,
             }
         ),
     },
+    ".lf": {
+        "project": _LINE,
+        "version": _LINE,
+        "define_type": Word(parts={"variable": _LINE}),
+        "constant": Word(parts={"code": _PYTHON}),
+    },
 }
-"""What AOS 2.0 writes; `version`, `max_duration` and `module_activation: skill` are ours."""
+"""What AOS 2.0 writes, and what JSON can say and it cannot: the language page marks which words are ours."""
 
-_KINDS = {".ef": "the environment file (.ef)", ".sd": "a skill document (.sd)", ".am": "a mapping (.am)"}
+_KINDS = {
+    ".ef": "the environment file (.ef)",
+    ".sd": "a skill document (.sd)",
+    ".am": "a mapping (.am)",
+    ".lf": "the low-level file (.lf)",
+}
 
 
 def places_of_words(suffix: str) -> dict[str, str]:
@@ -107,7 +150,5 @@ class Sections:
         return last_of(self.all(word), self._findings)
 
     def block(self, word: str) -> tuple[Assignment, ...]:
-        """The model code of a section, as the one assignment of a block."""
-        section = self.last(word)
-        code = section.code() if section is not None else None
-        return () if code is None else (Assignment(code.span, code=code),)
+        """The model code of a section."""
+        return read_block(self.last(word), self._findings)

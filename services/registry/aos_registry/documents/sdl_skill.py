@@ -21,7 +21,8 @@ def read_skill(sections: Sections, project: str, name: str, span: Span, findings
         if declaration.rest.text:
             message = f"unexpected {declaration.rest.text!r} after the parameter"
             findings.error("AOS104", message, declaration.rest.span)
-        parameters.append(Parameter(declaration.name.text, declaration.type, declaration.name.span))
+        name_text, kind = declaration.name, declaration.type
+        parameters.append(Parameter(name_text.text, kind, name_text.span, declaration.type_text.span))
     penalty = sections.last("violate_penalty")
     if not sections.all("dynamic_model"):
         findings.error("AOS105", f"the skill {name} lacks `dynamic_model:`", sections.span)
@@ -34,5 +35,7 @@ def read_skill(sections: Sections, project: str, name: str, span: Span, findings
         precondition=sections.block("precondition"),
         rollout_policy=sections.block("rollout_policy"),
         violation_penalty=(read_number(penalty, findings) or 0.0) if penalty is not None else 0.0,
+        execution_time=sections.block("execution_time"),
         dynamic_model=sections.block("dynamic_model"),
+        state_given_observation=sections.block("state_given_observation"),
     )

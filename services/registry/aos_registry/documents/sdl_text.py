@@ -19,7 +19,7 @@ from aos_protocol.documents import Snippet
 from aos_registry.documents.code import dedented, expression, without_blank_lines
 from aos_registry.documents.source import Findings, Source, Text, nearest
 
-__all__ = ["Body", "Grammar", "Part", "Section", "Word", "last_of", "parse_sdl"]
+__all__ = ["Body", "Grammar", "Part", "Section", "Word", "enum_values", "last_of", "parse_sdl"]
 
 _OPENING = re.compile(r"[ \t\f\v]*([A-Za-z_]\w*)[ \t]*:(?!:)")
 _COMMENT = re.compile(r"\s*(//|#)")
@@ -94,6 +94,17 @@ def last_of(parts: list[P], findings: Findings) -> P | None:
         hint = f"The one on line {parts[-1].span.line} counts"
         findings.warning("AOS125", f"`{part.word}:` is given more than once", part.span, hint)
     return parts[-1] if parts else None
+
+
+def enum_values(text: Text, findings: Findings) -> list[Text]:
+    """The names between commas; an error where there are none."""
+    pieces = [text.after(match.start()) for match in re.finditer(r"(?<![^,])[^,]*", text.text)]
+    values = [Text(piece.text.split(",")[0], piece.span).strip() for piece in pieces]
+    if values and not values[-1].text:  # A comma at the end.
+        values.pop()
+    if not values:
+        findings.error("AOS105", "an enum needs names between commas", text.span)
+    return values
 
 
 def parse_sdl(

@@ -1,0 +1,223 @@
+"""A document as SDL text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from aos_protocol.documents import (
+    AbstractionMapping,
+    Assignment,
+    Environment,
+    Field,
+    Import,
+    Iteration,
+    LocalSource,
+    LocalVariable,
+    LowLevelDocument,
+    SkillModel,
+    Snippet,
+    SpecialState,
+    StateVariable,
+    TemporaryVariable,
+)
+
+__all__ = ["sdl_text"]
+
+_LOOKS_LIKE_A_SCALE = re.compile(r".*\S\s+(ml_ignore|[\d.]+)")
+
+
+def sdl_text(
+    content: Environment | SkillModel | AbstractionMapping | LowLevelDocument, version: str = ""
+) -> str:
+    """The text of an `.ef`, `.sd`, `.am` or `.lf` file. Names of skills are file names, and not in it."""
+    lines = [f"project: {content.project}"]
+    if version:
+        lines.append(f"version: {version}")
+    match content:
+        case Environment():
+            lines += _environment(content)
+        case SkillModel():
+            lines += _skill(content)
+        case AbstractionMapping():
+            lines += _mapping(content)
+        case LowLevelDocument():
+            lines += _low_level(content)
+    return "".join(f"{line}\n" for line in lines)
+
+
+# --- environment and low-level file --------------------------------------------------------------------
+
+
+def _environment(environment: Environment) -> Iterator[str]:
+    yield f"horizon: {environment.horizon}"
+    yield f"discount: {environment.discount!r}"
+    if environment.is_one_state_model:
+        yield "one_state_model: true"
+    for enum in environment.enums:
+        yield from ("", f"define_type: {enum.name}", f"enum_members: {', '.join(enum.values)}")
+    for compound in environment.compounds:
+        yield from ("", f"define_type: {compound.name}", *map(_field, compound.fields))
+    for variable in environment.variables:
+        yield from ("", *_variable(variable))
+    yield from _block("initial_belief", environment.initial_belief)
+    for special in environment.special_states:
+        yield from _special_state(special)
+    yield from _block("extrinsic_code", environment.extrinsic_changes)
+    yield from _block("heuristic_code", environment.state_heuristic)
+    yield from _block("print_code", environment.print_state)
+
+
+def _field(field: Field) -> str:
+    default = field.default.code if field.default is not None else ""
+    if _LOOKS_LIKE_A_SCALE.fullmatch(default):
+        default += " 1"  # Of two numbers at the end the last is taken for the learning planner's.
+    low_level_type = f"of {field.low_level_type}" if field.low_level_type else ""
+    return " ".join(part for part in ("variable:", field.type, field.name, low_level_type, default) if part)
+
+
+def _variable(variable: StateVariable) -> Iterator[str]:
+    word = "action_parameter:" if variable.is_parameter_value else "state_variable:"
+    array = "[]" if variable.is_array else ""
+    low_level_type = f"of {variable.low_level_type}" if variable.low_level_type else ""
+    yield " ".join(part for part in (word, variable.type, variable.name, array, low_level_type) if part)
+    if variable.key_types:
+        yield f"key_types: {', '.join(variable.key_types)}"
+    yield from _expression("default_value", variable.default_value)
+    yield from _code("code", variable.default_code)
+
+
+def _special_state(special: SpecialState) -> Iterator[str]:
+    if special.condition is None:
+        yield from _block("reward_code", special.code)
+        return
+    yield from ("", "special_state:", *_expression("state_condition", special.condition))
+    yield f"reward: {special.reward!r}"
+    if special.is_goal:
+        yield "is_goal_state: true"
+    if special.is_one_time:
+        yield "is_one_time_reward: true"
+
+
+def _low_level(document: LowLevelDocument) -> Iterator[str]:
+    for kind in document.types:
+        yield from ("", f"define_type: {kind.name}")
+        yield from (f"variable: {field.type} {field.name}" for field in kind.fields)
+    for constant in document.constants:
+        yield from ("", f"constant: {constant.type} {constant.name}", *_code("code", constant.code))
+
+
+# --- skill document ------------------------------------------------------------------------------------
+
+
+def _skill(model: SkillModel) -> Iterator[str]:
+    yield from (f"parameter: {parameter.type} {parameter.name}" for parameter in model.parameters)
+    yield from _block("available_parameters_code", model.possible_parameters)
+    yield from _block("precondition", model.precondition)
+    if model.violation_penalty:
+        yield f"violate_penalty: {model.violation_penalty!r}"
+    yield from _block("rollout_policy", model.rollout_policy)
+    yield from _block("execution_time", model.execution_time)
+    yield from _block("dynamic_model", model.dynamic_model) if model.dynamic_model else ("", "dynamic_model:")
+    yield from _block("state_given_observation", model.state_given_observation)
+
+
+# --- abstraction mapping -------------------------------------------------------------------------------
+
+
+def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
+    if mapping.rules or mapping.response_variable:
+        yield ""
+    for rule in mapping.rules:
+        yield f"response: {rule.response}"
+        yield from (
+            _expression("response_rule", rule.condition) if rule.condition else ("response_rule: True",)
+        )
+    if mapping.response_variable:
+        yield f"response_local_variable: {mapping.response_variable}"
+    activation = mapping.activation
+    yield from ("", f"module_activation: {activation.kind}")
+    yield from map(_import, activation.imports)
+    yield f"path: {activation.path}"
+    if activation.service_type:
+        yield f"srv: {activation.service_type}"
+    if activation.max_duration_s is not None:
+        yield f"max_duration: {activation.max_duration_s!r}"
+    for field in activation.fields:
+        yield from (f"parameter: {field.name}", *_code("code", field.value))
+    for variable in mapping.local_variables:
+        yield from ("", *_local_variable(variable))
+
+
+def _local_variable(variable: LocalVariable) -> Iterator[str]:
+    yield f"local_variable: {variable.name}"
+    match variable.source:
+        case LocalSource.PARAMETER:
+            yield f"action_parameter: {variable.parameter_path}"
+        case LocalSource.SERVICE_RESPONSE:
+            yield "from_ros_service_response: true"
+        case LocalSource.TOPIC:
+            yield f"topic: {variable.topic}"
+    if variable.message_type:
+        yield f"message_type: {variable.message_type}"
+    if variable.type:
+        yield f"type: {variable.type}"
+    yield from _expression("initial_value", variable.initial_value)
+    yield from map(_import, variable.imports)
+    if variable.is_heavy:
+        yield "is_heavy_variable: true"
+    yield from _code("code", variable.code)
+
+
+def _import(item: Import) -> str:
+    origin = f"from: {item.module} " if item.module else ""
+    return f"imports: {origin}import: {', '.join(item.names)}"
+
+
+# --- code ----------------------------------------------------------------------------------------------
+
+
+def _block(word: str, block: tuple[Assignment, ...]) -> Iterator[str]:
+    """The section of a block: its body where that is all there is to say, or else its assignments."""
+    if not block:
+        return
+    yield from ("", f"{word}:")
+    if len(block) == 1 and block[0] == Assignment(block[0].span, code=block[0].code):
+        yield from _lines(block[0].code)
+        return
+    for assignment in block:
+        yield f"assignment: {assignment.name}".rstrip()
+        if assignment.temporary is not None:
+            yield f"temporary_variable: {_temporary(assignment.temporary)}"
+        yield from _loops("loop_previous", assignment.over_previous)
+        yield from _loops("loop_next", assignment.over_next)
+        yield from _code("code", assignment.code)
+
+
+def _temporary(temporary: TemporaryVariable) -> str:
+    if not temporary.enum_name:
+        return f"{temporary.type} {temporary.name}"
+    return f"enum {temporary.enum_name} {{ {', '.join(temporary.enum_values)} }} {temporary.name}"
+
+
+def _loops(word: str, loops: Iterable[Iteration]) -> Iterator[str]:
+    for loop in loops:
+        yield f"{word}: {loop.type} {loop.item}"
+        yield from _expression("loop_condition", loop.condition)
+        yield from _code("loop_body", loop.body)
+
+
+def _expression(word: str, snippet: Snippet | None) -> Iterator[str]:
+    """On the line of its word where it fits there."""
+    if snippet is not None:
+        is_short = "\n" not in snippet.code
+        yield from (f"{word}: {snippet.code}",) if is_short else (f"{word}:", *_lines(snippet))
+
+
+def _code(word: str, snippet: Snippet | None) -> Iterator[str]:
+    if snippet is not None:
+        yield from (f"{word}:", *_lines(snippet))
+
+
+def _lines(snippet: Snippet | None) -> list[str]:
+    return snippet.code.split("\n") if snippet is not None else []

@@ -1,0 +1,113 @@
+"""The seeded mistakes of tests/data/bad/mistakes.toml: is each told, at its place?
+
+python tests/mistakes.py [--json]
+
+Prints in how many cases file and line are right, in how many the column is too, and every case that is not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Span
+from aos_registry.load import load_files, read_bundle_files
+
+__all__ = ["Mistake", "Verdict", "judged", "mistakes"]
+
+ROOT = Path(__file__).resolve().parents[1]
+MARK = "«"
+EXAMPLE = re.compile(r"^```(sdl|json) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+class Mistake(msgspec.Struct, frozen=True):
+    """A bundle with one mistake in it, and the place and code of the finding that is due."""
+
+    title: str
+    files: dict[str, bytes]
+    code: str
+    place: Span
+
+
+class Verdict(msgspec.Struct, frozen=True):
+    """What the checks said to a mistake: the finding of the right code that is nearest to the place."""
+
+    mistake: Mistake
+    found: tuple[Diagnostic, ...]
+
+    @property
+    def has_line(self) -> bool:
+        place = self.mistake.place
+        return any((each.span.file, each.span.line) == (place.file, place.line) for each in self._of_code)
+
+    @property
+    def has_column(self) -> bool:
+        return any(each.span == self.mistake.place for each in self._of_code)
+
+    @property
+    def _of_code(self) -> list[Diagnostic]:
+        return [each for each in self.found if each.code == self.mistake.code]
+
+
+def mistakes() -> Iterator[Mistake]:
+    """All of the table, in its order."""
+    table = tomllib.loads((ROOT / "tests/data/bad/mistakes.toml").read_text(encoding="utf-8"))
+    for bundle, entry in table.items():
+        files = _bundle(bundle)
+        for number, each in enumerate(entry["mistakes"], 1):
+            text = files[each["in"]].decode()
+            assert each["find"] in text, f"{bundle} {number}: {each['find']!r} is not in {each['in']}"
+            marked = text.replace(each["find"], each["put"], 1)
+            before, mark, after = marked.partition(MARK)
+            assert mark, f"{bundle} {number} has no mark"
+            line, column = before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1
+            changed = files | {each["in"]: (before + after).encode()}
+            title = f"{bundle} {number}: {each['put'].strip()}"
+            yield Mistake(title, changed, each["code"], Span(each["in"], line, column))
+
+
+def judged(mistake: Mistake) -> Verdict:
+    """Reads and checks the bundle as `aos lint --no-compile` does."""
+    return Verdict(mistake, load_files(mistake.files).diagnostics)
+
+
+def _bundle(name: str) -> dict[str, bytes]:
+    if name in ("sdl", "json"):
+        page = (ROOT / "docs/languages.md").read_text(encoding="utf-8")
+        return {file: body.encode() for kind, file, body in EXAMPLE.findall(page) if kind == name}
+    folders = (ROOT / "deploy/bundles" / name, ROOT / "tests/data/bundles" / name)
+    return read_bundle_files(next(folder for folder in folders if folder.is_dir()))[0]
+
+
+def main() -> int:
+    """The command; exit code 1 where a line is wrong, or more than a twentieth of the columns."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--json", action="store_true", help="one JSON object with the figures")
+    options = parser.parse_args()
+    verdicts = [judged(mistake) for mistake in mistakes()]
+    lines = sum(verdict.has_line for verdict in verdicts)
+    columns = sum(verdict.has_column for verdict in verdicts)
+    for verdict in verdicts:
+        if not verdict.has_column:
+            said = "; ".join(f"{each.span} {each.code} {each.message}" for each in verdict.found) or "nothing"
+            due = f"{verdict.mistake.place} {verdict.mistake.code}"
+            sys.stderr.write(f"{verdict.mistake.title}\n  due: {due}\n  said: {said}\n")
+    figures = {"mistakes": len(verdicts), "right_line": lines, "right_column": columns}
+    if options.json:
+        sys.stdout.write(json.dumps(figures) + "\n")
+    else:
+        sys.stdout.write("".join(f"{name.replace('_', ' ')}: {value}\n" for name, value in figures.items()))
+    return int(lines < len(verdicts) or columns < 0.95 * len(verdicts))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

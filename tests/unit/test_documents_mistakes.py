@@ -1,0 +1,34 @@
+"""Seeded mistakes are told at their places, and the bundles they are seeded in are models that run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from mistakes import Verdict, judged, mistakes
+from scripted_models import bundle_project, scripted
+
+RIGHT_COLUMNS = 0.95
+
+
+@pytest.fixture(scope="module")
+def verdicts() -> list[Verdict]:
+    return [judged(mistake) for mistake in mistakes()]
+
+
+def test_there_are_fifteen_mistakes_in_each_of_ten_bundles(verdicts: list[Verdict]) -> None:
+    assert len(verdicts) == 150
+
+
+def test_every_mistake_is_told_with_its_code_in_the_right_file_and_line(verdicts: list[Verdict]) -> None:
+    assert [verdict.mistake.title for verdict in verdicts if not verdict.has_line] == []
+
+
+def test_nearly_every_mistake_is_told_in_the_right_column(verdicts: list[Verdict]) -> None:
+    assert sum(verdict.has_column for verdict in verdicts) >= RIGHT_COLUMNS * len(verdicts)
+
+
+@pytest.mark.parametrize("bundle", ["doors", "fancy", "fetch", "gridbot", "lamp", "tiger"])
+def test_the_bundles_emit_compile_and_run(root: Path, cache_dir: Path, bundle: str) -> None:
+    model = scripted(bundle_project(root / "tests/data/bundles" / bundle), cache_dir)
+    assert model.walk(1000)["steps"] == 1000
