@@ -136,6 +136,10 @@ def _field(part: Part, findings: Findings) -> Field | None:
     if declaration is None:
         return None
     rest, low_level_type = _low_level_type(declaration)
+    if rest.text.startswith("["):
+        hint = f"Write `variable: vector<{declaration.type}> {declaration.name.text}`"
+        findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
+        return None
     default = _without_learning_scale(rest)
     snippet = expression(default.snippet(), drop_semicolon=True) if default.text else None
     name = declaration.name
