@@ -1,4 +1,4 @@
-"""Writes the reference pages that follow from the sources: errors.md, and the tables of protocol.md.
+"""Writes what follows from the sources: errors.md, words.md, the schemas, and the tables of protocol.md.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
 not). In protocol.md the text between `<!-- generated: NAME -->` and `<!-- end -->` is replaced, the rest is
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import json
 import re
 import sys
 from collections.abc import Iterator
@@ -16,6 +17,8 @@ from pathlib import Path
 from types import ModuleType
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
+from aos_deploy.language_server.meanings import BUILT_INS, SECTIONS
+from aos_deploy.schemas import SCHEMAS
 from aos_protocol import errors, keys, messages
 
 DOCS = Path(__file__).resolve().parent
@@ -114,6 +117,27 @@ def _parsed(module: ModuleType) -> tuple[str, ast.Module]:
     return source, ast.parse(source)
 
 
+# --- words ---------------------------------------------------------------------------------------------
+
+
+def words_page() -> str:
+    """Every word of SDL by kind of file, then the built-ins; the same texts that editors show."""
+    lines = [
+        "# Words of SDL",
+        "",
+        "What [editors](editors.md) show about a word; [languages.md](languages.md) shows them at work. This",
+        "page is written by `make docs` from `aos_deploy.language_server.meanings`.",
+    ]
+    for suffix, sections in SECTIONS.items():
+        lines += ["", f"## {suffix}", "", "| Section | Part | Meaning |", "| --- | --- | --- |"]
+        for word, (meaning, parts) in sections.items():
+            lines.append(f"| `{word}` | | {meaning} |")
+            lines += [f"| | `{part}` | {text} |" for part, text in parts.items()]
+    lines += ["", "## In code", "", "| Name | Meaning |", "| --- | --- |"]
+    lines += [f"| `{name}` | {meaning} |" for name, meaning in BUILT_INS.items()]
+    return "\n".join(lines) + "\n"
+
+
 # --- pages ---------------------------------------------------------------------------------------------
 
 
@@ -128,7 +152,12 @@ def pages() -> dict[Path, str]:
     protocol = DOCS / "protocol.md"
     return {
         DOCS / "errors.md": errors_page(),
+        DOCS / "words.md": words_page(),
         protocol: protocol_page(protocol.read_text(encoding="utf-8")),
+        **{
+            DOCS / "schemas" / f"{name}.json": json.dumps(schema(), indent=2) + "\n"
+            for name, schema in SCHEMAS.items()
+        },
     }
 
 
@@ -140,11 +169,11 @@ def main() -> int:
     ]
     if "--check" in sys.argv[1:]:
         for page, _ in stale:
-            sys.stderr.write(f"docs/{page.name} is not current: run `make docs`\n")
+            sys.stderr.write(f"{page.relative_to(DOCS.parent)} is not current: run `make docs`\n")
         return 1 if stale else 0
     for page, text in stale:
         page.write_text(text, encoding="utf-8")
-        sys.stdout.write(f"docs/{page.name} written\n")
+        sys.stdout.write(f"{page.relative_to(DOCS.parent)} written\n")
     return 0
 
 

@@ -60,7 +60,7 @@ def one_start(deploy: str, scratch: Path, forgotten: str) -> tuple[float, float]
 
 def is_decision(line: str) -> bool:
     event = json.loads(line)
-    return "step" in event and "action" in event
+    return bool(event["event"] == "decision")
 
 
 if __name__ == "__main__":

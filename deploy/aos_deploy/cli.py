@@ -21,6 +21,8 @@ _COMMANDS = {
     "bundle": ("bundle",),
     "convert": ("convert",),
     "new": ("new",),
+    "schema": ("schema",),
+    "language_server": ("language-server",),
     "plan": ("plan", "simulate", "rate"),
     "machine": ("doctor", "version"),
 }

@@ -2,7 +2,6 @@
 
 python docs/examples/follow_decisions.py [ENDPOINT [ROBOT]]
 """
-# ruff: noqa: T201 (it prints what it sees)
 
 from __future__ import annotations
 

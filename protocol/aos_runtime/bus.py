@@ -85,9 +85,9 @@ class Bus:
             return
         self._is_closed = True
         for token in self._tokens.values():
-            token.undeclare()  # type: ignore[no-untyped-call]
+            token.undeclare()
         for queryable in self._queryables:
-            queryable.undeclare()  # type: ignore[no-untyped-call]
+            queryable.undeclare()
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
@@ -217,7 +217,7 @@ class Bus:
     def _end(self, subscription: Subscription[Any], subscriber: zenoh.Subscriber[None]) -> None:
         self._subscriptions.discard(subscription)
         if not self._is_closed:
-            subscriber.undeclare()  # type: ignore[no-untyped-call]
+            subscriber.undeclare()
 
     async def _wait_for_router(self) -> None:
         """Returns when the router has taken in everything declared so far.
@@ -244,7 +244,7 @@ class Bus:
         handler: Callable[[M, str], Awaitable[Message]],
     ) -> None:
         if self._is_closed:
-            query.drop()  # type: ignore[no-untyped-call]
+            query.drop()
             return
         task = self._loop.create_task(self._answer_one(query, request, handler))
         self._tasks.add(task)

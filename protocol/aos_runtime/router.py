@@ -33,7 +33,7 @@ async def route(settings: ServiceSettings) -> None:
     try:
         await asyncio.get_running_loop().create_future()
     finally:
-        session.close()  # type: ignore[no-untyped-call]
+        session.close()
 
 
 if __name__ == "__main__":

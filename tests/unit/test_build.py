@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
+import subprocess
 import time
 from pathlib import Path
 from typing import Any
@@ -13,8 +15,9 @@ from scripted_models import bundle_project, json_text, lowered, mapping_text, te
 
 from aos_protocol.errors import ModelError
 from aos_solver import build as build_module
-from aos_solver.build import BuiltModel, build, build_engine
+from aos_solver.build import SOURCES, BuiltModel, build, build_engine
 from aos_solver.build_cache import BuildCache
+from aos_solver.compiler import find_compiler
 from aos_solver.emit import EmittedModel
 
 HOME = """project: test
@@ -57,7 +60,7 @@ async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir
         both = [tasks.create_task(build(emitted, cache_dir=cache_dir)) for _ in range(2)]
     first, second = (task.result() for task in both)
     assert first.executable == second.executable
-    assert unfinished(cache_dir) == []
+    assert entries(cache_dir, "*.building") == []
     assert await answers(first)
 
 
@@ -148,7 +151,7 @@ async def test_a_compiler_that_does_not_finish_is_stopped(cache_dir: Path) -> No
     emitted = emitted_skill("state__.total = 6;")
     error = await build_error(emitted, cache_dir, deadline_s=0.3)
     assert error.code == "AOS202"
-    assert unfinished(cache_dir) == []
+    assert entries(cache_dir, "*.building") == []
 
 
 async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path: Path) -> None:
@@ -158,10 +161,46 @@ async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp
 
     with pytest.raises(ModelError):
         await BuildCache(tmp_path).fill("entry", fail)
-    assert unfinished(tmp_path, "*") == []
+    assert entries(tmp_path) == []
 
 
-def unfinished(cache_dir: Path, pattern: str = "*.building") -> list[Path]:
+async def test_entries_that_nobody_used_for_a_month_make_room(tmp_path: Path) -> None:
+    async def make(staging: Path) -> None:
+        (staging / "part").write_text("whole")
+
+    long_ago_s = time.time() - 40 * 86400
+    names = ("model-forgotten", "model-used", "model-killed.building")
+    for name in names:
+        await BuildCache(tmp_path).fill(name, make)
+    for name in names:
+        os.utime(tmp_path / name, (long_ago_s, long_ago_s))
+    assert BuildCache(tmp_path).find("model-used") is not None
+    await BuildCache(tmp_path).fill("model-new", make)
+    assert sorted(path.name for path in entries(tmp_path)) == ["model-new", "model-used"]
+
+
+async def test_what_models_include_is_compiled_once_and_changes_nothing(
+    cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compiler = await find_compiler()
+    if compiler.precompilation("a.hpp", "/include") is None:
+        pytest.skip(f"{compiler.version} includes no precompiled headers by themselves")
+    engine = (await build_engine(cache_dir)).parent
+    assert (engine / "aos/model_support.hpp.gch").is_file()
+    (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)
+    objects = []
+    for more in ([], ["-I", str(engine)]):
+        command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *more, "-H")
+        done = await asyncio.to_thread(
+            subprocess.run, command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=60
+        )
+        # g++ marks with `!` what it takes as compiled.
+        assert ("! " in done.stderr) == bool(more), done.stderr
+        objects.append((tmp_path / "model.o").read_bytes())
+    assert objects[0] == objects[1]
+
+
+def entries(cache_dir: Path, pattern: str = "*") -> list[Path]:
     return list(cache_dir.glob(pattern))
 
 

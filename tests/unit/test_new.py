@@ -10,6 +10,7 @@ import typer
 from typer.testing import CliRunner, Result
 
 from aos_deploy.commands import documents, new, plan
+from aos_registry.convert import without_origins
 from aos_registry.load import load_bundle
 
 
@@ -40,6 +41,17 @@ def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal(a
     assert json.loads(planned.stdout)["action"] == "look"
     played = run(aos, "simulate fetch --runs 5 --simulations 20000 --json")
     assert json.loads(played.stdout)["summary"]["goal_rate"] == 1.0
+
+
+def test_a_project_in_json_says_the_same_as_one_in_sdl(aos: typer.Typer) -> None:
+    assert run(aos, "new project fetch").exit_code == 0
+    assert run(aos, "new project fetch --dialect json --in json").exit_code == 0
+    assert run(aos, "new skill wipe --in fetch").exit_code == 0
+    assert run(aos, "new skill wipe --in json/fetch").exit_code == 0
+    assert {path.suffix for path in Path("json/fetch").iterdir()} == {".json"}
+    sdl, json_bundle = load_bundle(Path("fetch")), load_bundle(Path("json/fetch"))
+    assert json_bundle.diagnostics == ()
+    assert without_origins(json_bundle.project) == without_origins(sdl.project)
 
 
 def test_nothing_is_overwritten(aos: typer.Typer) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -40,6 +43,13 @@ def make(world: WorldFile) -> Make:
     return build
 
 
+def with_misplaced_easy_can(world: WorldFile, probability: float) -> WorldFile:
+    easy = world.tables["easy"]
+    can = msgspec.structs.replace(easy.can, misplaced=probability)
+    tables = {**world.tables, "easy": msgspec.structs.replace(easy, can=can)}
+    return msgspec.structs.replace(world, tables=tables, faults=FaultModel())
+
+
 def test_a_faultless_robot_brings_the_easy_can_to_the_person(make: Make) -> None:
     skills = make(FaultModel())
     assert skills.call("/navigate", EASY_TABLE)["success"]
@@ -58,6 +68,38 @@ def test_the_hard_can_is_not_grasped_where_the_robot_sees_it(make: Make) -> None
     assert not skills.is_holding
     left, right = skills.robot.finger_forces_n()
     assert skills.robot.gap_m < 0.005 or min(left, right) == 0
+
+
+def test_a_lost_can_is_not_picked_again(make: Make, world: WorldFile) -> None:
+    skills = make(world.faults, seed=3)
+    skills.call("/pick", {})
+    skills.robot.wait(1.0)
+    assert not skills.is_holding
+    assert not skills.sees_can
+    skills.call("/pick", {})
+    assert not skills.is_holding
+
+
+def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, world: WorldFile) -> None:
+    skills = make(FaultModel())
+    before = skills.scene.can_place("easy")
+    skills.call("/navigate", EASY_TABLE)
+    skills.scene.file = with_misplaced_easy_can(world, 1.0)
+    skills.call("/pick", {})
+    assert not skills.is_holding
+    assert skills.scene.can_place("easy") == pytest.approx(before, abs=1e-3)
+    skills.scene.file = with_misplaced_easy_can(world, 0.0)
+    skills.call("/pick", {})
+    assert skills.is_holding
+
+
+def test_the_frequencies_are_json_and_nothing_else(root: Path) -> None:
+    command = [sys.executable, "-m", "aos_skills.pybullet.frequencies", "deploy/worlds/armadillo.yaml"]
+    ended = subprocess.run([*command, "1", "--json"], cwd=root, capture_output=True, timeout=120, check=True)
+    counts = json.loads(ended.stdout)
+    assert counts["picks"] == 1
+    assert sum(counts["easy"].values()) == sum(counts["hard"].values()) == 1
+    assert b"of 1 picks" in ended.stderr
 
 
 def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Make) -> None:

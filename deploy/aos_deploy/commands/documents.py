@@ -94,18 +94,24 @@ def _model_findings(path: Path, project: Project) -> tuple[Diagnostic, ...]:
 
     from aos_deploy.program import cache_dir
     from aos_solver.hot_plug import build_project
+    from aos_solver.lower import lower
+    from aos_solver.reachability import reachability_findings
+
+    async def findings() -> tuple[Diagnostic, ...]:
+        built = await build_project(project, cache_dir(), tell)
+        return await reachability_findings(project, built)
 
     def tell(progress: str) -> None:
         typer.echo(f"aos: {progress}", err=True)
 
     try:
-        asyncio.run(build_project(project, cache_dir(), tell))
+        reached = asyncio.run(findings())
     except AosError as error:
         if not error.diagnostics:
             return (Diagnostic(Severity.ERROR, error.code, error.message, Span(path.name), error.hint),)
-        files, _ = read_bundle_files(path)
-        return with_excerpts(error.diagnostics, files)
-    return ()
+        return with_excerpts(error.diagnostics, read_bundle_files(path)[0])
+    _, warnings = lower(project)
+    return with_excerpts((*warnings, *reached), read_bundle_files(path)[0])
 
 
 def inspect(

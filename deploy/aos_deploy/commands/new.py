@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from aos_protocol.errors import DocumentError
+from aos_registry.convert import Dialect, convert
 from aos_registry.load import read_bundle_files
 from aos_registry.merge import pushed_project
 
@@ -30,13 +31,14 @@ def register(app: typer.Typer) -> None:
 def project(
     name: Annotated[str, typer.Argument(help="The project's name, in small letters")],
     folder: Annotated[Path, typer.Option("--in", help="Where the bundle's directory is made")] = Path(),
+    dialect: Annotated[Dialect, typer.Option(help="The language of the documents")] = Dialect.SDL,
 ) -> None:
     """Write a small project: an environment and two skills, one that senses and one that acts."""
     _check_name(name, "project")
     bundle = folder / name
     texts = {file: text for file, text in _filled("project", project=name).items() if file != "project.ef"}
     texts[f"{name}.ef"] = _filled("project", project=name)["project.ef"]
-    _write(bundle, texts)
+    _write(bundle, _in_dialect(texts, dialect))
     typer.echo(f"Look at it:  aos plan {bundle}\nPlay it:     aos simulate {bundle} --runs 20")
     typer.echo(f"Add a skill: aos new skill NAME --in {bundle}")
 
@@ -46,7 +48,7 @@ def skill(
     name: Annotated[str, typer.Argument(help="The skill's name, in small letters")],
     bundle: Annotated[Path, typer.Option("--in", help="The bundle's directory")] = Path(),
 ) -> None:
-    """Write a skill's two documents into a bundle: NAME.sd and NAME.am."""
+    """Write a skill's two documents into a bundle: NAME.sd and NAME.am, in JSON if all its documents are."""
     _check_name(name, "skill")
     documents, _ = read_bundle_files(bundle)
     owner = pushed_project(documents)
@@ -54,7 +56,9 @@ def skill(
         hint = "Name a bundle with --in, or start one: aos new project NAME"
         raise DocumentError(f"there are no documents in {bundle}", code="AOS120", hint=hint)
     texts = _filled("skill", project=owner, skill=name)
-    _write(bundle, {file.replace("skill.", f"{name}."): text for file, text in texts.items()})
+    texts = {file.replace("skill.", f"{name}."): text for file, text in texts.items()}
+    is_json = all(file.endswith(".json") for file in documents)
+    _write(bundle, _in_dialect(texts, Dialect.JSON if is_json else Dialect.SDL))
     typer.echo(f"Check it: aos lint {bundle}")
 
 
@@ -68,6 +72,13 @@ def _filled(kind: str, **names: str) -> dict[str, str]:
     """The templates of a kind by file name, with the names put in."""
     folder = files("aos_deploy") / "templates" / kind
     return {each.name: Template(each.read_text("utf-8")).substitute(names) for each in folder.iterdir()}
+
+
+def _in_dialect(texts: dict[str, str], dialect: Dialect) -> dict[str, str]:
+    """The templates are in SDL."""
+    if dialect is Dialect.SDL:
+        return texts
+    return convert({file: text.encode() for file, text in texts.items()}, dialect)[0]
 
 
 def _write(folder: Path, texts: dict[str, str]) -> None:

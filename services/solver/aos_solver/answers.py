@@ -16,6 +16,8 @@ __all__ = [
     "ExportedBelief",
     "GroundedAction",
     "Plan",
+    "Reach",
+    "ReachedAction",
     "SampleCount",
     "WorldStart",
     "WorldStep",
@@ -79,6 +81,27 @@ class ExactValues(msgspec.Struct, frozen=True):
     actions: tuple[ExactValue, ...]
     beliefs: int
     states: int
+
+
+class ReachedAction(msgspec.Struct, frozen=True):
+    """Whether some state that can be reached meets the action's precondition."""
+
+    name: str
+    skill: str
+    is_met: bool
+
+
+class Reach(msgspec.Struct, frozen=True):
+    """What the actions can lead to; `limit` says why there may be more, and is empty where there is not.
+
+    The search ends early when nothing is missing. `depth` is in actions from the start.
+    """
+
+    has_goal: bool
+    actions: tuple[ReachedAction, ...]
+    states: int
+    depth: int
+    limit: str
 
 
 class ExportedBelief(msgspec.Struct, frozen=True):

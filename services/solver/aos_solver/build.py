@@ -1,7 +1,8 @@
 """From the emitted C++ to an executable, through a cache.
 
 The model is compiled for itself. The engine is compiled once for all models whose states have up to so many
-bytes, and linked to it: it is four times as much code, and models change while a robot waits.
+bytes, and linked to it: it is four times as much code, and models change while a robot waits. What models
+include is compiled with the engine, too: reading it is a quarter of the time that a model takes.
 """
 
 from __future__ import annotations
@@ -9,8 +10,9 @@ from __future__ import annotations
 import asyncio
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -28,6 +30,9 @@ SOURCES = Path(__file__).parent / "cpp"
 
 STATE_BYTES = (64, 256, 1024, 4096, 16384, 65536, 262144, 1048576)
 """The sizes of states that engines are compiled for; most models fit the first."""
+
+_SUPPORT = "aos/model_support.hpp"
+"""What every emitted model includes first."""
 
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
@@ -87,19 +92,26 @@ async def build_engine(
     Setting up a machine may call it, so that its first model is compiled as quickly as the later ones.
     """
     compiler = compiler or await find_compiler()
-    name = f"engine-{state_bytes}-{digest_of(_circumstances(compiler))}"
 
     async def make(staging: Path) -> None:
         on_progress(f"compiling the engine with {compiler.version}, once for all models")
         if compiler.family == "zig":
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
         define = f"-DAOS_STATE_BYTES={state_bytes}"
-        compilation = compiler.compilation(str(SOURCES / "engine.cpp"), _OBJECT, str(SOURCES), define)
-        output, status = await _run(compiler, compilation, staging, compiler.deadline_s, "the engine")
-        if status != 0:
-            raise _internal_error("the engine", output, status, SOURCES / "engine.cpp")
+        commands = [compiler.compilation(str(SOURCES / "engine.cpp"), _OBJECT, str(SOURCES), define)]
+        if state_bytes == STATE_BYTES[0] and (command := compiler.precompilation(_SUPPORT, str(SOURCES))):
+            (staging / _SUPPORT).parent.mkdir()
+            commands.append(command)
+        runs = [_run(compiler, command, staging, compiler.deadline_s, "the engine") for command in commands]
+        for output, status in await _together(runs):
+            if status != 0:
+                raise _internal_error("the engine", output, status, SOURCES / "engine.cpp")
 
-    return await BuildCache(cache_dir).fill(name, make) / _OBJECT
+    return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make) / _OBJECT
+
+
+def _engine_name(compiler: Compiler, state_bytes: int) -> str:
+    return f"engine-{state_bytes}-{digest_of(_circumstances(compiler))}"
 
 
 class _Build:
@@ -142,11 +154,17 @@ class _Build:
     async def _compile(self, staging: Path) -> None:
         (staging / MODEL_FILE).write_text(self._emitted.cpp)
         (staging / _SOURCE).write_text(without_line_directives(self._emitted.cpp))
-        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES))
+        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *self._precompiled)
         output, status = await self._run(compilation, staging)
         if status != 0:
             raise self._failure(output, status)
         (staging / _SOURCE).unlink()
+
+    @property
+    def _precompiled(self) -> list[str]:
+        """Where to search first for what models include, if that is compiled already."""
+        entry = self._cache.find(_engine_name(self._compiler, STATE_BYTES[0]))
+        return [] if entry is None else ["-I", str(entry)]
 
     def _state_bytes(self, model: Path) -> int:
         """The smallest size of engine that takes the model's states."""
@@ -220,6 +238,16 @@ async def _run(
         raise ModelError(message, code="AOS202", hint=_LIMIT_HINT) from error
     finally:
         await child.stop()
+
+
+async def _together(runs: list[Coroutine[Any, Any, tuple[str, int]]]) -> list[tuple[str, int]]:
+    """The results of all; if one fails, the others are stopped and its error is raised."""
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            started = [tasks.create_task(run) for run in runs]
+    except ExceptionGroup as errors:
+        raise errors.exceptions[0] from None
+    return [task.result() for task in started]
 
 
 async def _read(child: Child) -> str:

@@ -1,7 +1,7 @@
 """A cache of build results that several processes may share.
 
 An entry is a directory that appears at once, by a rename, when everything in it is complete. Its name is the
-digest of all that decides about the result.
+digest of all that decides about the result. What nobody has asked for in a month makes room for new entries.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 __all__ = ["BuildCache", "digest_of"]
 
 _ABANDONED_AFTER_S = 3600.0
+_UNUSED_AFTER_S = 30 * 86400.0
 
 
 def digest_of(parts: Iterable[str]) -> str:
@@ -31,19 +32,23 @@ class BuildCache:
     """Entries below a directory, which need not exist."""
 
     def __init__(self, directory: Path) -> None:
-        self.directory = directory
+        self.directory = directory.absolute()
 
     def find(self, name: str) -> Path | None:
         """The entry of that name, if it is complete."""
         entry = self.directory / name
-        return entry if entry.is_dir() else None
+        if not entry.is_dir():
+            return None
+        with contextlib.suppress(OSError):
+            os.utime(entry)
+        return entry
 
     async def fill(self, name: str, make: Callable[[Path], Awaitable[None]]) -> Path:
         """The entry of that name, which `make` fills if it is not there; what `make` raises leaves none."""
+        if (found := self.find(name)) is not None:
+            return found
+        self._remove_old()
         entry = self.directory / name
-        if entry.is_dir():
-            return entry
-        self._remove_abandoned()
         staging = self.directory / f"{name}.{os.getpid()}.{time.monotonic_ns()}.building"
         staging.mkdir(parents=True)
         try:
@@ -61,9 +66,10 @@ class BuildCache:
             if not entry.is_dir():
                 raise
 
-    def _remove_abandoned(self) -> None:
-        """Removes what builds left behind that were killed."""
-        for path in self.directory.glob("*.building"):
+    def _remove_old(self) -> None:
+        """Removes unused entries, and what builds left behind that were killed."""
+        for path in self.directory.glob("*-*"):
+            limit_s = _ABANDONED_AFTER_S if path.suffix == ".building" else _UNUSED_AFTER_S
             with contextlib.suppress(OSError):
-                if time.time() - path.stat().st_mtime > _ABANDONED_AFTER_S:
+                if path.is_dir() and time.time() - path.stat().st_mtime > limit_s:
                     shutil.rmtree(path, ignore_errors=True)

@@ -37,7 +37,7 @@ class Compiler(msgspec.Struct, frozen=True):
     family: Family
     version: str
 
-    def compilation(self, source: str, output: str, include: str, *defines: str) -> list[str]:
+    def compilation(self, source: str, output: str, include: str, *more: str) -> list[str]:
         """The command that compiles a file.
 
         Messages read `file:line:column: error: text`; columns count bytes.
@@ -51,7 +51,18 @@ class Compiler(msgspec.Struct, frozen=True):
             # A null pointer shall crash where it is used, and not be optimised into a trap elsewhere.
             own += ["-ferror-limit=40", "-fno-delete-null-pointer-checks"]
             own += [*(["-fno-sanitize=all"] if self.family == "zig" else [])]
-        return [*self.command, *common, *own, *defines, "-I", include, "-c", source, "-o", output]
+        return [*self.command, *common, *own, *more, "-I", include, "-c", source, "-o", output]
+
+    def precompilation(self, header: str, include: str) -> list[str] | None:
+        """The command that reads a header for all files that include it first; None if it would not help.
+
+        The result is called `header`.gch below the directory where the command runs. A compilation that
+        searches that directory before `include` uses it, and reads the header itself where it does not fit.
+        """
+        if self.family != "gcc":
+            # Clang uses one only where it is named in place of the inclusion.
+            return None
+        return self.compilation(f"{include}/{header}", f"{header}.gch", include, "-x", "c++-header")
 
     def linking(self, objects: list[str], output: str) -> list[str]:
         """The command that links object files into an executable."""

@@ -25,6 +25,7 @@ from aos_solver.answers import (
     ExactValues,
     ExportedBelief,
     Plan,
+    Reach,
     SampleCount,
     WorldStart,
     WorldStep,
@@ -125,6 +126,10 @@ class Engine:
         """Finite-horizon values by enumeration; ModelError AOS220 where that is not tractable, and why."""
         command = f"exact\t{horizon or 0}\t{EXACT_BELIEF_BUDGET}\t{EXACT_TIME_S}"
         return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
+
+    async def reach(self, time_s: float) -> Reach:
+        """Which states the actions can lead to from the current belief, looked at for so long at most."""
+        return await self._ask(f"reach\t{time_s}", Reach, deadline_s=time_s + ANSWER_DEADLINE_S)
 
     async def update(self, action: str, response: str) -> BeliefUpdate:
         """Bayes' rule after an action and its observation."""

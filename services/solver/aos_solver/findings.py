@@ -16,5 +16,8 @@ class Findings:
     def error(self, code: str, message: str, span: Span, hint: str = "") -> None:
         self.diagnostics.append(Diagnostic(Severity.ERROR, code, message, span, hint))
 
+    def remark(self, code: str, message: str, span: Span, hint: str = "") -> None:
+        self.diagnostics.append(Diagnostic(Severity.REMARK, code, message, span, hint))
+
     def warning(self, code: str, message: str, span: Span, hint: str = "") -> None:
         self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, span, hint))

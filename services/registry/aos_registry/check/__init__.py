@@ -1,7 +1,8 @@
 """The rules across documents.
 
 `declarations` looks at names and types, `model_code` at the C++ of environment and skills, `responses` at
-what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings.
+what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings,
+`unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from aos_registry.check.mapping_code import check_low_level, check_mapping
 from aos_registry.check.model_code import check_environment_code, check_skill_code
 from aos_registry.check.responses import check_responses
 from aos_registry.check.scope import Scope
+from aos_registry.check.unused import check_unused_locals, check_unused_variables
 from aos_registry.documents.source import Findings
 
 __all__ = ["check"]
@@ -20,6 +22,7 @@ __all__ = ["check"]
 def check(assembly: Assembly, findings: Findings) -> None:
     """Reports all that the documents contradict; what is missing is left to `assembly`."""
     scope = Scope.of(assembly)
+    is_whole = not findings.has_errors  # What could not be read may have used a variable.
     if assembly.environment is not None:
         check_environment_names(assembly.environment, scope, findings)
         check_environment_code(assembly.environment, scope, findings)
@@ -30,6 +33,11 @@ def check(assembly: Assembly, findings: Findings) -> None:
         if name in assembly.mappings:
             check_responses(model, assembly.mappings[name], scope, findings)
     for name, mapping in assembly.mappings.items():
+        before = len(findings)
         check_mapping(mapping, assembly.models.get(name), scope, findings)
+        if is_whole and len(findings) == before:
+            check_unused_locals(mapping, findings)
     if assembly.low_level is not None:
         check_low_level(assembly.low_level, findings)
+    if is_whole and assembly.environment is not None:
+        check_unused_variables(assembly.environment, assembly.models.values(), findings)

@@ -118,14 +118,15 @@ def _check_variable(variable: LocalVariable, findings: Findings) -> None:
     tree = _parse(variable.code, "exec", findings)
     if tree is None:
         return
+    assigned = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    if variable.name in assigned:
+        return
     if variable.source is LocalSource.SERVICE_RESPONSE:
-        assigned = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
-        if variable.name not in assigned:
-            message = f"this code never assigns `{variable.name}`"
-            hint = f"It assigns {quoted(sorted(assigned))}" if assigned else "Write `name = ...`"
-            findings.error("AOS121", message, variable.code.span, hint)
+        message = f"this code never assigns `{variable.name}`"
+        hint = f"It assigns {quoted(sorted(assigned))}" if assigned else "Write `name = ...`"
+        findings.error("AOS121", message, variable.code.span, hint)
     elif not any(isinstance(node, ast.Return) for node in ast.walk(tree)):
-        hint = f"Without it {variable.name} becomes None with each message"
+        hint = f"Without it {variable.name} stays as it was, whatever the message says"
         findings.warning("AOS121", "this code returns nothing", variable.code.span, hint)
 
 

@@ -96,6 +96,9 @@ class Findings:
     def remark(self, code: str, message: str, span: Span, hint: str = "") -> None:
         self._add(Severity.REMARK, code, message, span, hint)
 
+    def __len__(self) -> int:
+        return len(self._diagnostics)
+
     @property
     def has_errors(self) -> bool:
         return any(diagnostic.is_error for diagnostic in self._diagnostics)

@@ -8,9 +8,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-import pybullet
-from pybullet_utils.bullet_client import BulletClient
-
+from aos_skills.pybullet.client import connect
 from aos_skills.pybullet.robot_model import bare_arm_urdf, urdf_file
 
 __all__ = ["ArmKinematics"]
@@ -24,7 +22,7 @@ class ArmKinematics:
     """A Panda with its foot at the origin, which is only ever asked for angles."""
 
     def __init__(self, data: Path) -> None:
-        self._client = BulletClient(connection_mode=pybullet.DIRECT)
+        self._client = connect()
         with urdf_file(bare_arm_urdf(data)) as path:
             self._arm: int = self._client.loadURDF(path, useFixedBase=True)
         joints = range(self._client.getNumJoints(self._arm))

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pybullet
 import pybullet_data
-from pybullet_utils.bullet_client import BulletClient
 
+from aos_skills.pybullet.client import connect
 from aos_skills.pybullet.world_file import Can, Table, WorldFile
 
 __all__ = ["STEP_S", "TABLE_TOP_M", "TRAY_TOP_M", "Scene"]
@@ -34,7 +34,7 @@ class Scene:
     """Owns the pybullet client and every body but the robot. `step` is the only way that time passes."""
 
     def __init__(self, file: WorldFile) -> None:
-        self.client = BulletClient(connection_mode=pybullet.DIRECT)
+        self.client = connect()
         self.data = Path(pybullet_data.getDataPath())
         self.file = file
         self.time_s = 0.0

@@ -60,6 +60,7 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "summary") return engine.summary(json);
   if (command == "plan") return engine.plan(json, {large(1), real(2)}, large(3), whole(4));
   if (command == "exact") return engine.exact(json, whole(1), large(2), real(3));
+  if (command == "reach") return engine.reach(json, real(1));
   if (command == "update") return engine.update(json, whole(1), fields.at(2));
   if (command == "update_without_observation") return engine.update_without_observation(json, whole(1), real(2));
   if (command == "export_belief") return engine.export_belief(json);

@@ -14,6 +14,7 @@
 #include "aos/exact.hpp"
 #include "aos/json.hpp"
 #include "aos/pomcp.hpp"
+#include "aos/reachability.hpp"
 
 namespace aos {
 
@@ -95,6 +96,17 @@ class Engine {
       json.member("q", values[static_cast<std::size_t>(action)]).end_object();
     }
     json.end_array().member("beliefs", evaluation.beliefs()).member("states", evaluation.states()).end_object();
+  }
+
+  void reach(JsonWriter& json, double seconds) const {
+    const Reachability<Model> reached{belief_, seconds};
+    json.begin_object().member("has_goal", reached.has_goal()).key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      json.begin_object().member("name", Model::action_name(action));
+      json.member("skill", Model::skill_name(Model::skill_of(action))).member("is_met", reached.is_met(action)).end_object();
+    }
+    json.end_array().member("states", reached.states()).member("depth", reached.depth());
+    json.member("limit", reached.limit()).end_object();
   }
 
   void update(JsonWriter& json, int action, std::string_view response) {

@@ -75,6 +75,10 @@ namespace detail {
 [[noreturn, gnu::cold, gnu::noinline]] inline void no_such_reward(double reward) {
   throw ModelFault{"AOS214", "the reward is " + std::to_string(reward)};
 }
+// After each phase that has a reward of its own, so that the phase is blamed and not the one after it.
+inline void check_reward(double reward) {
+  if (!std::isfinite(reward)) no_such_reward(reward);
+}
 
 template <class Skill>
 Observation observation_of(const auto& effect) {
@@ -98,17 +102,19 @@ Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, a
   if constexpr (Environment::has_extrinsic_changes) {
     const typename Environment::Chosen chosen{parameters};
     Environment::extrinsic_changes(state, state_, extrinsic_reward, execution_time, chosen, random);
+    check_reward(extrinsic_reward);
     if constexpr (!Environment::is_one_state) next = state_;
   }
 
   std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
   Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
+  check_reward(effect.reward);
   const double special_reward = Environment::special_states(next, random);
   const double penalty = meets_precondition ? 0 : Skill::violation_penalty;
 
   Step step;
   step.reward = penalty + extrinsic_reward + effect.reward + special_reward;
-  if (!std::isfinite(step.reward)) no_such_reward(step.reward);
+  check_reward(step.reward);
   step.observation = observation_of<Skill>(effect);
   blame::at(0);
   return step;

@@ -1,0 +1,22 @@
+"""`aos language-server`: what an editor starts to check documents while they are written."""
+
+from __future__ import annotations
+
+import typer
+
+__all__ = ["register"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command("language-server", epilog="Example: aos language-server")(serve)
+
+
+def serve() -> None:
+    """Serve an editor over standard input and output (Language Server Protocol).
+
+    Editors start it by themselves; docs/editors.md has the settings.
+    """
+    from aos_deploy.language_server.server import language_server  # The protocol's types take a while.
+
+    language_server().start_io()

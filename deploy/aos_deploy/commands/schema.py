@@ -1,0 +1,33 @@
+"""`aos schema`: JSON Schemas for editors."""
+
+from __future__ import annotations
+
+import json
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+from aos_deploy.schemas import SCHEMAS
+
+__all__ = ["register"]
+
+
+class Name(StrEnum):
+    PLP = "plp"
+    GSDL = "gsdl"
+    DEPLOY = "deploy"
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos schema deploy > deploy.schema.json")(schema)
+
+
+def schema(
+    name: Annotated[
+        Name, typer.Argument(help="plp: JSON of AOS 1.x, gsdl: the paper's JSON, deploy: the deploy file")
+    ],
+) -> None:
+    """Print a JSON Schema; docs/editors.md says how an editor uses it."""
+    typer.echo(json.dumps(SCHEMAS[name](), indent=2))

@@ -1,0 +1,1 @@
+"""The language server: the linter, the meaning of words and the outline of documents, for editors."""

@@ -1,0 +1,26 @@
+"""The schema of the deploy file, from the types that read it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import msgspec
+
+from aos_deploy.deploy_file import DeployFile
+
+__all__ = ["deploy_schema"]
+
+
+def deploy_schema() -> dict[str, Any]:
+    """A JSON Schema (draft 2020-12) for the YAML file that aos-up takes."""
+    # Through JSON, for the defaults that are tuples.
+    schema: dict[str, Any] = json.loads(json.dumps(msgspec.json.schema(DeployFile)))
+    parts = schema["$defs"]
+    for part in parts.values():
+        part["additionalProperties"] = False
+        part["description"] = " ".join(part["description"].split())
+    parts["SolverPart"]["not"] = {"required": ["simulations", "time_s"]}
+    parts["DeployFile"]["properties"]["bundles"]["minItems"] = 1
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "AOS deploy file"}
+    return {**head, **schema}

@@ -1,0 +1,72 @@
+"""Goals and preconditions that nothing leads to: told as warnings, by looking at what the actions can do."""
+
+from __future__ import annotations
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.documents import Environment, Project
+from aos_protocol.errors import ModelError
+from aos_solver.answers import Reach
+from aos_solver.build import BuiltModel
+from aos_solver.engine import Engine
+from aos_solver.findings import Findings
+
+__all__ = ["reachability_findings"]
+
+_NAMED_ACTIONS = 3
+_TIME_S = 3.0
+
+
+async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Diagnostic, ...]:
+    """Looks at the states that the actions can lead to from the initial belief, for a few seconds at most.
+
+    What is missing is a warning where all states were looked at, and a remark with the search's extent where
+    there are more. A fault of model code on the way is a warning at its place.
+    """
+    try:
+        engine = await Engine.start(built, seed=1)
+        try:
+            reach = await engine.reach(_TIME_S)
+        finally:
+            await engine.close()
+    except ModelError as error:
+        return tuple(_as_warning(diagnostic) for diagnostic in error.diagnostics)
+    findings = Findings()
+    tell = findings.remark if reach.limit else findings.warning
+    goal = _goal_span(project.environment)
+    if goal is not None and not reach.has_goal:
+        tell("AOS132", "no action leads to a goal", goal, _extent(reach))
+    for skill in project.skills:
+        actions = [action for action in reach.actions if action.skill == skill.name]
+        unmet = [action.name for action in actions if not action.is_met]
+        if unmet and skill.model.precondition:
+            message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
+            tell("AOS131", message, skill.model.precondition[0].span, _extent(reach))
+    return tuple(findings.diagnostics)
+
+
+def _as_warning(diagnostic: Diagnostic) -> Diagnostic:
+    message = f"in a state that can be reached: {diagnostic.message}"
+    return Diagnostic(Severity.WARNING, diagnostic.code, message, diagnostic.span, diagnostic.hint)
+
+
+def _goal_span(environment: Environment) -> Span | None:
+    """The first special state that may be a goal."""
+    for special in environment.special_states:
+        code = " ".join(each.code.code for each in special.code if each.code is not None)
+        if (special.is_goal and special.reward > 0) or "__isGoalState" in code:
+            return special.span
+    return None
+
+
+def _named(unmet: list[str], actions: int, skill: str) -> str:
+    if len(unmet) == actions:
+        return skill
+    rest = len(unmet) - _NAMED_ACTIONS
+    return ", ".join(unmet[:_NAMED_ACTIONS]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _extent(reach: Reach) -> str:
+    states = "1 state" if reach.states == 1 else f"{reach.states} states"
+    if reach.limit:
+        return f"Looked at {states}, up to {reach.depth} actions from the start; {reach.limit}"
+    return f"Looked at all that can be reached, {states}, up to {reach.depth} actions from the start"

@@ -1,0 +1,166 @@
+"""The language server, started and spoken to as an editor does."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+import pytest_asyncio
+from lsprotocol import types
+from pygls.lsp.client import LanguageClient
+
+AOS = Path(sys.executable).parent / "aos"
+DEADLINE_S = 20.0
+
+ENVIRONMENT = """project: lamp
+horizon: 3
+
+state_variable: bool is_lit
+code:
+state.is_lit = false;
+
+reward_code:
+if (state.is_lit) { __reward = 1; __isGoalState = true; }
+"""
+SKILL = """project: lamp
+
+dynamic_model:
+state__.is_lit = AOS.Bernoulli(0.9);
+__moduleResponse = state__.is_lit ? lit : dark;
+__reward = -1;
+"""
+MAPPING = """project: lamp
+
+response: lit
+response_rule: success
+response: dark
+response_rule: True
+
+module_activation: skill
+path: /press
+
+local_variable: success
+from_ros_service_response: true
+code:
+success = __input.success
+"""
+
+
+class Editor(LanguageClient):
+    """What an editor shows: the latest findings of each file."""
+
+    def __init__(self) -> None:
+        super().__init__("test", "1")
+        self.told: asyncio.Queue[tuple[str, list[types.Diagnostic]]] = asyncio.Queue()
+
+        @self.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
+        def on_findings(params: types.PublishDiagnosticsParams) -> None:
+            name = params.uri.rpartition("/")[2]
+            self.told.put_nowait((name, list(params.diagnostics)))
+
+    async def findings(self, name: str) -> list[types.Diagnostic]:
+        """The next findings about a file."""
+        async with asyncio.timeout(DEADLINE_S):
+            while True:
+                told, found = await self.told.get()
+                if told == name:
+                    return found
+
+    def open(self, path: Path) -> None:
+        item = types.TextDocumentItem(path.as_uri(), "aos", 1, path.read_text())
+        self.text_document_did_open(types.DidOpenTextDocumentParams(item))
+
+    def change(self, path: Path, text: str) -> None:
+        document = types.VersionedTextDocumentIdentifier(2, path.as_uri())
+        whole = types.TextDocumentContentChangeWholeDocument(text)
+        self.text_document_did_change(types.DidChangeTextDocumentParams(document, [whole]))
+
+
+@pytest.fixture
+def bundle(tmp_path: Path) -> Path:
+    folder = tmp_path / "lamp"
+    folder.mkdir()
+    for name, text in (("lamp.ef", ENVIRONMENT), ("press.sd", SKILL), ("press.am", MAPPING)):
+        (folder / name).write_text(text)
+    return folder
+
+
+@pytest_asyncio.fixture
+async def editor() -> AsyncIterator[Editor]:
+    client = Editor()
+    await client.start_io(str(AOS), "language-server")
+    async with asyncio.timeout(DEADLINE_S):
+        await client.initialize_async(types.InitializeParams(types.ClientCapabilities()))
+        client.initialized(types.InitializedParams())
+        yield client
+        await client.shutdown_async(None)
+        client.exit(None)
+        await client.stop()
+
+
+async def test_a_mistake_is_shown_at_its_word_and_goes_when_the_text_is_mended_unsaved(
+    editor: Editor, bundle: Path
+) -> None:
+    skill = bundle / "press.sd"
+    broken = SKILL.replace("state__.is_lit = AOS", "/* 💡 */ state__.is_let = AOS")
+    skill.write_text(broken)
+    editor.open(skill)
+    (found,) = await editor.findings("press.sd")
+    assert "is_let" in found.message
+    assert found.severity is types.DiagnosticSeverity.Error
+    # The lamp counts two units in the editor, and is one character to the linter.
+    column = len("/* 💡 */ state__.") + 1
+    end = column + len("is_let")
+    assert found.range == types.Range(types.Position(3, column), types.Position(3, end))
+    editor.change(skill, SKILL)
+    assert await editor.findings("press.sd") == []
+    assert skill.read_text() == broken
+
+
+async def test_an_edit_in_one_file_is_checked_against_the_others(editor: Editor, bundle: Path) -> None:
+    environment = bundle / "lamp.ef"
+    editor.open(environment)
+    editor.change(environment, ENVIRONMENT.replace("is_lit", "is_on"))
+    found = await editor.findings("press.sd")
+    assert all("is_lit" in each.message for each in found)
+    assert {each.range.start.line for each in found} == {3, 4}
+
+
+async def test_words_are_explained_and_completed_and_sections_listed(editor: Editor, bundle: Path) -> None:
+    environment, skill = bundle / "lamp.ef", bundle / "press.sd"
+    editor.open(environment)
+    editor.open(skill)
+    document = types.TextDocumentIdentifier(skill.as_uri())
+
+    hover = await editor.text_document_hover_async(types.HoverParams(document, types.Position(5, 3)))
+    assert hover is not None
+    assert isinstance(hover.contents, types.MarkupContent)
+    assert hover.contents.value.startswith("`__reward` ")
+
+    editor.change(skill, SKILL + "\npre")
+    asked = types.CompletionParams(document, types.Position(7, 3))
+    proposed = await editor.text_document_completion_async(asked)
+    assert isinstance(proposed, list)
+    assert "precondition:" in [item.label for item in proposed]
+
+    symbols = await editor.text_document_document_symbol_async(
+        types.DocumentSymbolParams(types.TextDocumentIdentifier(environment.as_uri()))
+    )
+    assert symbols is not None
+    assert [symbol.name for symbol in symbols] == ["lamp", "3", "bool is_lit", "reward_code"]
+    assert [child.name for child in symbols[2].children or ()] == ["code"]
+
+
+async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: Path, tmp_path: Path) -> None:
+    stray = tmp_path / "package.json"
+    stray.write_text("{}")
+    editor.open(stray)
+    skill = bundle / "press.sd"
+    skill.write_text(SKILL.replace("lit :", "bright :"))
+    editor.open(skill)
+    async with asyncio.timeout(DEADLINE_S):
+        name, _ = await editor.told.get()
+    assert name.startswith("press.")

@@ -1,0 +1,151 @@
+"""What `aos lint` and `aos plan` tell of a model that compiles: faults, and what no action leads to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from aos_deploy.commands import documents, plan
+from aos_protocol.errors import ModelError
+from aos_solver import engine
+
+HALL = """project: hall
+horizon: 4
+discount: 0.9
+
+state_variable: int place
+
+initial_belief:
+state.place = 0;
+
+reward_code:
+if (state.place == {goal}) {{ __reward = 10; __isGoalState = true; }}
+"""
+WALK = """project: hall
+
+dynamic_model:
+{code}
+__moduleResponse = walked;
+"""
+OPEN = """project: hall
+
+precondition:
+__meetPrecondition = state.place == {door};
+violate_penalty: -1
+
+dynamic_model:
+__moduleResponse = opened;
+"""
+MAPPING = """project: hall
+response: {response}
+response_rule: True
+
+module_activation: ros_service
+path: /{skill}
+srv: {skill}
+"""
+
+
+@pytest.fixture(scope="module")
+def app() -> typer.Typer:
+    app = typer.Typer()
+    documents.register(app)
+    plan.register(app)
+    return app
+
+
+@pytest.fixture
+def hall(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Path]:
+    """Writes a bundle with this code of the walk, this goal and this door."""
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+
+    def write(code: str, *, goal: str = "3", door: str = "2") -> Path:
+        files = {
+            "hall.ef": HALL.format(goal=goal),
+            "walk.sd": WALK.format(code=code),
+            "open.sd": OPEN.format(door=door),
+            "walk.am": MAPPING.format(response="walked", skill="walk"),
+            "open.am": MAPPING.format(response="opened", skill="open"),
+        }
+        for name, text in files.items():
+            (tmp_path / name).write_text(text)
+        return tmp_path
+
+    return write
+
+
+def linted(app: typer.Typer, folder: Path) -> dict[str, Any]:
+    """The findings by code, each as severity, place and hint; there is one of each code here."""
+    result = CliRunner().invoke(app, ["lint", str(folder), "--format", "json"])
+    assert result.exit_code == 0, result.output
+    found = json.loads(result.stdout)["diagnostics"]
+    return {each["code"]: (each["severity"], _place(each["span"]), each["hint"]) for each in found}
+
+
+def _place(span: dict[str, Any]) -> str:
+    return f"{span['file']}:{span['line']}"
+
+
+FAULTS = [
+    ("int* nothing = nullptr;\n*nothing = 1;", "AOS210"),
+    ("volatile bool is_on = true;\nwhile (is_on) {}", "AOS211"),
+    ('throw std::runtime_error("no way");', "AOS215"),
+    ("__reward = 0.0 / (state.place - state.place);", "AOS214"),
+]
+
+
+@pytest.mark.parametrize(
+    ("code", "error_code"), FAULTS, ids=["segfault", "loop", "exception", "not a number"]
+)
+def test_a_fault_of_model_code_names_its_document_line(
+    app: typer.Typer,
+    hall: Callable[..., Path],
+    monkeypatch: pytest.MonkeyPatch,
+    code: str,
+    error_code: str,
+) -> None:
+    monkeypatch.setattr(engine, "ANSWER_DEADLINE_S", 1.0)
+    result = CliRunner().invoke(app, ["plan", str(hall(code)), "--time", "0.1"])
+    assert isinstance(result.exception, ModelError)
+    (diagnostic,) = result.exception.diagnostics
+    assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 4)
+
+
+def test_a_fault_that_the_actions_lead_to_is_a_warning_of_lint(
+    app: typer.Typer, hall: Callable[..., Path]
+) -> None:
+    folder = hall("state__.place = state.place + 1;\nif (state.place == 2) throw 1;")
+    severity, place, _ = linted(app, folder)["AOS215"]
+    assert (severity, place) == ("warning", "walk.sd:4")
+
+
+def test_a_model_whose_goal_and_doors_can_be_reached_is_clean(
+    app: typer.Typer, hall: Callable[..., Path]
+) -> None:
+    assert linted(app, hall("state__.place = state.place + 1;")) == {}
+
+
+def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_extent(
+    app: typer.Typer, hall: Callable[..., Path]
+) -> None:
+    found = linted(app, hall("state__.place = (state.place + 1) % 5;", goal="7", door="6"))
+    extent = "Looked at all that can be reached, 5 states, up to 4 actions from the start"
+    assert found == {
+        "AOS132": ("warning", "hall.ef:10", extent),
+        "AOS131": ("warning", "open.sd:4", extent),
+    }
+
+
+def test_where_the_search_does_not_see_all_it_remarks_only(
+    app: typer.Typer, hall: Callable[..., Path]
+) -> None:
+    found = linted(app, hall("state__.place = state.place + 1;", goal="-1"))
+    severity, place, hint = found["AOS132"]
+    assert (severity, place) == ("remark", "hall.ef:10")
+    assert hint.startswith("Looked at 1")

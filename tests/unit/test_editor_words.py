@@ -1,0 +1,52 @@
+"""What the language server knows about words and outlines, without an editor."""
+
+from __future__ import annotations
+
+from aos_deploy.language_server.documents import meaning_at, outline, proposals_at
+from aos_deploy.language_server.meanings import SECTIONS
+from aos_registry.documents.sdl_sections import GRAMMARS
+
+
+def test_every_word_of_the_grammar_has_a_meaning_and_no_other() -> None:
+    grammar = {
+        (kind, word): set(each.parts) for kind, words in GRAMMARS.items() for word, each in words.items()
+    }
+    meant = {(kind, word): {*each[1]} for kind, words in SECTIONS.items() for word, each in words.items()}
+    assert meant == grammar
+
+
+def test_a_part_is_explained_as_part_of_its_section() -> None:
+    text = "project: p\nstate_variable: int n\ncode:\nstate.n = 1;\n"
+    found = meaning_at("p.ef", text, 3, 2)
+    assert found is not None
+    assert found[0] == "code:"
+    assert "at the start" in found[1]
+    assert meaning_at("p.ef", text, 4, 7) is None
+
+
+def test_built_ins_are_completed_within_code() -> None:
+    text = "project: p\ndynamic_model:\nbool x = AOS.B\n"
+    (proposal,) = proposals_at("x.sd", text, 3, 14)
+    assert (proposal.text, proposal.replaced) == ("AOS.Bernoulli", 5)
+
+
+def test_the_open_sections_parts_are_proposed_before_the_sections() -> None:
+    text = "project: p\n\ndefine_type: Side\n\n"
+    labels = [proposal.label for proposal in proposals_at("p.ef", text, 4, 0)]
+    assert labels[:2] == ["variable:", "enum_members:"]
+    assert "reward_code:" in labels
+
+
+def test_the_outline_ends_each_section_before_the_next() -> None:
+    entries = outline("p.ef", "project: p\n\ndefine_type: Side\nenum_members: A\n\nhorizon: 3\n")
+    assert [(entry.title, entry.line, entry.last_line) for entry in entries] == [
+        ("p", 1, 2),
+        ("Side", 3, 5),
+        ("3", 6, 7),
+    ]
+
+
+def test_files_that_are_no_sdl_have_no_words() -> None:
+    assert meaning_at("x.json", "{}", 1, 0) is None
+    assert proposals_at("x.json", "{}", 1, 0) == []
+    assert outline("x.json", "{}") == ()

@@ -1,0 +1,217 @@
+"""The JSON Schemas: current, and of one mind with the readers."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from ruamel.yaml import YAML
+
+from aos_deploy.schemas import SCHEMAS
+from aos_registry.documents.json_document import read_json
+from aos_registry.documents.json_record import Record
+from aos_registry.documents.json_text import (
+    JsonArray,
+    JsonNumber,
+    JsonObject,
+    JsonString,
+    JsonValue,
+    parse_json,
+)
+from aos_registry.documents.source import Findings, Source, open_source
+from aos_registry.load import load_files
+
+EXAMPLE = re.compile(r"^```json ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+DIALECTS = {"PlpMain": "plp", "GsdlMain": "gsdl"}
+
+
+def plain(value: JsonValue) -> Any:
+    match value:
+        case JsonObject():
+            return {key.text: plain(item) for key, item in value.members}
+        case JsonArray():
+            return [plain(item) for item in value.items]
+        case JsonString():
+            return value.text
+        case JsonNumber():
+            return value.value
+    return value.value
+
+
+def examples(root: Path) -> dict[str, Any]:
+    text = (root / "docs" / "languages.md").read_text(encoding="utf-8")
+    return {name: json.loads(body) for name, body in EXAMPLE.findall(text)}
+
+
+def complaints(schema: str, value: Any) -> list[str]:
+    validator = jsonschema.Draft202012Validator(SCHEMAS[schema]())
+    return [f"{each.validator} {each.message}" for each in leaves(validator.iter_errors(value))]
+
+
+def leaves(errors: Any) -> Iterator[jsonschema.ValidationError]:
+    for error in errors:
+        if error.context:
+            yield from leaves(error.context)
+        else:
+            yield error
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_the_schema_is_one_and_the_stored_copy_is_current(name: str, root: Path) -> None:
+    schema = SCHEMAS[name]()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    assert json.loads((root / "docs" / "schemas" / f"{name}.json").read_text()) == schema
+
+
+def test_the_examples_of_the_language_page_are_valid(root: Path) -> None:
+    documents = examples(root)
+    assert documents
+    assert [text for value in documents.values() for text in complaints("plp", value)] == []
+
+
+def json_documents(*folders: Path) -> Iterator[tuple[str, bytes, Any]]:
+    for path in sorted(path for folder in folders for path in folder.glob("*/*.json")):
+        source = open_source(path.name, path.read_bytes(), Findings())
+        value = parse_json(source, Findings()) if source is not None else None
+        if isinstance(value, JsonObject):
+            yield path.name, path.read_bytes(), plain(value)
+
+
+@pytest.mark.corpus
+def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: Path, root: Path) -> None:
+    checked = 0
+    for name, data, value in json_documents(corpus, root / "tests" / "data" / "bundles"):
+        dialect = next((schema for header, schema in DIALECTS.items() if header in value), None)
+        if dialect is None:
+            continue
+        found = complaints(dialect, value)
+        assert all(each.startswith("additionalProperties") for each in found), (name, found)
+        warned = [each for each in load_files({name: data}).diagnostics if each.code == "AOS102"]
+        assert len(found) == len(warned), (name, found, warned)
+        checked += 1
+    assert checked > 60
+
+
+@pytest.mark.parametrize(
+    ("document", "before", "after"),
+    [
+        ("environment.json", '"Horizon"', '"Horizont"'),
+        ("environment.json", '"IsGoalState"', '"IsGoal"'),
+        ("environment.json", '"Discount": 0.95', '"Discount": 1.5'),
+        ("environment.json", '"IsArray": true', '"IsArray": "yes"'),
+        ("pour.json", '"DynamicModel"', '"DynamicModell"'),
+        ("pour.json", '"ItemName"', '"Item"'),
+        ("pour.json", '"PLP"', '"PLPP"'),
+        ("pour glue.json", '"ServicePath"', '"Path"'),
+        ("pour glue.json", '"ResponseRules": [', '"ResponseRules": [7, '),
+        ("environment glue.json", '"InitCode"', '"Code"'),
+    ],
+)
+def test_a_typing_mistake_is_no_valid_document(document: str, before: str, after: str, root: Path) -> None:
+    text = json.dumps(examples(root)[document])
+    assert before in text
+    assert complaints("plp", json.loads(text.replace(before, after, 1)))
+
+
+def test_gsdl_documents_have_their_own_header_and_kinds(root: Path) -> None:
+    document = examples(root)["pour.json"]
+    head = document.pop("PlpMain")
+    assert complaints("gsdl", {"GsdlMain": {**head, "Type": "GSDL"}, **document}) == []
+    assert complaints("gsdl", {"GsdlMain": head, **document})
+
+
+@pytest.mark.parametrize("kind", ["Environment", "PLP", "Glue", "EnvironmentGlue"])
+def test_schema_and_reader_know_the_same_keys(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    known: set[str] = set()
+    finish = Record.finish
+
+    def noting(record: Record) -> None:
+        known.update(record._known)
+        finish(record)
+
+    monkeypatch.setattr(Record, "finish", noting)
+    full = _full(kind)
+    findings = Findings()
+    read_json(Source("full.json", json.dumps(full)), findings)
+    unknown = [each.message for each in findings.sorted() if each.code == "AOS102"]
+    assert [message for message in unknown if "unknown key" in message] == []
+    keys = set(_keys(full))
+    assert keys <= known
+    assert known - keys <= {"GsdlMain", *OBSOLETE}
+
+
+OBSOLETE = {
+    "ModuleResponse",
+    "RequiredResources",
+    "LocalVariablesInitializationFromGlobalVariables",
+    "EnumResponse",
+    "Max_concurrent_actions",
+    "AssignGlobalVariables",
+    "RosParameter",
+}
+"""Keys that the linter knows only to say that they have no effect or are not supported."""
+
+
+def _full(kind: str) -> Any:
+    """A document of a kind with every key of the schema."""
+    schema = SCHEMAS["plp"]()
+    definition = next(
+        each["then"]["$ref"] for each in schema["allOf"] if kind in json.dumps(each["if"]).split('"')
+    )
+    document = _instance({"$ref": definition}, schema)
+    document["PlpMain"] |= {"Type": kind, "Name": "full"}
+    return document
+
+
+def _instance(schema: Any, whole: Any) -> Any:
+    if "$ref" in schema:
+        return _instance(whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
+    if "properties" in schema:
+        return {key: _instance(each, whole) for key, each in schema["properties"].items()}
+    if schema.get("type") == "array":
+        return [_instance(schema["items"], whole)]
+    return {"boolean": True, "number": 1, "integer": 1}.get(str(schema.get("type")), "x")
+
+
+def _keys(value: Any) -> Iterator[str]:
+    if isinstance(value, dict):
+        yield from value
+        for item in value.values():
+            yield from _keys(item)
+    elif isinstance(value, list):
+        for item in value:
+            yield from _keys(item)
+
+
+def deploy_files(root: Path) -> dict[str, Any]:
+    files = sorted((root / "deploy").glob("*.yaml"))
+    return {path.name: YAML(typ="safe", pure=True).load(path.read_text()) for path in files}
+
+
+def test_the_deploy_files_are_valid(root: Path) -> None:
+    files = deploy_files(root)
+    assert files
+    assert [text for value in files.values() for text in complaints("deploy", value)] == []
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"robott": "x"},
+        {"bundles": []},
+        {"aos": 2},
+        {"mission": {"goal_probability": 2}},
+        {"mission": {"step_limits": 3}},
+        {"solver": {"simulations": 10, "time_s": 1.0}},
+        {"bind": {"/pick": 1}},
+    ],
+)
+def test_a_mistake_in_a_deploy_file_is_found(change: dict[str, Any], root: Path) -> None:
+    value = copy.deepcopy(deploy_files(root)["armadillo.yaml"])
+    assert complaints("deploy", {**value, **change})
