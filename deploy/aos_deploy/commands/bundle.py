@@ -40,9 +40,7 @@ PUSH_TIMEOUT_S = 200.0
 
 T = TypeVar("T")
 
-bundle_app = typer.Typer(
-    no_args_is_help=True, help="Send documents to a running system, and see what it holds."
-)
+bundle_app = typer.Typer(no_args_is_help=True, help="Send documents to a running system, or list them.")
 
 
 Connect = Annotated[
@@ -68,7 +66,9 @@ def push(
     runs: Runs = Path("runs"),
     as_json: AsJson = False,
 ) -> None:
-    """Send a bundle to the registry: a new project, new skills, or better documents of old ones.
+    """Send a bundle to the registry.
+
+    A new project, new skills, or better documents of old ones.
 
     A changed document that replaces one with a declared version needs a higher one.
 
@@ -150,7 +150,10 @@ def history(
     runs: Runs = Path("runs"),
     as_json: AsJson = False,
 ) -> None:
-    """List a project's revisions: when each was stored, and which documents it added, changed or removed."""
+    """List a project's revisions.
+
+    When each was stored, and which documents it added, changed or removed.
+    """
 
     async def ask(client: AosClient) -> Revisions:
         key, query = client.keys.bundle_history, RevisionsQuery(project)

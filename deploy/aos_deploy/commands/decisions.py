@@ -36,7 +36,9 @@ def decisions(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON decision record a line")] = False,
     follow: Annotated[bool, typer.Option(help="Go on until the mission ends")] = True,
 ) -> None:
-    """Print every decision of a mission from its first step: what was chosen, why, and what came of it.
+    """Print every decision of a mission from its first step.
+
+    What was chosen, why, and what came of it.
 
     While the mission runs the decisions come from the bus, afterwards from the run directory's journal.
     """

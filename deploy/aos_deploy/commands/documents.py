@@ -57,7 +57,7 @@ def lint(
         bool, typer.Option("--compile/--no-compile", help="Whether the compiler looks at the C++ as well")
     ] = True,
 ) -> None:
-    """Check a bundle of documents and print everything that is wrong with it.
+    """Check a bundle and print everything that is wrong.
 
     Where the documents are in order, the model is generated and compiled too, and mistakes in its C++ are
     told at their place in the documents; the built model is kept for later. Exit code 0: clean, or warnings
@@ -119,7 +119,10 @@ def inspect(
     stage: Annotated[Stage, typer.Option(help="Which stage to print")] = Stage.DOCUMENTS,
     skill: Annotated[str, typer.Option(help="Only this skill's module, for the stage python")] = "",
 ) -> None:
-    """Print what becomes of a bundle: the typed documents, the lowered model, the C++ or the Python."""
+    """Print what becomes of a bundle.
+
+    The typed documents, the lowered model, the C++ or the Python.
+    """
     loaded = load_bundle(bundle)
     if loaded.project is None:
         raise refusal(bundle, loaded.diagnostics)

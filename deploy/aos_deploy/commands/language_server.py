@@ -13,8 +13,9 @@ def register(app: typer.Typer) -> None:
 
 
 def serve() -> None:
-    """Serve an editor over standard input and output (Language Server Protocol).
+    """Check documents while they are written.
 
+    Speaks the Language Server Protocol over standard input and output.
     Editors start it by themselves; docs/editors.md has the settings.
     """
     from aos_deploy.language_server.server import language_server  # The protocol's types take a while.

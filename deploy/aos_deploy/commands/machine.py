@@ -44,7 +44,7 @@ def register(app: typer.Typer) -> None:
 def doctor(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
-    """Say what this machine has, what it lacks, and what to do about it.
+    """Say what this machine has and lacks, and what to do.
 
     Exit code 0: a mission can run here. 3: something is missing.
     """
@@ -62,7 +62,7 @@ def doctor(
 
 
 def version() -> None:
-    """Print the version of AOS, and of what it stands on."""
+    """Print the versions of AOS and of what it stands on."""
     typer.echo(f"aos {importlib.metadata.version('aos')}")
     typer.echo(f"python {platform.python_version()}")
     for package in _PACKAGES:

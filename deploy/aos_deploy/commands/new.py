@@ -33,7 +33,10 @@ def project(
     folder: Annotated[Path, typer.Option("--in", help="Where the bundle's directory is made")] = Path(),
     dialect: Annotated[Dialect, typer.Option(help="The language of the documents")] = Dialect.SDL,
 ) -> None:
-    """Write a small project: an environment and two skills, one that senses and one that acts."""
+    """Write a small project.
+
+    An environment and two skills, one that senses and one that acts.
+    """
     _check_name(name, "project")
     bundle = folder / name
     texts = {file: text for file, text in _filled("project", project=name).items() if file != "project.ef"}
@@ -48,7 +51,10 @@ def skill(
     name: Annotated[str, typer.Argument(help="The skill's name, in small letters")],
     bundle: Annotated[Path, typer.Option("--in", help="The bundle's directory")] = Path(),
 ) -> None:
-    """Write a skill's two documents into a bundle: NAME.sd and NAME.am, in JSON if all its documents are."""
+    """Write a skill's two documents into a bundle.
+
+    NAME.sd and NAME.am, in JSON if all the bundle's documents are.
+    """
     _check_name(name, "skill")
     documents, _ = read_bundle_files(bundle)
     owner = pushed_project(documents)

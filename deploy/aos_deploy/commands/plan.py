@@ -66,7 +66,10 @@ def plan(
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Decide at the initial belief: the value of every action, by search or exactly."""
+    """Decide at the initial belief.
+
+    Prints the value of every action, found by search or exactly.
+    """
     search = Search(simulations=simulations, seed=seed, time_s=time_s, horizon=horizon)
 
     async def decide(engine: Engine) -> Decision:
@@ -114,7 +117,10 @@ def simulate(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run whole missions against the documents' own model; run k has seed SEED + k, from 0."""
+    """Run whole missions against the documents' own model.
+
+    Run k has seed SEED + k, from 0.
+    """
     limits = MissionLimits(
         goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
     )
@@ -161,7 +167,10 @@ def rate(
     seed: Seed = 1,
     as_json: AsJson = False,
 ) -> None:
-    """Measure how many (next state, observation, reward) samples a second the compiled model gives."""
+    """Measure how many samples a second the model gives.
+
+    A sample is a next state, an observation and a reward.
+    """
 
     async def measure(engine: Engine) -> list[float]:
         counts = [await engine.rate(seconds, seed + turn) for turn in range(RATE_REPETITIONS)]

@@ -29,5 +29,8 @@ def schema(
         Name, typer.Argument(help="plp: JSON of AOS 1.x, gsdl: the paper's JSON, deploy: the deploy file")
     ],
 ) -> None:
-    """Print a JSON Schema; docs/editors.md says how an editor uses it."""
+    """Print a JSON Schema for editors.
+
+    docs/editors.md says how an editor uses it.
+    """
     typer.echo(json.dumps(SCHEMAS[name](), indent=2))

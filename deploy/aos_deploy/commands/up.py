@@ -40,7 +40,7 @@ def up(
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
 ) -> None:
-    """Bring a robot's system up, run its mission, and stop everything.
+    """Bring a robot's system up and run its mission.
 
     Starts the bus router, registry, middleware, skills and solver as processes of their own, gives the
     registry the documents, and shows what the robot decides until the mission ends. Ctrl-C stops all of it in
