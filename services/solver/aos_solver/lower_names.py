@@ -6,22 +6,11 @@ from collections.abc import Iterator
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Environment, Project, SkillModel
+from aos_runtime.cpp_keywords import CPP_KEYWORDS
 from aos_solver.findings import Findings
 
 __all__ = ["assignments_of", "check_names"]
 
-_KEYWORDS = frozenset({
-    "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch",
-    "char", "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl",
-    "concept", "const", "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype",
-    "default", "delete", "do", "double", "dynamic_cast", "else", "enum", "explicit", "export", "extern",
-    "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new",
-    "noexcept", "not", "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "public",
-    "register", "reinterpret_cast", "requires", "return", "short", "signed", "sizeof", "static",
-    "static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local", "throw", "true",
-    "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
-    "wchar_t", "while", "xor", "xor_eq",
-})  # fmt: skip
 _OF_THE_LANGUAGE = frozenset({
     "AOS", "AOSUtils", "EOF", "INFINITY", "NAN", "NULL", "anyValue", "aos", "errno", "main", "model", "state",
     "state_", "state__", "state___", "std",
@@ -89,7 +78,7 @@ def _check(name: str, span: Span, findings: Findings, ours: frozenset[str]) -> N
     if not (name.isascii() and name.isidentifier()):
         hint = "Use letters, digits and underscores"
         findings.error("AOS126", f"`{name}` is no name in C++", span, hint)
-    elif name in _KEYWORDS or name in _OF_THE_LANGUAGE:
+    elif name in CPP_KEYWORDS or name in _OF_THE_LANGUAGE:
         findings.error("AOS126", f"`{name}` means something else in model code", span, "Choose another name")
     elif name in ours:
         findings.error("AOS126", f"the emitted model uses the name `{name}`", span, "Choose another name")

@@ -8,21 +8,10 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, Environment, SkillModel
 from aos_registry.check.scope import Scope
 from aos_registry.documents.source import Findings, did_you_mean, quoted
+from aos_runtime.cpp_keywords import CPP_KEYWORDS
 
-__all__ = ["CPP_KEYWORDS", "check_environment_names", "check_skill_declarations"]
+__all__ = ["check_environment_names", "check_skill_declarations"]
 
-CPP_KEYWORDS = frozenset({
-    "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch",
-    "char", "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl",
-    "concept", "const", "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype",
-    "default", "delete", "do", "double", "dynamic_cast", "else", "enum", "explicit", "export", "extern",
-    "false", "float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace", "new",
-    "noexcept", "not", "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "public",
-    "register", "reinterpret_cast", "requires", "return", "short", "signed", "sizeof", "static",
-    "static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local", "throw", "true",
-    "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
-    "wchar_t", "while", "xor", "xor_eq",
-})  # fmt: skip
 _OURS = frozenset({"AOS", "AOSUtils", "NULL", "state", "state_", "state__", "state___"})
 
 
