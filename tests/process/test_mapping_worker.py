@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from mapping_documents import emitted
+from processes import descendants, until_ended
 
 from aos_middleware.evaluator import EvaluationLimits, Evaluator, MappingFault
 
@@ -152,7 +153,9 @@ async def test_a_killed_worker_is_replaced_for_the_next_activation(evaluator: St
     mapping = evaluator(RESULT + "value = 1\n")
     await mapping.begin({})
     assert mapping.pid is not None
+    workers = descendants(mapping.pid)
     os.kill(mapping.pid, signal.SIGKILL)
+    await until_ended(workers)
     with pytest.raises(MappingFault) as fault:
         await mapping.finish({})
     assert fault.value.code == "AOS401"
