@@ -24,6 +24,9 @@ _COMMANDS = {
     "schema": ("schema",),
     "language_server": ("language-server",),
     "plan": ("plan", "simulate", "rate"),
+    "solve": ("solve",),
+    "bench": ("bench",),
+    "gym": ("gym",),
     "machine": ("doctor", "version"),
 }
 """The modules in `commands`, in the order of the help, with what each registers."""

@@ -17,6 +17,7 @@ from aos_deploy.typed import nearest, read_structure
 from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
 from aos_protocol.diagnostics import Span, has_errors
 from aos_protocol.errors import DeployError
+from aos_registry.archive import is_archive_name, read_archive
 
 __all__ = [
     "BusPart",
@@ -56,12 +57,16 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True):
 class SolverPart(msgspec.Struct, frozen=True, kw_only=True):
     """The budget of one decision, in simulations or in time, and what makes it reproducible.
 
-    Without a horizon the environment document's holds.
+    Without a horizon the environment document's holds. With the planner `auto` the model's size decides. With
+    a `policy`, which `aos solve` has written,
+    nothing is searched.
     """
 
     simulations: Count | None = None
     time_s: Seconds | None = None
     horizon: Count | None = None
+    policy: str | None = None
+    planner: Literal["pomcp", "despot", "auto"] = "pomcp"
     seed: Seed = 1
     impossible_observation: Literal["hold", "widen", "reset"] = "widen"
 
@@ -97,6 +102,7 @@ class Deployment(msgspec.Struct, frozen=True, kw_only=True):
     project: str
     bundles: tuple[Path, ...]
     world: Path | None
+    policy: Path | None
     watch: Path | None
     runs: Path
 
@@ -147,12 +153,17 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
     world = folder / file.world if file.world is not None else None
     if world is not None and not world.is_file():
         findings.error("AOS101", f"there is no world file {world}", _place(node, "world"))
+    policy = folder / file.solver.policy if file.solver.policy is not None else None
+    if policy is not None and not policy.is_file():
+        hint = "Write it with aos solve"
+        findings.error("AOS101", f"there is no policy file {policy}", _place(node, "solver", "policy"), hint)
     return Deployment(
         path=path,
         file=file,
         project=file.project or file.robot,
         bundles=bundles,
         world=world,
+        policy=policy,
         watch=folder / file.watch if file.watch is not None else None,
         runs=(folder / file.runs).resolve(),
     )
@@ -162,16 +173,25 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
     if not file.bundles:
         findings.error("AOS105", "bundles names none", _place(node, "bundles"), "Name a bundle's folder")
     for name, where in _texts(node, "bundles"):
-        if not (folder / name).is_dir():
+        if not (folder / name).is_dir() and not _is_archive(folder / name):
             findings.error("AOS101", f"there is no bundle folder {folder / name}", where)
     bundles = tuple((folder / name).resolve() for name in file.bundles)
-    skills = {
-        skill_of_file(document.name) for bundle in bundles if bundle.is_dir() for document in bundle.iterdir()
-    }
+    skills = {skill_of_file(name) for bundle in bundles for name in _documents_in(bundle)}
     for skill, where in _texts(node, "leave_out"):
         if skill not in skills:
             findings.error("AOS110", f"no bundle has a skill {skill}", where, nearest(skill, skills))
     return bundles
+
+
+def _is_archive(path: Path) -> bool:
+    return is_archive_name(path.name) and path.is_file()
+
+
+def _documents_in(bundle: Path) -> list[str]:
+    """The file names in a bundle's folder or archive; none where there is neither."""
+    if _is_archive(bundle):
+        return list(read_archive(bundle)[0])
+    return [document.name for document in bundle.iterdir()] if bundle.is_dir() else []
 
 
 def skill_of_file(name: str) -> str:

@@ -16,7 +16,7 @@ from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mis
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.supervisor import Supervisor, free_endpoint, supervised
-from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.errors import AosError, DeployError, DocumentError
 from aos_protocol.messages import (
     BundleReport,
@@ -25,6 +25,7 @@ from aos_protocol.messages import (
     PushBundle,
     StartMission,
 )
+from aos_registry.load import read_bundle_files
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
@@ -129,7 +130,7 @@ class MissionRun:
 
     async def _push(self, supervisor: Supervisor, bundle: Path) -> None:
         """Brings a bundle into the registry; DocumentError with all diagnostics if it is refused."""
-        files = await asyncio.to_thread(_files_of_bundle, bundle, self._deployment.file.leave_out)
+        files = await asyncio.to_thread(files_of_bundle, bundle, self._deployment.file.leave_out)
         self._own_pushes.add(str(bundle))
         report = await supervisor.bus.ask(
             supervisor.keys.push_bundle,
@@ -232,13 +233,10 @@ def _from_here(path: Path) -> Path:
     return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
-def _files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
-    """The bundle's files by name, without hidden ones and those of skills that are left out."""
-    try:
-        return {
-            path.name: path.read_bytes()
-            for path in sorted(bundle.iterdir())
-            if path.is_file() and not path.name.startswith(".") and skill_of_file(path.name) not in leave_out
-        }
-    except OSError as error:
-        raise DocumentError(f"{error.filename}: {error.strerror}", code="AOS101") from error
+def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
+    """The documents in a bundle's folder or archive by name, without those of skills that are left out."""
+    files, remarks = read_bundle_files(bundle)
+    if has_errors(remarks):
+        found = tuple(each for each in remarks if each.is_error)
+        raise DocumentError(f"the bundle {bundle} cannot be read", code=found[0].code, diagnostics=found)
+    return {name: data for name, data in files.items() if skill_of_file(name) not in leave_out}

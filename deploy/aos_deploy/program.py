@@ -62,6 +62,7 @@ def _solver_settings(deployment: Deployment) -> dict[str, Any]:
         "project": deployment.project,
         "cache_dir": str(cache_dir()),
         **budget,
+        "policy": str(deployment.policy or ""),
         **msgspec.structs.asdict(file.mission),
     }
 

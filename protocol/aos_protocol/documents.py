@@ -28,6 +28,7 @@ __all__ = [
     "Iteration",
     "LocalSource",
     "LocalVariable",
+    "LowLevelAssignment",
     "LowLevelConstant",
     "LowLevelDocument",
     "LowLevelType",
@@ -224,12 +225,27 @@ class Import(msgspec.Struct, frozen=True):
     span: Span
 
 
+class LowLevelAssignment(msgspec.Struct, frozen=True):
+    """Gives the `anyValue` at `path` a new low-level value, a Python expression over local variables.
+
+    `path` is `parameter.field`, or starts with a state variable.
+    """
+
+    path: str
+    value: Snippet
+    span: Span
+
+
 class ResponseRule(msgspec.Struct, frozen=True):
-    """Gives `response` when `condition`, a Python expression over local variables, holds; the first wins."""
+    """Gives `response` when `condition`, a Python expression over local variables, holds; the first wins.
+
+    With the response come its `assignments`.
+    """
 
     response: str
     condition: Snippet | None
     span: Span
+    assignments: tuple[LowLevelAssignment, ...] = ()
 
 
 class LocalSource(StrEnum):

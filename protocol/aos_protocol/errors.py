@@ -66,6 +66,7 @@ CODES: dict[str, str] = {
     "AOS131": "a precondition that is never met",
     "AOS132": "a goal that nothing leads to",
     "AOS133": "a variable that nothing uses",
+    "AOS134": "a local variable that tells the state",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",
@@ -75,9 +76,11 @@ CODES: dict[str, str] = {
     "AOS214": "a reward that is not a number",
     "AOS215": "a model fault: an index, a weight list or a container limit",
     "AOS220": "exact evaluation is not tractable",
-    "AOS301": "no decision in time",
     "AOS302": "every state of the belief is terminal",
     "AOS310": "an observation that the model holds impossible",
+    "AOS320": "a model that cannot be solved before the mission",
+    "AOS321": "a policy that cannot be read",
+    "AOS322": "a policy for another model",
     "AOS401": "abstraction mapping code raised",
     "AOS402": "no response rule matched",
     "AOS403": "abstraction mapping code did not finish",
@@ -141,7 +144,7 @@ class ModelError(AosError):
 
 
 class PlanningError(AosError):
-    code = "AOS301"
+    code = "AOS302"
 
 
 class MappingError(AosError):

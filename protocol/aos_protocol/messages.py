@@ -199,7 +199,9 @@ class Marginal(Message, frozen=True):
 class BeliefSummary(Message, frozen=True):
     """A belief for people: marginals of all variables, entropy in nats, and the chance of each ending.
 
-    `states` is the number of distinct states, or of particles where `is_exact` is false.
+    `states` is the number of distinct states; `effective_states` is how many of equal weight would tell as
+    much. No event's probability is further than `error_bound` from what Bayes' rule gives: 0 where the belief
+    is exact, 1 where steps had to be sampled and nothing is certain.
     """
 
     marginals: tuple[Marginal, ...]
@@ -208,6 +210,8 @@ class BeliefSummary(Message, frozen=True):
     failure_probability: float
     states: int
     is_exact: bool
+    effective_states: float = 0.0
+    error_bound: float = 0.0
 
 
 class MissionState(Message, frozen=True):
@@ -258,7 +262,8 @@ class DecisionRecord(Message, frozen=True):
 
     `sequence` is dense over the mission and names the publication, `step` names the decision, from 1.
     `belief` is the belief decided on, or after the observation the updated one. `surprise` is
-    -log P(observation | belief, action) in nats; infinite surprise is given as `is_impossible`.
+    -log P(observation | belief, action) in nats; infinite surprise is given as `is_impossible`. `remark` says
+    what of the outcome could not be used for the belief.
     """
 
     sequence: int
@@ -281,6 +286,7 @@ class DecisionRecord(Message, frozen=True):
     outcome: Outcome | None = None
     surprise: float = 0.0
     is_impossible: bool = False
+    remark: str = ""
 
 
 class HistoryQuery(Message, frozen=True):
@@ -304,7 +310,8 @@ class Activate(Message, frozen=True):
 
     Parameter values are plain data: numbers, bools, strings (enum values by name), dicts for compounds.
     `deadline_s` bounds the whole activation. `revision` is that of the model which decided, so that the
-    observation is one of that model's; 0 takes the newest.
+    observation is one of that model's; 0 takes the newest. `variables` names the state variables that
+    parameters stand for.
     """
 
     id: ActivationId
@@ -312,13 +319,15 @@ class Activate(Message, frozen=True):
     parameters: dict[str, Any]
     deadline_s: float
     revision: int = 0
+    variables: dict[str, str] = {}
 
 
 class Outcome(Message, frozen=True):
     """How an activation ended: `status` is `observed`, `failed`, `timed_out`, `cancelled` or `unknown`.
 
     `response` is the observation, empty unless observed. Local variables are as they were when the rules
-    ran, as text. `fault` says what went wrong.
+    ran, as text. `fault` says what went wrong. `assigned` are the new low-level values that came with the
+    response, as plain data, by the path of the `anyValue` from its state variable.
     """
 
     id: ActivationId
@@ -329,6 +338,7 @@ class Outcome(Message, frozen=True):
     started_ns: int = 0
     ended_ns: int = 0
     fault: Fault | None = None
+    assigned: dict[str, Any] = {}
 
 
 class MappingQuery(Message, frozen=True):

@@ -69,9 +69,11 @@ def read_cpp(code: str) -> Cpp:
 
 @lru_cache(maxsize=4096)
 def read_cpp_expression(code: str) -> Cpp:
-    """One expression."""
+    """One expression, or a list in braces that a variable starts with."""
     tokens = msgspec.structs.replace(cut(code), missing_semicolons=())
-    return _read(code, tokens, before="auto x = (", after="\n);")
+    is_list = strip_comments(code).lstrip().startswith("{")
+    before, after = ("auto x = ", "\n;") if is_list else ("auto x = (", "\n);")
+    return _read(code, tokens, before=before, after=after)
 
 
 def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
@@ -254,7 +256,7 @@ class _Reader:
         is_constant = any(_text(part) == "const" for part in prefix)
         for child in node.children_by_field_name("declarator"):
             self._declarator(child, type_text, kind, is_constant)
-        self._push([node.child_by_field_name("default_value")])
+        self._push([node.child_by_field_name("default_value"), node.child_by_field_name("value")])
         if node.type == "for_range_loop":
             declarator = node.child_by_field_name("declarator")
             binds = declarator is not None and "reference" in declarator.type and not is_constant

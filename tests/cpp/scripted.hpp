@@ -16,7 +16,7 @@ class Script {
   explicit Script(const char* draws) : rest_(draws) {}
   bool Bernoulli(double probability) { return next(probability >= 0.5 ? 1 : 0) != 0; }
   int SampleDiscrete(int name, std::initializer_list<double>) { return name + 1 + static_cast<int>(next(0)); }
-  template <class Weights>
+  template <class Weights = std::initializer_list<double>>
   int SampleDiscrete(const Weights&) {
     return static_cast<int>(next(0));
   }
@@ -60,7 +60,7 @@ class Dice {
     for (const double weight : weights) sum += weight;
     return name + 1 + pick(weights, uniform() * sum);
   }
-  template <class Weights>
+  template <class Weights = std::initializer_list<double>>
   int SampleDiscrete(const Weights& weights) {
     return pick(weights, uniform());
   }
@@ -193,7 +193,7 @@ int run(int argc, char** argv) {
   } catch (const ModelFault& fault) {
     JsonWriter json;
     json.begin_object().member("fault", fault.code).member("text", fault.text);
-    json.member("piece", static_cast<std::uint32_t>(*blame::page)).end_object();
+    json.member("piece", blame::piece()).end_object();
     std::puts(json.text().c_str());
   }
   return 0;

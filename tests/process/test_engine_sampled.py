@@ -53,18 +53,18 @@ discount: 0.95
 state_variable: int on
 
 initial_belief:
-for (int i = 0; i < 14; i++) if (AOS.Bernoulli(0.5)) state.on += 1;
+for (int i = 0; i < 24; i++) if (AOS.Bernoulli(0.5)) state.on += 1;
 """,
     "read.sd": """project: switches
 
 dynamic_model:
 __reward = -1;
-if (state__.on > 7) __moduleResponse = high;
+if (state__.on > 12) __moduleResponse = high;
 else __moduleResponse = low;
 """,
     "read.am": MAPPING.format(project="switches"),
 }
-"""2^14 combinations of draws, of which only the number of ones is kept."""
+"""2^24 combinations of draws, of which only the number of ones is kept."""
 
 
 async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path) -> None:
@@ -84,6 +84,6 @@ async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> No
         summary = await engine.summary()
         update = await engine.update("read", "high")
     assert not summary.is_exact
-    assert update.probability == pytest.approx(6476 / 16384, abs=0.03)  # 8 heads or more of 14
+    assert update.probability == pytest.approx(7036530 / 2**24, abs=0.03)  # 13 heads or more of 24
     assert sum(update.summary.marginals[0].values.values()) == pytest.approx(1)
-    assert min(int(value) for value in update.summary.marginals[0].values) >= 8
+    assert min(int(value) for value in update.summary.marginals[0].values) >= 13

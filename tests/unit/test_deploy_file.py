@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
 
 from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file
+from aos_deploy.mission_run import files_of_bundle
 from aos_deploy.program import programs_of_deployment
 from aos_protocol.errors import DeployError
 
@@ -48,6 +50,13 @@ def test_what_is_not_said_has_its_default(folder: Path) -> None:
     assert deployment.file.mission.goal_probability == 0.9
     assert deployment.file.bus.listen == "tcp/127.0.0.1:7447"
     assert deployment.world is None
+
+
+def test_a_bundle_may_be_an_archive(folder: Path) -> None:
+    archive = Path(shutil.make_archive(str(folder / "packed"), "zip", folder / "bundle"))
+    deployment = read(folder, HEAD.replace("bundle]", "packed.zip]") + "leave_out: [look]\n")
+    assert deployment.bundles == (archive,)
+    assert sorted(files_of_bundle(archive, ("look",))) == ["drive.am", "drive.sd", "rover.ef"]
 
 
 def test_everything_that_can_be_said_arrives(folder: Path) -> None:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
+from scripted_models import scripted
+
 from aos_registry.convert import without_origins
 from aos_registry.documents.sdl_sections import GRAMMARS
 from aos_registry.load import load_files
@@ -42,3 +45,10 @@ def test_sdl_with_our_words_says_what_the_json_examples_say(root: Path) -> None:
     ours, json = (load_files(examples(root, dialect)) for dialect in ("ours", "json"))
     assert ours.diagnostics == ()
     assert without_origins(ours.project) == without_origins(json.project)
+
+
+@pytest.mark.parametrize("dialect", ["sdl", "json"])
+def test_the_examples_are_models_that_run(root: Path, cache_dir: Path, dialect: str) -> None:
+    project = load_files(examples(root, dialect)).project
+    assert project is not None
+    assert scripted(project, cache_dir).walk(1000)["steps"] == 1000

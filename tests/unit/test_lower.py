@@ -6,7 +6,7 @@ import msgspec
 import pytest
 from scripted_models import json_text, mapping_text, text_project
 
-from aos_protocol.diagnostics import Diagnostic, Severity
+from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_solver.emit import emit
 from aos_solver.lower import lower
@@ -30,8 +30,9 @@ state_variable: int total
 ACT = "project: test\ndynamic_model:\n"
 
 
-def project_of(act: str = "state__.total += state.count;", home: str = "") -> Project:
-    return text_project({"home.ef": HOME + home, "act.sd": ACT + act + "\n", "act.am": mapping_text("done")})
+def project_of(act: str = "state__.total += state.count;", home: str = "", given: str = "") -> Project:
+    skill = f"{ACT}{act}\n" + (f"state_given_observation:\n{given}\n" if given else "")
+    return text_project({"home.ef": HOME + home, "act.sd": skill, "act.am": mapping_text("done")})
 
 
 def program_of(project: Project) -> Program:
@@ -101,14 +102,25 @@ def test_a_constant_static_and_a_variable_called_time_are_fine() -> None:
     assert lower(project_of("static const int two = 2; int time = two; state__.total = time;"))[0] is not None
 
 
-def test_what_has_no_effect_yet_is_said() -> None:
-    project = project_of()
+def test_a_state_given_an_observation_takes_the_local_variables_that_it_names() -> None:
+    text = 'state___.total = answer == "much" ? 9 : 0;'
+    project = project_of("__reward = 1;", given=text)
+    program = program_of(project)
+    (skill,) = program.skills
+    assert [(local.name, local.type) for local in skill.locals] == [("answer", "std::string")]
+    assert [variable.name for variable in program.particle] == ["total"], "what it writes is no constant"
+
+
+def test_a_local_variable_of_a_state_variables_name_and_type_is_told() -> None:
+    project = project_of("__reward = 1;")
     skill = project.skills[0]
-    model = msgspec.structs.replace(skill.model, state_given_observation=skill.model.dynamic_model)
-    project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, model=model),))
-    program, diagnostics = lower(project)
-    assert program is not None
-    assert [(d.severity, d.code) for d in diagnostics] == [(Severity.WARNING, "AOS124")]
+    variable = msgspec.structs.replace(skill.mapping.local_variables[0], name="total", type="int")
+    mapping = msgspec.structs.replace(skill.mapping, local_variables=(variable,))
+    told = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=mapping),))
+    assert program_of(told).skills[0].told == ("total",)
+    untyped = msgspec.structs.replace(mapping, local_variables=(msgspec.structs.replace(variable, type=""),))
+    project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=untyped),))
+    assert program_of(project).skills[0].told == ()
 
 
 def test_names_that_cpp_needs_are_refused_at_their_places() -> None:

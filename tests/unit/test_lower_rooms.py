@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from aos_runtime.snippets import read_cpp
-from aos_solver.lower_rooms import GROWING_ROOM, Rooms
+from aos_solver.lower_rooms import GROWING_ROOM, TOLD_ROOM, Rooms
 
 
 def rooms_of(*snippets: str) -> Rooms:
@@ -45,9 +45,32 @@ def test_a_vector_that_grows_gets_room_to_grow() -> None:
     assert rooms_of("state.a = {" + "1, " * 39 + "1}; state.a.push_back(2);").room("a") == 80
 
 
+def test_a_vector_grows_through_a_reference_too() -> None:
+    rooms = rooms_of(
+        "state.table = {{1, 2}}; state.path = {1};",
+        "vector<int>& path = state__.path; path.push_back(2);",
+        "for (auto& row : state__.table) row.push_back(3);",
+    )
+    assert rooms.room("path") == GROWING_ROOM
+    assert (rooms.room("table", 0), rooms.room("table", 1)) == (1, GROWING_ROOM)
+
+
 def test_loop_bounds_tell_how_far_a_vector_grows() -> None:
     code = "for (int i = 0; i < 30; i++) for (int j = 0; j < 40; j++) state.cells.push_back(0);"
     assert rooms_of(code).room("cells") == 1200
+
+
+@pytest.mark.parametrize("code", ["", "state.map = {};"])
+def test_a_vector_that_the_robots_data_fill_has_room_for_them(code: str) -> None:
+    rooms = rooms_of(code)
+    rooms.tell("map")
+    assert rooms.room("map") == TOLD_ROOM
+
+
+def test_a_vector_of_data_with_a_length_at_the_start_has_room_for_twice_as_many() -> None:
+    rooms = rooms_of("state.map = vector<int>(100, -1);")
+    rooms.tell("map")
+    assert rooms.room("map") == 200
 
 
 def test_a_vector_that_nothing_fills_still_has_room() -> None:

@@ -152,7 +152,6 @@ OBSOLETE = {
     "LocalVariablesInitializationFromGlobalVariables",
     "EnumResponse",
     "Max_concurrent_actions",
-    "AssignGlobalVariables",
     "RosParameter",
 }
 """Keys that the linter knows only to say that they have no effect or are not supported."""

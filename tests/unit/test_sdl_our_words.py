@@ -137,7 +137,7 @@ def test_skills_mappings_and_low_level_files_have_theirs() -> None:
         ("p.ef", "state_variable: int x\nkey_types: (0,3)\n", ["2:12 AOS104"]),
         ("p.ef", "state_variable: int x\ndefault_value: 1\ncode:\nstate.x = 2;\n", ["3:1 AOS106"]),
         ("p.ef", "state_variable: int x of Pose\n", ["1:23 AOS104"]),
-        ("p.ef", "define_type: T\nvariable: int x[]\n", ["2:16 AOS104"]),
+        ("p.ef", "define_type: T\nvariable: int x[3]\n", ["2:16 AOS104"]),
         ("p.ef", "constant: Pose home\n", ["1:1 AOS102"]),
         ("s.sd", "special_state:\n", ["1:1 AOS102"]),
         ("p.lf", "define_type:\n", ["1:1 AOS105"]),

@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import statistics
-from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Annotated, TypeVar
 
 import msgspec
 import typer
 
+from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.printing import print_json
-from aos_deploy.program import cache_dir
 from aos_deploy.views.tables import print_runs, print_values
-from aos_protocol.diagnostics import render
-from aos_protocol.errors import DocumentError
 from aos_protocol.messages import ActionValue
-from aos_registry.load import load_bundle
 from aos_solver.endings import MissionLimits
-from aos_solver.engine import Engine
-from aos_solver.hot_plug import build_project
+from aos_solver.engine import Engine, Planner
 from aos_solver.search import Search
 from aos_solver.simulation import SimulatedRun, simulate_mission
 
@@ -37,7 +32,13 @@ Time = Annotated[float | None, typer.Option("--time", min=0.001, help="Planning 
 Horizon = Annotated[
     int | None, typer.Option(min=1, help="Look-ahead in decisions; else the environment document's")
 ]
+PolicyFile = Annotated[
+    Path | None, typer.Option("--policy", help="Decide by this policy of `aos solve` instead of searching")
+]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations give the same result")]
+PlannerName = Annotated[
+    Planner, typer.Option("--planner", help="How to search; with auto the model's size decides")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 
 
@@ -55,6 +56,8 @@ class Decision(msgspec.Struct):
     value: float
     simulations: int
     actions: list[ActionValue]
+    planner: str = ""
+    why: str = ""
 
 
 def plan(
@@ -63,6 +66,8 @@ def plan(
     time_s: Time = None,
     horizon: Horizon = None,
     seed: Seed = 1,
+    planner: PlannerName = "pomcp",
+    policy: PolicyFile = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
     as_json: AsJson = False,
 ) -> None:
@@ -76,19 +81,23 @@ def plan(
         if exact:
             values = (await engine.exact(horizon)).actions
             return _decision([ActionValue(value.action, value.q, 0, 0.0) for value in values], 0)
+        if policy is not None:
+            return _decision(list((await _by_policy(search, policy).run(engine, 1)).actions), 0)
         found = await engine.plan(
             simulations=None if time_s is not None else simulations,
             time_s=time_s,
             seed=search.seed_of(1),
             horizon=horizon,
+            planner=planner,
         )
-        return _decision(list(found.actions), found.simulations)
+        decision = _decision(list(found.actions), found.simulations)
+        return msgspec.structs.replace(decision, planner=found.planner, why=found.why)
 
     decision = _with_engine(bundle, seed, decide)
     if as_json:
         print_json(decision)
     else:
-        print_values(decision.actions, decision.simulations)
+        print_values(decision.actions, decision.simulations, "exact" if policy is None else "by the policy")
 
 
 def _decision(values: list[ActionValue], simulations: int) -> Decision:
@@ -110,11 +119,16 @@ def simulate(
     simulations: Simulations = 100_000,
     time_s: Time = None,
     horizon: Horizon = None,
+    planner: PlannerName = "pomcp",
+    policy: PolicyFile = None,
     goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
     step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
     stop_below_value: Annotated[
         float | None, typer.Option(help="Ends a mission when the best action promises less")
     ] = None,
+    states: Annotated[
+        bool, typer.Option("--states", help="Also tell the world's state at each step")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Run whole missions against the documents' own model.
@@ -127,10 +141,15 @@ def simulate(
 
     async def run_all(engine: Engine) -> list[SimulatedRun]:
         done: list[SimulatedRun] = []
+        search = Search(
+            simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner
+        )
+        if policy is not None:
+            search = _by_policy(search, policy)
         with typer.progressbar(length=runs, label="missions", file=typer.get_text_stream("stderr")) as bar:
             for run_seed in range(seed, seed + runs):
-                search = Search(simulations=simulations, seed=run_seed, time_s=time_s, horizon=horizon)
-                done.append(await simulate_mission(engine, search, limits))
+                of_run = msgspec.structs.replace(search, seed=run_seed)
+                done.append(await simulate_mission(engine, of_run, limits, with_states=states))
                 bar.update(1)
         return done
 
@@ -150,6 +169,14 @@ def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
         "stderr": statistics.stdev(returns) / len(runs) ** 0.5 if len(runs) > 1 else 0.0,
         "mean_steps": statistics.fmean(run.steps for run in runs),
     }
+
+
+def _by_policy(search: Search, path: Path) -> Search:
+    """The search that follows a policy file instead."""
+    # Numbers take a tenth of a second to import.
+    from aos_solver.offline.policy import Policy, PolicySearch
+
+    return PolicySearch(policy=Policy.load(path), **msgspec.structs.asdict(search))
 
 
 class Rate(msgspec.Struct):
@@ -186,27 +213,7 @@ def rate(
 
 def _with_engine(bundle: Path, seed: int, ask: Callable[[Engine], Awaitable[T]]) -> T:
     async def run() -> T:
-        async with _engine_of(bundle, seed) as engine:
+        async with engine_of_bundle(bundle, seed) as engine:
             return await ask(engine)
 
     return asyncio.run(run())
-
-
-@asynccontextmanager
-async def _engine_of(bundle: Path, seed: int) -> AsyncIterator[Engine]:
-    """The engine of a bundle, compiled if need be; the bundle's mistakes as one DocumentError."""
-    loaded = load_bundle(bundle)
-    if loaded.project is None:
-        raise DocumentError(
-            f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
-        )
-    for diagnostic in loaded.diagnostics:
-        typer.echo(render(diagnostic), err=True)
-    built = await build_project(
-        loaded.project, cache_dir(), lambda remark: typer.echo(f"aos: {remark}", err=True)
-    )
-    engine = await Engine.start(built, seed=seed)
-    try:
-        yield engine
-    finally:
-        await engine.close()

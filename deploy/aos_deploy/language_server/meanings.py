@@ -116,7 +116,11 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
         "version": (_VERSION, {}),
         "response": (
             "A response of the skill; the first one whose rule holds is the observation.",
-            {"response_rule": "A Python expression over local variables; `True` always holds."},
+            {
+                "response_rule": "A Python expression over local variables; `True` always holds.",
+                "assign_variable": "An anyValue that gets a new low-level value with this response.",
+                "value": "The new low-level value: a Python expression over local variables.",
+            },
         ),
         "response_local_variable": (
             "The local variable whose text is the response.",

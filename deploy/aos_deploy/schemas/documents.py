@@ -148,7 +148,9 @@ def _variable() -> Schema:
         IsArray=TRUTH,
         IsActionParameterValue=said(TRUTH, "A constant that skills may take as a parameter."),
         Parameters=said(list_of(TEXT), "Makes the variable a map: enum names, and ranges (start,stop,step)."),
-        IncludeParametersCode=said(TRUTH, "false: `DefaultCode` is left out."),
+        IncludeParametersCode=said(
+            expression(), "For which keys `DefaultCode` runs: a condition over `par1`, `par2`, and so on."
+        ),
         required=("Name", "Type"),
     )
     return {**declared, "not": {"required": ["Default", "DefaultCode"]}}
@@ -200,12 +202,19 @@ def _skill() -> Schema:
 
 
 def _mapping() -> Schema:
+    assignment = object_of(
+        "A new low-level value.",
+        VarName=said(TEXT, "An anyValue: `parameter.field`, or `variable.field`."),
+        Value=said(CODE, "A Python expression over local variables."),
+        required=("VarName", "Value"),
+    )
     rule = object_of(
         "A response and when it is given.",
         Response=TEXT,
         ConditionCodeWithLocalVariables=said(
-            CODE, "A Python expression over local variables; empty: it always holds."
+            expression(), "A Python expression over local variables; empty: it always holds."
         ),
+        AssignGlobalVariables=said(list_of(assignment), "What changes behind anyValues with this response."),
         Comment=TEXT,
         required=("Response",),
     )
@@ -218,7 +227,7 @@ def _mapping() -> Schema:
     field = object_of(
         "A field of the call.",
         ServiceFieldName=TEXT,
-        AssignServiceFieldCode=said(CODE, "A Python expression over local variables."),
+        AssignServiceFieldCode=said(expression(), "A Python expression over local variables."),
         Comment=TEXT,
         required=("ServiceFieldName", "AssignServiceFieldCode"),
     )
@@ -255,7 +264,7 @@ def _local_variable() -> Schema:
         FromROSServiceResponse=said(TRUTH, "Whether the code assigns it from the result, `__input`."),
         RosTopicPath=said(TEXT, "The topic whose messages give the value."),
         TopicMessageType=TEXT,
-        InitialValue=said(CODE, "The value until the first message: a Python expression."),
+        InitialValue=said(expression(), "The value until the first message: a Python expression."),
         AssignmentCode=said(CODE, "Assigns the value from `__input`; for a topic returns it."),
         ImportCode=IMPORTS,
         IsHeavyVariable=TRUTH,

@@ -76,7 +76,8 @@ def decision_line(record: DecisionRecord) -> str:
     if outcome.fault is not None:
         what = f"{what} ({outcome.fault.message})"
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
-    return f"{head} -> {what}  {surprise}  goal {record.belief.goal_probability:.3f}"
+    remark = f"  ({record.remark})" if record.remark else ""
+    return f"{head} -> {what}  {surprise}  goal {record.belief.goal_probability:.3f}{remark}"
 
 
 def _report_lines(report: BundleReport) -> list[str]:

@@ -7,20 +7,21 @@ from collections.abc import Iterable
 from rich.bar import Bar
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from aos_protocol.messages import ActionValue
 from aos_solver.simulation import SimulatedRun
 
-__all__ = ["print_runs", "print_values"]
+__all__ = ["print_runs", "print_states", "print_values"]
 
 BAR_WIDTH = 30
 
 
-def print_values(values: list[ActionValue], simulations: int) -> None:
-    """The actions, best first, with a bar from the worst value to the best."""
+def print_values(values: list[ActionValue], simulations: int, title: str = "exact") -> None:
+    """The actions, best first, with a bar from the worst value to the best; `title` where none were searched."""
     tried = [value.q for value in values if value.n or not simulations]
     lowest, highest = min(tried), max(tried)
-    table = Table(title=f"{simulations:,} simulations" if simulations else "exact")
+    table = Table(title=f"{simulations:,} simulations" if simulations else title)
     table.add_column("action")
     table.add_column("value", justify="right")
     if simulations:
@@ -36,8 +37,24 @@ def print_values(values: list[ActionValue], simulations: int) -> None:
     Console().print(table)
 
 
+def print_states(run: SimulatedRun) -> None:
+    """A mission step by step: what was done and seen, and what the world was then."""
+    table = Table(title=f"seed {run.seed}", title_justify="left")
+    table.add_column("step", justify="right")
+    for name in ("action", "observation", "state"):
+        table.add_column(name)
+    rows = zip(("", *run.actions), ("", *run.observations), run.states, strict=True)
+    for number, (action, observation, state) in enumerate(rows):
+        table.add_row(str(number), Text(action), Text(observation), Text(state.rstrip()))
+    Console().print(table)
+
+
 def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
-    """One row for each mission, and the summary."""
+    """The states of the missions that have them; one row for each mission, and the summary."""
+    runs = tuple(runs)
+    for run in runs:
+        if run.states:
+            print_states(run)
     table = Table()
     for name in ("seed", "ending", "steps", "return"):
         table.add_column(name, justify="right" if name != "ending" else "left")

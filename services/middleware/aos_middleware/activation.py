@@ -12,6 +12,7 @@ import logging
 from typing import Any, NamedTuple
 
 from aos_middleware.evaluator import Evaluator, MappingFault
+from aos_middleware.low_level import LowLevelValues, assigned_variables
 from aos_protocol.documents import AbstractionMapping, LocalSource
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_protocol.keys import Keys
@@ -52,12 +53,14 @@ class Surroundings(NamedTuple):
     """What an activation reaches outside: the bus, the robot's keys, the time.
 
     `published` is what had been sent on each topic when the last call ended; each activation updates it.
+    `low_level` holds the values that responses have given.
     """
 
     bus: Bus
     keys: Keys
     clock: Clock
     published: dict[str, int]
+    low_level: LowLevelValues
 
 
 async def run_activation(request: Activate, evaluator: Evaluator, around: Surroundings) -> Outcome:
@@ -65,9 +68,10 @@ async def run_activation(request: Activate, evaluator: Evaluator, around: Surrou
     started_ns = around.clock.now_ns()
     response = ""
     local_variables: dict[str, str] = {}
+    assigned: dict[str, Any] = {}
     fault: AosError | None = None
     try:
-        response, local_variables = await _Activation(request, evaluator, around).run()
+        response, local_variables, assigned = await _Activation(request, evaluator, around).run()
     except MappingFault as error:
         fault, local_variables = error, error.local_variables
     except AosError as error:
@@ -81,6 +85,7 @@ async def run_activation(request: Activate, evaluator: Evaluator, around: Surrou
         started_ns,
         around.clock.now_ns(),
         None if fault is None else fault_of(fault),
+        assigned,
     )
 
 
@@ -95,7 +100,7 @@ class _Activation:
     def __init__(self, request: Activate, evaluator: Evaluator, around: Surroundings) -> None:
         self._request = request
         self._evaluator = evaluator
-        self._bus, self._keys, self._clock, self._published_before = around
+        self._bus, self._keys, self._clock, self._published_before, self._low_level = around
         self._mapping: AbstractionMapping = evaluator.emitted.mapping
         self._ends_at_s = self._clock.monotonic_s() + request.deadline_s
         self._topic_of = {
@@ -107,14 +112,16 @@ class _Activation:
         self._has_seen = asyncio.Event()
         self._fault: AosError | None = None
 
-    async def run(self) -> tuple[str, dict[str, str]]:
-        """The response and the local variables as text."""
-        fields = await self._evaluator.begin(self._request.parameters)
+    async def run(self) -> tuple[str, dict[str, str], dict[str, Any]]:
+        """The response, the local variables as text, and new low-level values of state variables."""
+        constants = self._evaluator.emitted.constants
+        fields = await self._evaluator.begin(*self._low_level.arguments(self._request, constants))
         result = await self._listening_call(fields)
         observed = await self._evaluator.finish(result.fields)
         if observed.response is None:
             raise self._no_response(observed.local_variables)
-        return observed.response, observed.local_variables
+        assigned = assigned_variables(observed.assigned, self._request)
+        return observed.response, observed.local_variables, assigned
 
     async def _listening_call(self, fields: dict[str, Any]) -> SkillResult:
         """Calls the skill while topic messages are evaluated.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 
 import jinja2
@@ -38,6 +39,7 @@ class EmittedMapping(msgspec.Struct, frozen=True):
     """A mapping as a Python module. `digest` is over `python`, and so over the documents with their places.
 
     `origins[i]` is where line i + 1 of `python` came from, None for lines that no document part made.
+    `constants` names the low-level constants behind the state's `anyValue`s, and is in the digest too.
     """
 
     skill: str
@@ -45,6 +47,7 @@ class EmittedMapping(msgspec.Struct, frozen=True):
     digest: str
     origins: tuple[LineOrigin | None, ...]
     mapping: AbstractionMapping
+    constants: Mapping[str, str] = {}
 
     @property
     def file_name(self) -> str:
@@ -59,8 +62,10 @@ class EmittedMapping(msgspec.Struct, frozen=True):
         return self.mapping.span if origin is None else origin.locate(column)
 
 
-def emit_mapping(skill: Skill, low_level: LowLevelDocument | None = None) -> EmittedMapping:
-    """The Python module of a skill's abstraction mapping.
+def emit_mapping(
+    skill: Skill, low_level: LowLevelDocument | None = None, constants: Mapping[str, str] | None = None
+) -> EmittedMapping:
+    """The Python module of a skill's abstraction mapping; `constants` are `low_level.default_constants`.
 
     DocumentError AOS121 with a diagnostic for each mistake if the documents' Python is not valid.
     """
@@ -68,13 +73,13 @@ def emit_mapping(skill: Skill, low_level: LowLevelDocument | None = None) -> Emi
     sections = Sections(mapping, low_level)
     request, functions, observe = sections.request(), sections.variable_functions(), sections.observe()
     start_values = sections.start_values()
-    constants = sections.constants()
+    constant_code = sections.constants()
     types = sections.low_level_types()
     whole, parts, by_star = sections.imports()
     if sections.diagnostics:
         raise _refusal(mapping, sections.diagnostics)
     support = [
-        *(["low_level_type"] if constants or types else []),
+        *(["low_level_type"] if constant_code or types else []),
         *(["stand_in"] if by_star or any(part.otherwise != ("pass",) for part in parts) else []),
     ]
     rendered = _templates.get_template("mapping.py.jinja").render(
@@ -87,16 +92,17 @@ def emit_mapping(skill: Skill, low_level: LowLevelDocument | None = None) -> Emi
         from_imports=parts,
         star_imports=by_star,
         low_level_types=types,
-        constants=constants,
+        constants=constant_code,
         start_values=start_values,
         request=request,
         functions=functions,
         observe=observe,
-        tables=sections.tables(constants),
+        tables=sections.tables(constant_code),
     )
     python, origins = sections.marks.separate(rendered)
-    digest = hashlib.sha256(python.encode()).hexdigest()[:_DIGEST_LENGTH]
-    emitted = EmittedMapping(skill.name, python, digest, origins, mapping)
+    constant_names = dict(constants or {})
+    digest = hashlib.sha256(msgspec.msgpack.encode([python, constant_names])).hexdigest()[:_DIGEST_LENGTH]
+    emitted = EmittedMapping(skill.name, python, digest, origins, mapping, constant_names)
     _check_whole(emitted)
     return emitted
 

@@ -115,10 +115,12 @@ class Evaluator:
             await self.close()
             raise
 
-    async def begin(self, parameters: dict[str, Any]) -> dict[str, Any]:
+    async def begin(
+        self, parameters: dict[str, Any], low_level: dict[str, Any] | None = None
+    ) -> dict[str, Any]:
         """Starts an activation; the fields of the call."""
         await self.start()
-        return (await self._ask(Begin(parameters), Begun, self._limits.evaluation_s)).fields
+        return (await self._ask(Begin(parameters, low_level or {}), Begun, self._limits.evaluation_s)).fields
 
     async def take(self, messages: Sequence[tuple[str, dict[str, Any]]]) -> None:
         """Hands over topic messages, (topic, fields), in the order in which they came."""

@@ -43,9 +43,13 @@ class Load(msgspec.Struct, frozen=True, tag=True):
 
 
 class Begin(msgspec.Struct, frozen=True, tag=True):
-    """An activation starts: local variables anew from these parameters. Answered by Begun."""
+    """An activation starts: local variables anew from these parameters. Answered by Begun.
+
+    `low_level` are low-level values that replace what the parameters have at these paths.
+    """
 
     parameters: dict[str, Any]
+    low_level: dict[str, Any] = {}
 
 
 class Take(msgspec.Struct, frozen=True, tag=True):
@@ -71,10 +75,14 @@ class Begun(msgspec.Struct, frozen=True, tag=True):
 
 
 class Observed(msgspec.Struct, frozen=True, tag=True):
-    """The response, None if no rule holds, and all local variables as text."""
+    """The response, None if no rule holds, and all local variables as text.
+
+    `assigned` are the low-level values that the rule gives, by the document's paths.
+    """
 
     response: str | None
     local_variables: dict[str, str]
+    assigned: dict[str, Any] = {}
 
 
 class Raised(msgspec.Struct, frozen=True, tag=True):

@@ -51,6 +51,10 @@ class OutcomeLedger:
         self._journal.append(_ENDED, outcome)
         self._outcomes[outcome.id] = outcome
 
+    def outcomes(self) -> list[Outcome]:
+        """How the activations ended that did, in the order in which they were started."""
+        return [outcome for outcome in self._outcomes.values() if outcome is not None]
+
     def outcome(self, activation: ActivationId) -> Outcome | None:
         """The outcome of an activation that was started before, None for a new one.
 

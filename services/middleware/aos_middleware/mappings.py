@@ -14,6 +14,7 @@ from pathlib import Path
 
 from aos_middleware.emit import EmittedMapping, emit_mapping
 from aos_middleware.evaluator import Evaluator
+from aos_middleware.low_level import default_constants
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, SkillError
@@ -30,9 +31,10 @@ def emit_project(project: Project) -> tuple[EmittedMapping, ...]:
     """The mappings of all skills; DocumentError AOS121 with every diagnostic if one cannot be generated."""
     emitted: list[EmittedMapping] = []
     diagnostics: list[Diagnostic] = []
+    constants = default_constants(project)
     for skill in project.skills:
         try:
-            emitted.append(emit_mapping(skill, project.low_level))
+            emitted.append(emit_mapping(skill, project.low_level, constants))
         except DocumentError as error:
             diagnostics += error.diagnostics
     if diagnostics:

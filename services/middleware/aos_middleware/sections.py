@@ -166,18 +166,33 @@ class Sections:
             None if rule.condition is None else self._expression(rule.condition) for rule in mapping.rules
         ]
         lines: list[str] = []
-        codes = []
+        codes: list[PythonCode] = []
+        has_assignments = False
         for rule, code in zip(mapping.rules, conditions, strict=True):
-            answer = f"return {literal(rule.response)}"
-            if code is None or code.is_true:
-                lines.append(f"    {answer}")
+            assigned = [
+                (assignment, value)
+                for assignment in rule.assignments
+                if (value := self._expression(assignment.value))
+            ]
+            is_last = code is None or code.is_true
+            if code is not None and not is_last:
+                codes.append(code)
+                lines += self.marks.expression("if ", code, ":", 1)
+            depth = 1 if is_last else 2
+            for assignment, value in assigned:
+                codes.append(value)
+                has_assignments = True
+                lines += self.marks.expression(f"__assign({literal(assignment.path)}, ", value, ")", depth)
+            lines.append(f"{' ' * 4 * depth}return {literal(rule.response)}")
+            if is_last:
                 break
-            codes.append(code)
-            lines += [*self.marks.expression("if ", code, ":", 1), f"        {answer}"]
         else:
             lines.append("    return None")
         summary = "The response: that of the first rule that holds."
-        return Function("observe", self._reads(codes), summary, tuple(lines))
+        reads = self._read_by(codes)
+        return Function(
+            "observe", ", ".join(["__assign", *reads] if has_assignments else reads), summary, tuple(lines)
+        )
 
     def _observe_text(self, name: str) -> Function:
         if name not in self._variables:
@@ -223,9 +238,9 @@ class Sections:
         return constants
 
     def _meets_constants(self) -> bool:
-        """Whether a parameter, or a snippet by name, can give this mapping a low-level value."""
+        """Whether a parameter can give this mapping a low-level value, or a snippet names one or its type."""
         assert self._low_level is not None
-        names = {constant.name for constant in self._low_level.constants}
+        names = {name for name, _ in self._low_level_names()}
         return any(variable.source is LocalSource.PARAMETER for variable in self._variables.values()) or any(
             code.reads & names for code in self._codes
         )
@@ -238,6 +253,7 @@ class Sections:
         whole: dict[str, str] = {}
         parts: dict[str, ImportPart] = {}
         known = {*self._variables, *dir(builtins), *(name for code in self._codes for name in code.assigns)}
+        known.update(name for name, _ in self._low_level_names())
         star = ""
         for each in self._imports():
             names = self._import_names(each)

@@ -16,6 +16,7 @@ from aos_middleware.activation import Surroundings, run_activation
 from aos_middleware.emit import EmittedMapping
 from aos_middleware.evaluator import EvaluationLimits, Evaluator
 from aos_middleware.ledger import OutcomeLedger
+from aos_middleware.low_level import LowLevelValues
 from aos_middleware.mappings import Mappings
 from aos_middleware.settings import Settings
 from aos_protocol.errors import AosError, BusError, SkillError
@@ -55,7 +56,6 @@ class _Middleware:
         folder = Path(settings.generated_dir) if settings.generated_dir else run_dir / "generated" / "python"
         self._service = service
         self._settings = settings
-        self._around = Surroundings(service.bus, service.keys, service.clock, {})
         self._logs = run_dir / "logs"
         self._limits = EvaluationLimits(
             load_s=settings.load_s,
@@ -64,6 +64,8 @@ class _Middleware:
         )
         self._mappings = Mappings(folder, self._make_evaluator)
         self._ledger = OutcomeLedger.open(run_dir / "middleware.db")
+        self._low_level = LowLevelValues(self._ledger.outcomes())
+        self._around = Surroundings(service.bus, service.keys, service.clock, {}, self._low_level)
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}
 
@@ -128,6 +130,7 @@ class _Middleware:
                 self._ledger.start(request)
                 outcome = await run_activation(request, evaluator, self._around)
                 self._ledger.end(outcome)
+                self._low_level.take(outcome)
         finally:
             del self._running[request.id], self._running_skills[request.skill]
             ended.set()

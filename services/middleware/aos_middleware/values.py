@@ -14,7 +14,7 @@ from typing import Any
 
 import msgspec
 
-__all__ = ["Message", "low_level_type", "message_from", "plain_from", "stand_in", "text_of"]
+__all__ = ["Message", "low_level_type", "message_from", "plain_from", "put", "stand_in", "text_of"]
 
 _MAX_DEPTH = 64
 
@@ -80,6 +80,16 @@ def low_level_type(name: str, *fields: str) -> type[Message]:
         Message.__init__(self, **{**dict.fromkeys(fields), **values})
 
     return type(name, (Message,), {"__init__": __init__})
+
+
+def put(values: dict[str, Any], path: str, value: Any) -> None:
+    """Sets what is at a path into nested dicts; nothing happens where the path leads nowhere."""
+    *outer, last = path.split(".")
+    inner: Any = values
+    for name in outer:
+        inner = inner.get(name) if isinstance(inner, dict) else None
+    if isinstance(inner, dict) and last in inner:
+        inner[last] = value
 
 
 def text_of(value: Any) -> str:

@@ -33,7 +33,7 @@ from aos_middleware.frames import (
     pack,
     read_question,
 )
-from aos_middleware.values import message_from, plain_from, text_of
+from aos_middleware.values import message_from, plain_from, put, text_of
 
 __all__ = ["LoadedMapping", "main"]
 
@@ -57,6 +57,7 @@ class LoadedMapping:
         self._lines = load.python.split("\n")
         self._values: dict[str, Any] = {}
         self._last_given: dict[str, Any] = {}
+        self._assigned: dict[str, Any] = {}
         namespace: dict[str, Any] = {
             "__name__": load.file_name.removesuffix(".py"),
             "__builtins__": _builtins(load.allowed_imports),
@@ -77,22 +78,25 @@ class LoadedMapping:
 
     def _answer(self, question: Question) -> Answer:
         match question:
-            case Begin(parameters):
-                return Begun(self._begin(parameters))
+            case Begin(parameters, low_level):
+                return Begun(self._begin(parameters, low_level))
             case Take(messages):
                 for topic, fields in messages:
                     self._take(topic, fields)
                 return Done()
             case Finish(result):
-                return Observed(self._finish(result), self._texts())
+                return Observed(self._finish(result), self._texts(), self._assigned)
             case Load():
                 raise ValueError("the module is loaded already")
 
-    def _begin(self, parameters: dict[str, Any]) -> dict[str, Any]:
+    def _begin(self, parameters: dict[str, Any], low_level: dict[str, Any]) -> dict[str, Any]:
         self._values = {}
         self._last_given = {}
+        self._assigned = {}
         with self._watched(self._load.evaluation_s):
             named = self._with_constants(parameters)
+            for path, value in low_level.items():
+                put(named, path, message_from(value))
             self._values = self._namespace["local_variables"](named)
             fields = self._call(self._namespace["request"])
             plain: dict[str, Any] = plain_from(fields)
@@ -105,8 +109,14 @@ class LoadedMapping:
     def _finish(self, result: dict[str, Any]) -> str | None:
         self._update(self._namespace.get("RESPONSE", {}), message_from(result))
         with self._watched(self._load.evaluation_s):
-            response: str | None = self._call(self._namespace["observe"])
+            observe = self._namespace["observe"]
+            takes_assign = observe.__code__.co_varnames[:1] == ("__assign",)
+            response: str | None = self._call(observe, *([self._assign] if takes_assign else []))
         return response
+
+    def _assign(self, path: str, value: Any) -> None:
+        """What a rule calls for each low-level value it gives."""
+        self._assigned[path] = plain_from(value)
 
     def _update(self, functions: Mapping[str, Function], message: Any) -> None:
         for name, function in functions.items():

@@ -38,7 +38,10 @@ class LoadedBundle(msgspec.Struct, frozen=True):
 
 
 def load_bundle(path: Path) -> LoadedBundle:
-    """The bundle in a directory or an archive. Folders in a directory and hidden files are not part of it."""
+    """The bundle in a directory or an archive.
+
+    Folders in a directory and hidden files are not part of it; a link to a file elsewhere is an error.
+    """
     files, remarks = read_bundle_files(path)
     return load_files(files, name=path.name or str(path), remarks=remarks)
 
@@ -100,6 +103,11 @@ def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
     total = 0
     for entry in entries:
         if entry.name.startswith("."):
+            continue
+        if entry.is_symlink() and not entry.resolve().is_relative_to(path.resolve()):
+            hint = "Put the file itself into the bundle"
+            message = "this link leads out of the bundle"
+            remarks.append(Diagnostic(Severity.ERROR, "AOS120", message, Span(entry.name), hint))
             continue
         if entry.is_dir():
             remarks.append(_remark("a folder inside a bundle", entry, "It is left out"))

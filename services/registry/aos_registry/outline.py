@@ -113,6 +113,8 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
     for rule in mapping.rules:
         condition = rule.condition.code if rule.condition else "True"
         yield _placed(f"response {rule.response} when {condition}", rule.span)
+        for assignment in rule.assignments:
+            yield _placed(f"  {assignment.path} becomes {assignment.value.code}", assignment.span)
     if mapping.response_variable:
         yield f"response is the text of {mapping.response_variable}"
     for variable in mapping.local_variables:

@@ -12,15 +12,21 @@ from aos_protocol.messages import ActionValue, BeliefSummary, PredictedObservati
 __all__ = [
     "BeliefUpdate",
     "EngineDescription",
+    "EngineFault",
     "ExactValues",
+    "Explored",
     "ExportedBelief",
     "GroundedAction",
     "Plan",
+    "Prediction",
     "Reach",
     "ReachedAction",
     "SampleCount",
     "WorldStart",
+    "WorldState",
     "WorldStep",
+    "WorldSteps",
+    "Worlds",
 ]
 
 
@@ -43,7 +49,10 @@ class EngineDescription(msgspec.Struct, frozen=True):
 
 
 class Plan(msgspec.Struct, frozen=True):
-    """A decision: the index of the best action, and what the search found about each, in their order."""
+    """A decision: the index of the best action, and what the search found about each, in their order.
+
+    `planner` is the one that made it, and `why` it was that one.
+    """
 
     index: int
     simulations: int
@@ -51,18 +60,34 @@ class Plan(msgspec.Struct, frozen=True):
     actions: tuple[ActionValue, ...]
     predicted: tuple[PredictedObservation, ...]
     seconds: float
+    cpu_seconds: float = 0.0
+    planner: str = ""
+    why: str = ""
 
     @property
     def best(self) -> ActionValue:
         return self.actions[self.index]
 
 
+class EngineFault(msgspec.Struct, frozen=True):
+    """What model code did wrong; `piece` is the number of the piece that ran, 0 where none did."""
+
+    code: str
+    text: str
+    piece: int
+
+
 class BeliefUpdate(msgspec.Struct, frozen=True):
-    """The belief after an outcome; `probability` is P(observation | belief, action) before it."""
+    """The belief after an outcome; `probability` is P(observation | belief, action) before it.
+
+    `uncorrected` is why the local variables of the outcome did not correct it, `remark` that for people.
+    """
 
     probability: float
     is_impossible: bool
     summary: BeliefSummary
+    uncorrected: EngineFault | None = None
+    remark: str = ""
 
     @property
     def surprise(self) -> float:
@@ -104,6 +129,28 @@ class Reach(msgspec.Struct, frozen=True):
     limit: str
 
 
+class Explored(msgspec.Struct, frozen=True):
+    """What one more piece of an exploration has found; `explored` states are done with.
+
+    `states` and `observations` are the texts of new ones. For each state done with in this piece and each
+    action there are an expected reward and a count of `outcomes`, which are next state, observation and
+    probability; a next state of -1 has ended.
+    """
+
+    explored: int
+    states: tuple[str, ...]
+    observations: tuple[str, ...]
+    rewards: list[float]
+    counts: list[int]
+    outcomes: list[tuple[int, int, float]]
+
+
+class Prediction(msgspec.Struct, frozen=True):
+    """What may be observed after an action, the likeliest first."""
+
+    predicted: tuple[PredictedObservation, ...]
+
+
 class ExportedBelief(msgspec.Struct, frozen=True):
     """A belief that another engine with the same state layout can take: weights, and states as bytes."""
 
@@ -117,6 +164,12 @@ class WorldStart(msgspec.Struct, frozen=True):
     ending: str
 
 
+class WorldState(msgspec.Struct, frozen=True):
+    """The hidden state as text: by the documents' print function, or else all variables with their values."""
+
+    state: str
+
+
 class WorldStep(msgspec.Struct, frozen=True):
     """One step of the simulated world."""
 
@@ -125,9 +178,30 @@ class WorldStep(msgspec.Struct, frozen=True):
     ending: str
 
 
+class Worlds(msgspec.Struct, frozen=True):
+    """The observations that worlds can give, by number; 0 is none. With `has_texts` there are texts too."""
+
+    observations: tuple[str, ...]
+    has_texts: bool
+
+
+class WorldSteps(msgspec.Struct, frozen=True):
+    """One step of all worlds, an entry for each in every array.
+
+    `endings` are bytes, 0 running, 1 goal, 2 failure; `rewards` of type float64, `observations` of int32. The
+    bytes of each array are as the machine has them. `texts` are empty unless the model has text observations.
+    """
+
+    endings: bytes
+    rewards: bytes
+    observations: bytes
+    texts: list[str]
+
+
 class SampleCount(msgspec.Struct, frozen=True):
     """How many samples of (next state, observation, reward) were drawn, in which time."""
 
     samples: int
     seconds: float
     mean_reward: float
+    cpu_seconds: float = 0.0

@@ -9,30 +9,40 @@ __all__ = ["headers_for", "unrepeatable_names"]
 _HEADERS = {
     "algorithm": (
         "adjacent_find all_of any_of binary_search clamp copy copy_if count count_if equal fill find find_if "
-        "for_each generate is_sorted lower_bound max_element min_element minmax minmax_element none_of "
-        "nth_element partial_sort partition remove remove_if replace replace_if reverse rotate search sort "
-        "stable_sort transform unique upper_bound"
+        "find_if_not for_each generate includes is_permutation is_sorted lower_bound max_element merge "
+        "min_element minmax minmax_element mismatch next_permutation none_of nth_element partial_sort "
+        "partition prev_permutation remove remove_if replace replace_if reverse rotate search "
+        "set_difference set_intersection set_union sort stable_sort transform unique upper_bound"
     ),
     "bitset": "bitset",
     "cassert": "assert",
-    "climits": "INT_MAX INT_MIN",
-    "cstdio": "printf puts",
+    "cctype": "isalnum isalpha isdigit islower isspace isupper tolower toupper",
+    "cfloat": "DBL_EPSILON DBL_MAX DBL_MIN FLT_EPSILON FLT_MAX FLT_MIN",
+    "climits": "CHAR_BIT INT_MAX INT_MIN LLONG_MAX LLONG_MIN LONG_MAX LONG_MIN UINT_MAX",
+    "complex": "complex",
+    "cstdio": "fprintf printf putchar puts snprintf sprintf",
     "cstdlib": "abs atof atoi labs strtod strtol",
+    "cstring": "memcmp memcpy memset strcmp strcpy strlen strncmp",
     "deque": "deque",
-    "functional": "cref function greater less minus plus ref",
+    "functional": "bind cref function greater greater_equal less less_equal minus multiplies plus ref",
     "iomanip": "setprecision setw",
     "iostream": "cerr clog cout endl",
+    "iterator": "back_inserter front_inserter inserter",
     "limits": "numeric_limits",
     "list": "list",
     "map": "map multimap",
-    "numeric": "accumulate inner_product iota partial_sum reduce",
+    "memory": "make_shared make_unique shared_ptr unique_ptr",
+    "numeric": "accumulate adjacent_difference gcd inner_product iota lcm midpoint partial_sum reduce",
     "optional": "nullopt optional",
     "queue": "priority_queue queue",
     "set": "multiset set",
     "sstream": "istringstream ostringstream stringstream",
     "stack": "stack",
+    "stdexcept": "domain_error invalid_argument logic_error out_of_range range_error runtime_error",
+    "string_view": "string_view",
     "unordered_map": "unordered_map",
-    "unordered_set": "unordered_set",
+    "unordered_set": "unordered_multiset unordered_set",
+    "variant": "holds_alternative monostate variant visit",
 }
 _HEADER_OF = {name: header for header, names in _HEADERS.items() for name in names.split()}
 
@@ -41,7 +51,9 @@ _UNREPEATABLE = frozenset({
     "mt19937", "mt19937_64", "rand", "rand_r", "random", "random_device", "random_shuffle", "srand",
     "srandom", "time", "uniform_int_distribution", "uniform_real_distribution",
 })  # fmt: skip
-_CHANGING_STATIC = re.compile(r"\b(?:static|thread_local)\b(?!\s+(?:const|constexpr)\b)(?!_)")
+_CHANGING_STATIC = re.compile(
+    r"(?<!\bconst )(?<!\bconstexpr )\b(?:static|thread_local)\b(?!\s+(?:const|constexpr)\b)(?!_)"
+)
 
 
 def headers_for(names: frozenset[str]) -> tuple[str, ...]:

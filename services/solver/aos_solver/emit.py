@@ -17,7 +17,7 @@ import jinja2
 import msgspec
 
 from aos_protocol.diagnostics import Span
-from aos_solver.program import ObjectList, Piece, Program, Skill, Variable
+from aos_solver.program import Local, ObjectList, Piece, Program, Skill, Variable
 
 __all__ = ["MODEL_FILE", "EmittedModel", "Origin", "emit"]
 
@@ -45,6 +45,8 @@ class EmittedModel(msgspec.Struct, frozen=True):
     """The file with what leads back from it. `snippets[n - 1]` is where document code of number n starts.
 
     `state_digest` is that of the declared state: models with the same can take over each other's beliefs.
+    `locals` are the local variables that the engine wants with a real observation, for each skill whose
+    observations correct the belief. `choosing_skills` are those whose parameters stand for state variables.
     """
 
     project: str
@@ -54,6 +56,8 @@ class EmittedModel(msgspec.Struct, frozen=True):
     snippets: tuple[Span, ...]
     pieces: tuple[Piece, ...]
     origins: dict[int, tuple[Origin, ...]]
+    locals: dict[str, tuple[Local, ...]] = {}
+    choosing_skills: frozenset[str] = frozenset()
 
     def locate(self, line: int, byte_column: int = 1) -> Span | None:
         """The document place of a place in the file; None for code that no document gave."""
@@ -97,6 +101,8 @@ def emit(program: Program) -> EmittedModel:
         snippets=tuple(piece.snippet.span for piece in program.pieces),
         pieces=program.pieces,
         origins=origins,
+        locals={skill.name: skill.locals for skill in program.skills if skill.is_corrected},
+        choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
     )
 
 
@@ -202,6 +208,7 @@ def _put_inline(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> N
 
 def _own_names(program: Program) -> dict[str, str]:
     taken = {enum.name for enum in program.enums} | {compound.name for compound in program.compounds}
+    taken |= {variable.name for variable in program.variables}
     taken |= {value for enum in program.enums for value in enum.values} | set(program.low_level_constants)
     names = {}
     for name in _OWN_NAMES:

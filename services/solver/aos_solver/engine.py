@@ -10,7 +10,12 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
+import re
 import signal
+import struct
+import sys
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
 from typing import Literal, Self, TypeVar
 
 import msgspec
@@ -22,23 +27,35 @@ from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.answers import (
     BeliefUpdate,
     EngineDescription,
+    EngineFault,
     ExactValues,
+    Explored,
     ExportedBelief,
     Plan,
+    Prediction,
     Reach,
     SampleCount,
+    Worlds,
     WorldStart,
+    WorldState,
     WorldStep,
+    WorldSteps,
 )
 from aos_solver.build import BuiltModel
+from aos_solver.local_values import UnusableLocals, local_values_line
+from aos_solver.printed import pass_on
 
-__all__ = ["Engine", "ImpossiblePolicy"]
+__all__ = ["Engine", "ImpossiblePolicy", "Planner"]
 
 ImpossiblePolicy = Literal["hold", "widen", "reset"]
+Planner = Literal["pomcp", "despot", "auto"]
 
 log = logging.getLogger(__name__)
 
 A = TypeVar("A")
+
+_PARAMETER = re.compile(r"(\w+)=(\w+)")
+"""In the name of an action whose parameters are values of state variables, which are in it by name."""
 
 START_DEADLINE_S = 20.0
 ANSWER_DEADLINE_S = 30.0
@@ -49,16 +66,16 @@ EXIT_DEADLINE_S = 2.0
 EXACT_BELIEF_BUDGET = 20_000_000
 ADDRESS_SPACE_BYTES = 8 * 1024**3
 ANSWER_LIMIT_BYTES = 256 * 1024**2
-
-
-class _Fault(msgspec.Struct, frozen=True):
-    code: str
-    text: str
-    piece: int
+BLAME_BYTES = 65536
+"""The largest page that blame.hpp maps; each of its threads has a line of 64 bytes in the first 4096."""
 
 
 class _FaultAnswer(msgspec.Struct, frozen=True):
-    fault: _Fault | None = None
+    fault: EngineFault | None = None
+
+
+class _Done(msgspec.Struct, frozen=True):
+    """The answer that says nothing more."""
 
 
 class _KilledError(ModelError):
@@ -75,7 +92,9 @@ class Engine:
         self._child: Child | None = None
         self._belief: ExportedBelief | None = None
         self._asking = asyncio.Lock()
+        self._printed: asyncio.Task[None] | None = None
         self._blame: int | None = None
+        self._counts_processor_time = False
         self.description: EngineDescription
 
     @classmethod
@@ -94,6 +113,11 @@ class Engine:
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
         await self._drop_child()
+
+    @property
+    def model_digest(self) -> str:
+        """The digest of the model that is asked."""
+        return self._built.emitted.digest
 
     @property
     def pid(self) -> int | None:
@@ -116,11 +140,20 @@ class Engine:
         simulations: int | None = None,
         time_s: float | None = None,
         horizon: int | None = None,
+        planner: Planner = "pomcp",
     ) -> Plan:
-        """Searches from the current belief within the budget; `horizon` None takes the document's."""
+        """Searches from the current belief within the budget; `horizon` None takes the document's.
+
+        With the planner `auto` the model's size decides, and the plan says why.
+        """
         deadline_s = PLANNING_DEADLINE_S if time_s is None else time_s + ANSWER_DEADLINE_S
-        command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}"
+        command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}\t{planner}"
         return await self._ask(command, Plan, deadline_s=deadline_s)
+
+    async def count_processor_time(self, counts: bool) -> None:
+        """Whether budgets in seconds are of processor time: for measurements on a machine with other work."""
+        self._counts_processor_time = counts
+        await self._ask(f"count_processor_time\t{int(counts)}", _Done)
 
     async def exact(self, horizon: int | None = None) -> ExactValues:
         """Finite-horizon values by enumeration; ModelError AOS220 where that is not tractable, and why."""
@@ -131,11 +164,43 @@ class Engine:
         """Which states the actions can lead to from the current belief, looked at for so long at most."""
         return await self._ask(f"reach\t{time_s}", Reach, deadline_s=time_s + ANSWER_DEADLINE_S)
 
-    async def update(self, action: str, response: str) -> BeliefUpdate:
-        """Bayes' rule after an action and its observation."""
+    async def explore(self, *, is_new: bool, time_s: float) -> Explored:
+        """A piece of the model as numbers, from the current belief on; ModelError AOS220 if it has no end."""
+        command = f"explore\t{int(is_new)}\t{time_s}"
+        return await self._ask(command, Explored, deadline_s=time_s + ANSWER_DEADLINE_S)
+
+    async def predict(self, index: int) -> Prediction:
+        """What may be observed after an action."""
+        return await self._ask(f"predict\t{index}", Prediction)
+
+    async def update(
+        self, action: str, response: str, local_variables: Mapping[str, str] | None = None
+    ) -> BeliefUpdate:
+        """Bayes' rule after an action and its observation.
+
+        The local variables of a real outcome, as text, correct the belief where the skill's documents say so;
+        where they cannot, the belief is that of the response alone, and the update's remark says why.
+        """
         if any(mark in response for mark in "\t\n"):
             raise ModelError(f"the response {response!r} has a tab or a line end in it", code="AOS310")
-        return await self._change_belief(f"update\t{self._index(action)}\t{response}", BeliefUpdate)
+        index = self._index(action)
+        command = f"update\t{index}\t{response}"
+        wanted = self._built.emitted.locals.get(self.description.actions[index].skill)
+        if wanted is None or local_variables is None:
+            return await self._change_belief(command, BeliefUpdate)
+        try:
+            command += f"\t{local_values_line(wanted, local_variables)}"
+        except UnusableLocals as reason:
+            update, why = await self._change_belief(command, BeliefUpdate), str(reason)
+        else:
+            update = await self._change_belief(command, BeliefUpdate)
+            if update.uncorrected is None:
+                return update
+            fault = update.uncorrected
+            why = self._blamed(fault.code, fault.text, fault.piece).message
+        remark = f"the local variables of {action} do not correct the belief: {why}"
+        log.warning("%s", remark)
+        return msgspec.structs.replace(update, remark=remark)
 
     async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
         """The mixture of "it ran" and "it did not"."""
@@ -157,11 +222,31 @@ class Engine:
         """Runs an action on the hidden state, by the model."""
         return await self._ask(f"step_world\t{index}", WorldStep)
 
+    async def world_state(self) -> str:
+        """The hidden state as text for people."""
+        return (await self._ask("show_world", WorldState)).state
+
+    async def reset_worlds(self, seeds: Sequence[int]) -> Worlds:
+        """Starts a hidden state for each seed, to be acted in side by side."""
+        return await self._ask("\t".join(("reset_worlds", *map(str, seeds))), Worlds)
+
+    async def step_worlds(self, indices: bytes) -> WorldSteps:
+        """Runs one action in each world; -1 starts a world anew, with the next numbers of its seed.
+
+        `indices` are the bytes of an int32 for each world.
+        """
+        return await self._ask(f"step_worlds\t{b64encode(indices).decode()}", WorldSteps)
+
     async def rate(self, seconds: float, seed: int) -> SampleCount:
         """Draws samples with random actions for so long."""
         return await self._ask(
             f"rate\t{seconds}\t{seed}", SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S
         )
+
+    def variables_of(self, action: str) -> dict[str, str]:
+        """The state variables that parameters of the action stand for; computed parameters stand for none."""
+        skill = self.description.actions[self._index(action)].skill
+        return dict(_PARAMETER.findall(action)) if skill in self._built.emitted.choosing_skills else {}
 
     # --- the child -----------------------------------------------------------------------------------
 
@@ -190,7 +275,7 @@ class Engine:
     async def _start_child(self) -> None:
         # In memory, so that nothing is left behind however we end; the child opens it through us.
         self._blame = os.memfd_create("aos-blame")
-        os.write(self._blame, bytes(4))
+        os.truncate(self._blame, BLAME_BYTES)
         arguments = [f"/proc/{os.getpid()}/fd/{self._blame}", str(self._seed), self._policy]
         self._child = await Child.start(
             guarded(
@@ -199,13 +284,17 @@ class Engine:
             name="engine",
             stdin=PIPE,
             stdout=PIPE,
+            stderr=PIPE,
             stream_limit_bytes=ANSWER_LIMIT_BYTES,
         )
+        self._printed = asyncio.create_task(pass_on(self._child.stderr, sys.stderr.buffer))
         self.description = await self._exchange(None, EngineDescription, START_DEADLINE_S)
 
     async def _restart_child(self) -> None:
         await self._drop_child()
         await self._start_child()
+        if self._counts_processor_time:
+            await self._exchange("count_processor_time\t1", _Done, ANSWER_DEADLINE_S)
         if self._belief is not None:
             await self._exchange(_import_command(self._belief), BeliefSummary, ANSWER_DEADLINE_S)
 
@@ -238,7 +327,7 @@ class Engine:
 
     async def _lost(self, code: str, message: str) -> AosError:
         """The error for a child that is gone or has to go; the blame page tells what ran last."""
-        piece = int.from_bytes(os.pread(self._blame, 4, 0), "little") if self._blame is not None else 0
+        piece = _running_piece(self._blame) if self._blame is not None else 0
         status = None if code == "AOS211" else await self._status()
         await self._drop_child()
         if status == -signal.SIGKILL:
@@ -271,9 +360,19 @@ class Engine:
         if child is not None:
             child.kill()
             await child.wait()
+        if self._printed is not None:
+            await asyncio.wait({self._printed}, timeout=EXIT_DEADLINE_S)
+            self._printed.cancel()
+            self._printed = None
         if self._blame is not None:
             os.close(self._blame)
             self._blame = None
+
+
+def _running_piece(blame: int) -> int:
+    """The piece of document code that ran when the child ended; of several threads, the first that ran one."""
+    lines = struct.iter_unpack("=I60x", os.pread(blame, 4096, 0))
+    return next((piece for (piece,) in lines if piece != 0), 0)
 
 
 def _import_command(belief: ExportedBelief) -> str:

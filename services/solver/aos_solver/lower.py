@@ -10,11 +10,22 @@ import hashlib
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic
-from aos_protocol.documents import Assignment, Environment, Project, Skill
+from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
+from aos_protocol.local_types import LocalType, local_type, told_variables
 from aos_runtime.snippets import read_cpp_expression
 from aos_solver.cpp_library import headers_for
 from aos_solver.findings import Findings
-from aos_solver.lower_code import BELIEF, DYNAMIC, EXTRINSIC, LOOKING, Pieces, SectionLowering, snippets_of
+from aos_solver.lower_code import (
+    BELIEF,
+    DYNAMIC,
+    EXTRINSIC,
+    GIVEN,
+    LOOKING,
+    Pieces,
+    SectionLowering,
+    snippets_of,
+)
+from aos_solver.lower_copies import copies_of
 from aos_solver.lower_names import check_names
 from aos_solver.lower_state import (
     lower_compounds,
@@ -26,7 +37,7 @@ from aos_solver.lower_state import (
 )
 from aos_solver.lower_types import Types, lower_enum
 from aos_solver.lower_writes import Changes, changes_of, drawing_defaults
-from aos_solver.program import Parameter, Program, SpecialState
+from aos_solver.program import Local, Parameter, Program, SpecialState
 from aos_solver.program import Skill as LoweredSkill
 
 __all__ = ["lower"]
@@ -38,7 +49,6 @@ def lower(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """The program, and what is to be said about the documents; no program if there are errors."""
     findings = Findings()
     check_names(project, findings)
-    _report_unused(project, findings)
     if any(diagnostic.is_error for diagnostic in findings.diagnostics):
         return None, tuple(findings.diagnostics)
     program = _Lowering(project, findings).program()
@@ -77,8 +87,10 @@ class _Lowering:
         extrinsic_changes = code.section(EXTRINSIC, environment.extrinsic_changes)
         special_states = self._special_states(environment)
         state_heuristic = code.section(LOOKING, environment.state_heuristic)
+        print_state = code.section(LOOKING, environment.print_state)
         skills = tuple(self._skill(skill) for skill in project.skills)
         names = frozenset(self._pieces.identifiers)
+        headers = headers_for(names | {"ostringstream"} if print_state is not None else names)
         constants = project.low_level.constants if project.low_level is not None else ()
         value_types = sorted(self._changes.value_types)
         return Program(
@@ -98,9 +110,10 @@ class _Lowering:
             initial_belief=initial_belief,
             extrinsic_changes=extrinsic_changes,
             state_heuristic=state_heuristic,
+            print_state=print_state,
             special_states=special_states,
             skills=skills,
-            standard_headers=headers_for(names),
+            standard_headers=headers,
             pieces=tuple(self._pieces.made),
         )
 
@@ -126,6 +139,7 @@ class _Lowering:
     def _skill(self, skill: Skill) -> LoweredSkill:
         model, mapping, code = skill.model, skill.mapping, self._code
         variables = self._project.environment.variables
+        copies = copies_of(model, self._project.environment)
         parameters = tuple(
             Parameter(
                 parameter.name,
@@ -134,7 +148,7 @@ class _Lowering:
             )
             for parameter in model.parameters
         )
-        return LoweredSkill(
+        lowered = LoweredSkill(
             name=model.name,
             document=model.span.file,
             parameters=parameters,
@@ -146,7 +160,29 @@ class _Lowering:
             execution_time=code.section(LOOKING, model.execution_time),
             dynamic_model=code.section(DYNAMIC, model.dynamic_model),
             rollout_policy=code.section(LOOKING, model.rollout_policy),
+            given_observation=code.section(GIVEN, model.state_given_observation),
+            told=told_variables(mapping, self._project.environment),
+            keeps_state=copies.keeps_state,
+            keeps_state_=copies.keeps_state_,
         )
+        return msgspec.structs.replace(lowered, locals=_locals(mapping, lowered))
+
+
+def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:
+    """The local variables that a correction needs."""
+    needed = set(skill.told)
+    if skill.given_observation is not None:
+        needed |= skill.given_observation.names - {parameter.name for parameter in skill.parameters}
+    return tuple(
+        Local(variable.name, _cpp_type(kind), kind)
+        for variable in mapping.local_variables
+        if variable.name in needed and (kind := local_type(variable.type)) is not None
+    )
+
+
+def _cpp_type(kind: LocalType) -> str:
+    element = "std::string" if kind.element == "string" else kind.element
+    return f"aos::LocalArray<{element}>" if kind.is_array else element
 
 
 def _uses_text_response(assignments: tuple[Assignment, ...]) -> bool:
@@ -157,21 +193,6 @@ def _uses_text_response(assignments: tuple[Assignment, ...]) -> bool:
     )
 
 
-def _report_unused(project: Project, findings: Findings) -> None:
-    """AOS124 for the constructs that are read and have no effect on the model."""
-    for skill in project.skills:
-        blocks = skill.model.state_given_observation
-        if any(not cpp.is_empty for _, cpp in snippets_of(blocks)):
-            message = f"{skill.name} changes the state given an observation, which is not supported yet"
-            hint = "The belief is updated by the dynamic model alone"
-            findings.warning("AOS124", message, blocks[0].span, hint)
-    blocks = project.environment.print_state
-    if any(not cpp.is_empty for _, cpp in snippets_of(blocks)):
-        message = "the code that prints a state is not used"
-        hint = "States are told apart and shown by the values of all their variables"
-        findings.warning("AOS124", message, blocks[0].span, hint)
-
-
 def _digest(project: Project) -> str:
     """Of all that the model depends on; not of the code in the abstraction mappings."""
     parts = [
@@ -179,7 +200,12 @@ def _digest(project: Project) -> str:
         project.environment,
         [constant.name for constant in project.low_level.constants] if project.low_level is not None else [],
         [
-            (skill.model, [rule.response for rule in skill.mapping.rules], skill.mapping.response_variable)
+            (
+                skill.model,
+                [rule.response for rule in skill.mapping.rules],
+                skill.mapping.response_variable,
+                [(variable.name, variable.type) for variable in skill.mapping.local_variables],
+            )
             for skill in project.skills
         ],
     ]

@@ -35,24 +35,27 @@ __all__ = ["Phase", "Pieces", "SectionLowering", "environment_sections", "skill_
 
 
 class Phase(msgspec.Struct, frozen=True):
-    """What a kind of section may do: the copy that `over_next` runs over, and the copies it may change."""
+    """What a kind of section may do: the copies that loops run over, and the copies it may change."""
 
     title: str
     next_copy: str = ""
     changes: frozenset[str] = frozenset()
+    previous_copy: str = "state"
 
 
 BELIEF = Phase("the initial belief", changes=frozenset({"state"}))
 EXTRINSIC = Phase("extrinsic changes", "state_", frozenset({"state_"}))
 DYNAMIC = Phase("a dynamic model", "state__", frozenset({"state__"}))
+GIVEN = Phase("a state given an observation", "state___", frozenset({"state___"}), "state__")
 LOOKING = Phase("this section")
 
 
 def environment_sections(environment: Environment) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
-    """The environment's code by phase; the print function is not part of the model."""
+    """The environment's code by phase."""
     yield BELIEF, environment.initial_belief
     yield EXTRINSIC, environment.extrinsic_changes
     yield LOOKING, environment.state_heuristic
+    yield LOOKING, environment.print_state
     for special in environment.special_states:
         yield LOOKING, special.code
 
@@ -64,6 +67,7 @@ def skill_sections(model: SkillModel) -> Iterator[tuple[Phase, tuple[Assignment,
     yield LOOKING, model.execution_time
     yield LOOKING, model.rollout_policy
     yield DYNAMIC, model.dynamic_model
+    yield GIVEN, model.state_given_observation
 
 
 def snippets_of(assignments: Iterable[Assignment]) -> Iterator[tuple[Snippet, Cpp]]:
@@ -168,7 +172,8 @@ class SectionLowering:
         if assignment.temporary is not None:
             yield self._temporary(assignment.temporary)
         if assignment.over_previous:
-            yield self._loop(assignment.over_previous, "state", "state" in phase.changes, rewriting)
+            copy = phase.previous_copy
+            yield self._loop(assignment.over_previous, copy, copy in phase.changes, rewriting)
         if assignment.over_next:
             if phase.next_copy:
                 yield self._loop(assignment.over_next, phase.next_copy, True, rewriting)
@@ -200,7 +205,7 @@ class SectionLowering:
 
 
 def _looped_copies(phase: Phase, assignments: tuple[Assignment, ...]) -> frozenset[str]:
-    copies = {"state" for assignment in assignments if assignment.over_previous}
+    copies = {phase.previous_copy for assignment in assignments if assignment.over_previous}
     copies |= {phase.next_copy for assignment in assignments if assignment.over_next}
     return frozenset(copies)
 

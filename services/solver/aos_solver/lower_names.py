@@ -16,12 +16,13 @@ _OF_THE_LANGUAGE = frozenset({
     "state_", "state__", "state___", "std",
 })  # fmt: skip
 _OF_EMITTED_SKILLS = frozenset({
-    "Parameters", "Response", "execution_time", "ground", "groundings", "has_text_response", "next_state",
-    "possible_parameters", "precondition", "response_names", "rollout_policy", "violation_penalty",
+    "Locals", "Parameters", "Response", "execution_time", "given_observation", "ground", "groundings",
+    "has_text_response", "locals", "next_state", "possible_parameters", "precondition", "read_locals",
+    "response_names", "rollout_policy", "violation_penalty",
 })  # fmt: skip
 _OF_EMITTED_ENVIRONMENTS = frozenset({
     "Chosen", "extrinsic_changes", "has_extrinsic_changes", "initial_belief", "is_one_state", "name_of",
-    "special_states", "state_heuristic", "with_action", "with_skill",
+    "print_state", "special_states", "state_heuristic", "with_action", "with_skill",
 })  # fmt: skip
 
 
@@ -44,6 +45,7 @@ def assignments_of(model: SkillModel) -> Iterator[Assignment]:
     yield from model.rollout_policy
     yield from model.execution_time
     yield from model.dynamic_model
+    yield from model.state_given_observation
 
 
 def _global_names(environment: Environment) -> Iterator[tuple[str, Span]]:
@@ -60,6 +62,7 @@ def _member_names(project: Project) -> Iterator[tuple[str, Span]]:
         yield from ((field.name, field.span) for field in compound.fields)
     yield from ((variable.name, variable.span) for variable in environment.variables)
     blocks = [*environment.initial_belief, *environment.extrinsic_changes, *environment.state_heuristic]
+    blocks += environment.print_state
     blocks += [block for special in environment.special_states for block in special.code]
     if project.low_level is not None:
         yield from ((constant.name, constant.span) for constant in project.low_level.constants)

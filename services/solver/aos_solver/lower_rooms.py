@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+
+import msgspec
 
 from aos_runtime.snippets import Access, Cpp, Mention, strip_comments
 
@@ -13,11 +15,15 @@ __all__ = ["Rooms"]
 GROWING_ROOM = 64
 """What a vector gets that grows by code, if nothing in the code tells more."""
 
+TOLD_ROOM = 1024
+"""What a vector gets that the robot's data fill, if the documents give it no length at the start."""
+
 _LARGEST_ROOM = 16384
 _GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})
 _SIZING = frozenset({"assign", "resize"})
 _LOOP_BOUND = re.compile(r"\bfor\s*\([^;{}]*;[^;{}]*<=?\s*(\d+)\s*;")
 _CONSTRUCTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*\(\s*(\d+)")
+_LOOP_COLON = re.compile(r"\s*:\s*")
 _LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
 
 
@@ -25,21 +31,29 @@ class Rooms:
     """Room by the name of a variable or field and by level of nesting.
 
     A vector that is only ever assigned lists and literal sizes has exactly the room of the longest. One that
-    grows has `GROWING_ROOM`, or the product of the loop bounds in the code that makes it grow. Running over
-    is a fault at run time, told with the document's line.
+    grows has `GROWING_ROOM`, or the product of the loop bounds in the code that makes it grow; one that the
+    robot's data fill has twice the room it starts with, or `TOLD_ROOM`. Running over is a fault at run time,
+    told with the document's line.
     """
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, int], int] = {}
         self._grows: dict[tuple[str, int], int] = {}
+        self._told: set[tuple[str, int]] = set()
 
     def room(self, name: str, level: int = 0) -> int:
         """The room of `name` at a level: 0 for the vector, 1 for the vectors in it."""
         key = (name, level)
         known = self._known.get(key, 0)
-        if key not in self._grows and known > 0:
+        if key in self._told and known <= 1:  # An empty list at the start says nothing.
+            return TOLD_ROOM
+        if known > 0 and key not in self._grows and key not in self._told:
             return known
         return min(max(self._grows.get(key, GROWING_ROOM), 2 * known), _LARGEST_ROOM)
+
+    def tell(self, name: str) -> None:
+        """Takes in that a variable gets values from outside."""
+        self._told.add((name, 0))
 
     def read_default(self, name: str, expression: str) -> None:
         """Takes in the default value of a variable or field."""
@@ -50,8 +64,10 @@ class Rooms:
         for cpp in snippets:
             code = strip_comments(cpp.code)
             loops = math.prod(int(bound) for bound in _LOOP_BOUND.findall(code))
+            aliases = dict(_aliases(cpp))
             for mention in cpp.mentions:
-                self._take_mention(mention, code, loops)
+                path = (*aliases.get(mention.path[0], mention.path[:1]), *mention.path[1:])
+                self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
 
     def _take_mention(self, mention: Mention, code: str, loops: int) -> None:
         names = [part for part in mention.path if part != "[]"]
@@ -88,6 +104,20 @@ class Rooms:
 
     def _grow(self, key: tuple[str, int], loops: int) -> None:
         self._grows[key] = max(self._grows.get(key, GROWING_ROOM), loops)
+
+
+def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The references that a snippet declares, and the paths that they stand for."""
+    for declaration in cpp.declarations:
+        if not declaration.type.endswith("&"):
+            continue
+        loop = _LOOP_COLON.match(cpp.code, declaration.extent.end)
+        for mention in cpp.mentions:
+            at = mention.extent.start
+            if declaration.initial is not None and at == declaration.initial.start:
+                yield declaration.name, mention.path
+            elif declaration.initial is None and loop is not None and at == loop.end():
+                yield declaration.name, (*mention.path, "[]")
 
 
 def _last_name(path: tuple[str, ...]) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from aos_protocol.documents import Environment, Project, StateVariable
+from aos_protocol.local_types import told_variables
 from aos_runtime.snippets import read_cpp
 from aos_solver.findings import Findings
 from aos_solver.lower_code import Pieces, environment_sections, skill_sections, snippets_of
@@ -37,6 +38,9 @@ def rooms_of(project: Project) -> Rooms:
             rooms.read_default(variable.name, variable.default_value.code)
         if variable.default_code is not None:
             rooms.read_code([read_cpp(variable.default_code.code)])
+    for skill in project.skills:
+        for name in told_variables(skill.mapping, environment):
+            rooms.tell(name)
     sections = [*environment_sections(environment)]
     sections += [section for skill in project.skills for section in skill_sections(skill.model)]
     for _, assignments in sections:

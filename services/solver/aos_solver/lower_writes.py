@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from aos_protocol.documents import Assignment, Environment, Project
+from aos_protocol.local_types import told_variables
 from aos_runtime.snippets import Access, Cpp, Mention, read_cpp, read_cpp_expression
 from aos_solver.lower_code import Phase, environment_sections, skill_sections, snippets_of
 
 __all__ = ["Changes", "changes_of", "drawing_defaults"]
 
-_ALL_COPIES = frozenset({"state", "state_", "state__"})
+_ALL_COPIES = frozenset({"state", "state_", "state__", "state___"})
 _CHANGING = (Access.WRITE, Access.UPDATE, Access.BIND)
 _READING_FUNCTIONS = frozenset({
     "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",
@@ -69,6 +70,8 @@ def changes_of(project: Project) -> Changes:
     """Everything that the code of the documents can change while a particle lives."""
     changes = Changes(project)
     environment = project.environment
+    for skill in project.skills:
+        changes.variables.update(told_variables(skill.mapping, environment))
     for phase, assignments in _all_sections(project):
         copies = phase.changes
         if environment.is_one_state_model and phase.changes:

@@ -139,6 +139,7 @@ class Mission:
             decision.parameters,
             self._activation_timeout_s,
             decision.revision,
+            self._model.engine.variables_of(decision.action),
         )
         self._ports.journal("intended", request)
         outcome = await self._ports.activate(request)
@@ -155,6 +156,7 @@ class Mission:
             outcome=outcome,
             surprise=update.surprise,
             is_impossible=update.is_impossible,
+            remark=update.remark,
         )
         self._publish(record)
         return update.summary
@@ -164,7 +166,7 @@ class Mission:
         engine = self._model.engine
         if outcome.status == "observed":
             self._lost_in_a_row = 0
-            return await engine.update(decision.action, outcome.response)
+            return await engine.update(decision.action, outcome.response, outcome.local_variables)
         if outcome.fault is not None and outcome.status == "failed":
             raise AosError(outcome.fault.message, code=outcome.fault.code, hint=outcome.fault.hint)
         self._lost_in_a_row += 1

@@ -38,6 +38,7 @@ def _lines(program: Program) -> Iterator[str]:
     for special in program.special_states:
         yield from _titled(f"special state {special.number}{_flag(special)}", _special_state(special))
     yield from _titled("state heuristic", _section(program.state_heuristic))
+    yield from _titled("a state's text", _section(program.print_state))
     for skill in program.skills:
         yield from _skill(skill)
 
@@ -82,12 +83,15 @@ def _skill(skill: Skill) -> Iterator[str]:
             yield f"  {parameter.name} is one of {', '.join(parameter.values.variables)}"
     if skill.violation_penalty:
         yield f"  a violated precondition costs {skill.violation_penalty:g}"
+    if skill.told:
+        yield f"  a real observation tells the values of {', '.join(skill.told)}"
     for title, section in (
         ("possible parameters", skill.possible_parameters),
         ("precondition", skill.precondition),
         ("execution time", skill.execution_time),
         ("dynamic model", skill.dynamic_model),
         ("rollout policy", skill.rollout_policy),
+        ("state given the observation", skill.given_observation),
     ):
         if section is not None:
             yield f"  {title}"

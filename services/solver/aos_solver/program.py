@@ -10,6 +10,7 @@ import msgspec
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
+from aos_protocol.local_types import LocalType
 
 __all__ = [
     "Axis",
@@ -19,6 +20,7 @@ __all__ = [
     "Enum",
     "EnumVariable",
     "Field",
+    "Local",
     "Loop",
     "ObjectList",
     "Parameter",
@@ -195,10 +197,20 @@ class Parameter(msgspec.Struct, frozen=True):
     values: ParameterValues | None
 
 
+class Local(msgspec.Struct, frozen=True):
+    """A local variable of the abstraction mapping, with its C++ type."""
+
+    name: str
+    type: str
+    kind: LocalType
+
+
 class Skill(msgspec.Struct, frozen=True):
     """A skill: its responses in the order of the mapping's rules, its parameters, its functions.
 
-    `document` is the file that describes it.
+    `document` is the file that describes it. `told` are the local variables whose values a real observation
+    tells to the state variables of their names, `locals` those and what `given_observation` uses.
+    `keeps_state` and `keeps_state_`: a step needs these copies of the state (see `lower_copies`).
     """
 
     name: str
@@ -212,6 +224,24 @@ class Skill(msgspec.Struct, frozen=True):
     execution_time: Section | None
     dynamic_model: Section | None
     rollout_policy: Section | None
+    given_observation: Section | None = None
+    locals: tuple[Local, ...] = ()
+    told: tuple[str, ...] = ()
+    keeps_state: bool = True
+    keeps_state_: bool = True
+
+    @property
+    def is_corrected(self) -> bool:
+        """Whether its real observations tell about the state beyond the response."""
+        return self.given_observation is not None or bool(self.told)
+
+    @property
+    def local_bindings(self) -> tuple[tuple[str, str], ...]:
+        """The local variables as `given_observation` sees them; a parameter of the same name hides one."""
+        hidden = {parameter.name for parameter in self.parameters}
+        return tuple(
+            (local.name, f"__locals.{local.name}") for local in self.locals if local.name not in hidden
+        )
 
 
 class Program(msgspec.Struct, frozen=True):
@@ -233,6 +263,7 @@ class Program(msgspec.Struct, frozen=True):
     initial_belief: Section | None
     extrinsic_changes: Section | None
     state_heuristic: Section | None
+    print_state: Section | None
     special_states: tuple[SpecialState, ...]
     skills: tuple[Skill, ...]
     standard_headers: tuple[str, ...]

@@ -11,10 +11,11 @@ from aos_protocol.documents import Snippet
 from aos_runtime.snippets import Call, Cpp, Extent
 from aos_solver.program import Edit
 from aos_solver.rewrite_containers import container_edits
+from aos_solver.rewrite_objects import object_edits
 
 __all__ = ["EnumValues", "Rewriting", "rewrite"]
 
-_STATES = frozenset({"state", "state_", "state__"})
+_STATES = frozenset({"state", "state_", "state__", "state___"})
 
 EnumValues = tuple[str, ...] | None
 """The values of an enum that does not count from 0 upwards; None for one that does."""
@@ -40,10 +41,11 @@ def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tupl
     - `state.<Type>Objects`, a view made on demand, gets its `()`
     - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
     - `state->x` becomes `state.x`
-    - containers: see `rewrite_containers`
+    - objects and containers: see `rewrite_objects` and `rewrite_containers`
     """
     edits: list[tuple[Extent | int, str]] = list(_of_mentions(cpp, rewriting))
-    for start, end, text in container_edits(cpp, rewriting.values, rewriting.object_types):
+    unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
+    for start, end, text in unnamed:
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))
     for call in cpp.calls:
         edits += _of_call(call, cpp.code, rewriting)

@@ -16,28 +16,28 @@ __all__ = ["container_edits"]
 _CONTAINER_REFERENCE = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map)\s*<[^\n;(){}]*>|(?:std::)?string)\s*&\s*$"
 )
-_POINTER = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*\*\s*$")
+_ITERATOR = re.compile(
+    r"((?:std\s*::\s*)?(?:vector|map|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
+)
 _VECTOR = re.compile(r"(?:^|[;{}])\s*((?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
-_STATES = frozenset({"state", "state_", "state__"})
+_STATES = frozenset({"state", "state_", "state__", "state___"})
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
 _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
-def container_edits(
-    cpp: Cpp, values: frozenset[str], object_types: frozenset[str]
-) -> Iterator[tuple[int, int, str]]:
+def container_edits(cpp: Cpp, values: frozenset[str]) -> Iterator[tuple[int, int, str]]:
     """Replacements (start, end, text) by offsets; `values` are the names of constants.
 
-    - `tCup* cup` becomes `auto* cup`: what a list of objects holds is const where its state is
+    - `vector<int>::iterator at = state__.row.begin();` becomes `auto at`
     - `vector<int>& row = state__.row;` and a lambda's `vector<int>& row` become `auto& row`
     - a vector of constants that is only read becomes `static const`
     """
     for declaration in cpp.declarations:
         before = cpp.code[: declaration.extent.start]
-        pointer = _POINTER.search(before)
-        if pointer is not None and pointer[2] in object_types and not pointer[1]:
-            yield pointer.start(2), pointer.end(2), "auto"
+        if declaration.type.endswith("iterator") and _mentions_state(cpp, declaration):
+            if (iterator := _ITERATOR.search(before)) is not None:
+                yield iterator.start(1), iterator.end(1), "auto"
         elif declaration.type.endswith("&") and not declaration.type.startswith("const"):
             reference = _CONTAINER_REFERENCE.search(before)
             if reference is not None and _may_bind_state(cpp, declaration, before):
@@ -56,6 +56,15 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
         return False
     return any(
         mention.path[0] in _STATES and mention.extent.start == initial.start for mention in cpp.mentions
+    )
+
+
+def _mentions_state(cpp: Cpp, declaration: Declaration) -> bool:
+    """Whether the state stands anywhere in what a variable starts with."""
+    initial = declaration.initial
+    return initial is not None and any(
+        mention.path[0] in _STATES and initial.start <= mention.extent.start < initial.end
+        for mention in cpp.mentions
     )
 
 

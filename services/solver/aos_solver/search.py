@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from aos_solver.answers import Plan
-from aos_solver.engine import Engine
+from aos_solver.engine import Engine, Planner
 
 __all__ = ["Search"]
 
@@ -19,6 +19,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     seed: int
     time_s: float | None = None
     horizon: int | None = None
+    planner: Planner = "pomcp"
 
     def seed_of(self, step: int) -> int:
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""
@@ -31,4 +32,5 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             time_s=self.time_s,
             seed=self.seed_of(step),
             horizon=self.horizon,
+            planner=self.planner,
         )

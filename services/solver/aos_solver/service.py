@@ -74,6 +74,13 @@ class _Solver:
         )
         self._name = Path(settings.run_dir).name
         self._running: RunningModel | None = None
+        self._search = Search(
+            simulations=settings.simulations,
+            time_s=settings.time_s,
+            seed=settings.seed,
+            horizon=settings.horizon,
+            planner=settings.planner,
+        )
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()
@@ -107,6 +114,7 @@ class _Solver:
         async with self._starting:
             if self._running is None:
                 self._running = await self._shelf.first()
+            self._search = self._search_by_policy(self._running)
         self._started.set()
         return self._state()
 
@@ -146,6 +154,18 @@ class _Solver:
             impossible_observation=self._settings.impossible_observation,
         )
 
+    def _search_by_policy(self, running: RunningModel) -> Search:
+        """The search that follows the policy of the settings, if they name one that fits the model."""
+        if not self._settings.policy:
+            return self._search
+        # Numbers take a tenth of a second to import, and few missions need them.
+        from aos_solver.offline.policy import Policy, PolicySearch
+
+        policy = Policy.load(Path(self._settings.policy))
+        policy.check_model(running.digest)
+        budget = {name: getattr(self._search, name) for name in Search.__struct_fields__}
+        return PolicySearch(policy=policy, **budget)
+
     async def _mapping_revision(self) -> int:
         state = await self._bus.ask(
             self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
@@ -172,12 +192,7 @@ class _Solver:
                 step_limit=settings.step_limit,
                 stop_below_value=settings.stop_below_value,
             ),
-            Search(
-                simulations=settings.simulations,
-                time_s=settings.time_s,
-                seed=settings.seed,
-                horizon=settings.horizon,
-            ),
+            self._search,
             self,
             activation_timeout_s=settings.activation_timeout_s,
         )

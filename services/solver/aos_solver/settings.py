@@ -13,7 +13,8 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     """The deploy file's `solver:` and `mission:` parts.
 
     The planning budget is `time_s` if given, else `simulations`. `horizon` None takes the environment
-    document's. `project` names the documents to ask the registry for.
+    document's. With a `policy` file decisions come from it, without a search. `project` names the documents
+    to ask the registry for.
     """
 
     project: str
@@ -22,8 +23,10 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     time_s: float | None = None
     horizon: int | None = None
     seed: int = 1
+    policy: str = ""
     goal_probability: float = 0.9
     step_limit: int = 30
     stop_below_value: float | None = None
     activation_timeout_s: float = 120.0
+    planner: Literal["pomcp", "despot", "auto"] = "pomcp"
     impossible_observation: Literal["hold", "widen", "reset"] = "widen"

@@ -15,7 +15,10 @@ __all__ = ["SimulatedRun", "simulate_mission"]
 
 
 class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
-    """One mission: `total` is the undiscounted return (`return` in JSON)."""
+    """One mission: `total` is the undiscounted return (`return` in JSON).
+
+    `states` are texts of the world's state before the first action and after each, where they were wanted.
+    """
 
     seed: int
     total: float
@@ -24,9 +27,12 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
     steps: int
     actions: tuple[str, ...]
     observations: tuple[str, ...]
+    states: tuple[str, ...] = ()
 
 
-async def simulate_mission(engine: Engine, search: Search, limits: MissionLimits) -> SimulatedRun:
+async def simulate_mission(
+    engine: Engine, search: Search, limits: MissionLimits, *, with_states: bool = False
+) -> SimulatedRun:
     """Runs one mission from the initial belief; `search.seed` also draws the world."""
     belief = await engine.reset_belief()
     world_ending = (await engine.reset_world(search.seed)).ending
@@ -34,6 +40,7 @@ async def simulate_mission(engine: Engine, search: Search, limits: MissionLimits
     total = discounted = 0.0
     actions: list[str] = []
     observations: list[str] = []
+    states = [await engine.world_state()] if with_states else []
     while True:
         ending = ending_of_belief(belief, len(actions), limits)
         if ending is None and world_ending:
@@ -50,11 +57,14 @@ async def simulate_mission(engine: Engine, search: Search, limits: MissionLimits
                 len(actions),
                 tuple(actions),
                 tuple(observations),
+                tuple(states),
             )
         step = await engine.step_world(plan.index)
         total += step.reward
         discounted += discount ** len(actions) * step.reward
         actions.append(plan.best.action)
         observations.append(step.response)
+        if with_states:
+            states.append(await engine.world_state())
         belief = (await engine.update(plan.best.action, step.response)).summary
         world_ending = step.ending

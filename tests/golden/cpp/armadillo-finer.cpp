@@ -1,5 +1,5 @@
 // Model of the project armadillo: 7 state variables, 5 skills.
-// Emitted by aos 0.1.0 from the documents of digest 09f9a4089f81b197. Change the documents, not this file;
+// Emitted by aos 0.1.0 from the documents of digest 5797713c31908468. Change the documents, not this file;
 // `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 
 #include "aos/model_support.hpp"
@@ -419,7 +419,7 @@ decltype(auto) with_skill(int skill, auto&& use) {
 decltype(auto) with_action(int action, auto&& use) {
   const auto& chosen = actions[action];
   return with_skill(chosen.skill, [&]<class Skill>(std::type_identity<Skill> skill) -> decltype(auto) {
-    return use(skill, Skill::groundings[chosen.grounding].parameters);
+    return use(skill, aos::parameters_of<Skill>(chosen));
   });
 }
 
@@ -479,6 +479,9 @@ struct Model {
   static void write_parameters(int action, aos::JsonWriter& json) {
     with_action(action, [&](auto, const auto& parameters) { aos::write_json(json, parameters); });
   }
+  static void read_locals(int action, std::string_view values) {
+    with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto&) { Skill::read_locals(values); });
+  }
 
   static void initial(State& state, auto& random) {
     state = start;
@@ -491,6 +494,16 @@ struct Model {
       return aos::step<Environment, Skill>(state, parameters, random);
     });
   }
+  // The same action in the states at the places from `first` to before `end`; the sum of the rewards.
+  static double step_all(int action, int first, int end, auto&& state_at, auto& random) {
+    return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+      double rewards = 0;
+      for (int place = first; place < end; ++place) {
+        rewards += aos::step<Environment, Skill>(state_at(place), parameters, random).reward;
+      }
+      return rewards;
+    });
+  }
   static bool meets_precondition(const State& state, int action, auto& random) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       return aos::meets_precondition<Skill>(state, parameters, random);
@@ -499,6 +512,18 @@ struct Model {
   static double rollout_weight(const State& state, int action, auto& random) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       return aos::rollout_weight<Skill>(state, parameters, random);
+    });
+  }
+  // The weights of all actions, one after another; `take` gets each.
+  static void rollout_weights(const State& state, auto& random, auto&& take) {
+    const auto weigh = [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+      take(aos::rollout_weight<Skill>(state, parameters, random));
+    };
+    aos::with_each_grounding<skill__navigate, skill__observe_arm_outstretched, skill__observe_holding, skill__pick, skill__serve>(weigh);
+  }
+  static void correct(const State& before, State& next, int action, auto& random) {
+    with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+      aos::correct<Environment, Skill>(before, next, parameters, random);
     });
   }
   static double state_value(const State& state, auto& random) {
@@ -510,6 +535,9 @@ struct Model {
 
   static aos::Ending ending(const State& state) { return state.__ending; }
   static void visit(const State& state, auto&& visitor) { aos::visit_leaves("", state, visitor); }
+  static std::string state_text(const State& state) {
+    return aos::leaves_text(state);
+  }
   static std::uint64_t hash(const State& state) {
     const auto ended = static_cast<std::uint64_t>(state.__ending);
     return aos::mixed(aos::hashed(0, state), ended);

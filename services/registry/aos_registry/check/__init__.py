@@ -7,8 +7,15 @@ what the two halves of a skill say to each other, `mapping_code` at the Python o
 
 from __future__ import annotations
 
+from aos_protocol.documents import AbstractionMapping
+from aos_protocol.local_types import told_variables
 from aos_registry.assembly import Assembly
 from aos_registry.check.declarations import check_environment_names, check_skill_declarations
+from aos_registry.check.given_observation import (
+    check_given_observation,
+    check_told_variables,
+    names_in_given_observation,
+)
 from aos_registry.check.mapping_code import check_low_level, check_mapping
 from aos_registry.check.model_code import check_environment_code, check_skill_code
 from aos_registry.check.responses import check_responses
@@ -32,12 +39,23 @@ def check(assembly: Assembly, findings: Findings) -> None:
         check_skill_code(model, scope, findings)
         if name in assembly.mappings:
             check_responses(model, assembly.mappings[name], scope, findings)
+            check_given_observation(model, assembly.mappings[name], findings)
     for name, mapping in assembly.mappings.items():
         before = len(findings)
         check_mapping(mapping, assembly.models.get(name), scope, findings)
-        if is_whole and len(findings) == before:
-            check_unused_locals(mapping, findings)
+        is_sound = len(findings) == before
+        if assembly.environment is not None:
+            check_told_variables(mapping, assembly.environment, findings)
+        if is_whole and is_sound:
+            check_unused_locals(mapping, _told_to_model(mapping, name, assembly), findings)
     if assembly.low_level is not None:
         check_low_level(assembly.low_level, findings)
     if is_whole and assembly.environment is not None:
         check_unused_variables(assembly.environment, assembly.models.values(), findings)
+
+
+def _told_to_model(mapping: AbstractionMapping, name: str, assembly: Assembly) -> frozenset[str]:
+    """The names of local variables that an update of the belief uses."""
+    model, environment = assembly.models.get(name), assembly.environment
+    named = names_in_given_observation(model) if model is not None else frozenset()
+    return named.union(told_variables(mapping, environment) if environment is not None else ())

@@ -8,7 +8,14 @@ import msgspec
 
 from aos_protocol.documents import Assignment, Environment, Iteration, SkillModel, Snippet, TemporaryVariable
 
-__all__ = ["Block", "Role", "assignment_blocks", "environment_blocks", "skill_blocks"]
+__all__ = [
+    "Block",
+    "Role",
+    "assignment_blocks",
+    "environment_blocks",
+    "given_observation_blocks",
+    "skill_blocks",
+]
 
 
 class Role(msgspec.Struct, frozen=True):
@@ -77,6 +84,12 @@ def skill_blocks(model: SkillModel) -> Iterator[Block]:
     yield from assignment_blocks(ROLLOUT, model.rollout_policy, names)
     yield from assignment_blocks(DURATION, model.execution_time, names)
     yield from assignment_blocks(DYNAMIC, model.dynamic_model, names)
+    yield from given_observation_blocks(model)
+
+
+def given_observation_blocks(model: SkillModel) -> Iterator[Block]:
+    """A skill's code for a state given an observation."""
+    names = {parameter.name: parameter.type for parameter in model.parameters}
     yield from assignment_blocks(GIVEN_OBSERVATION, model.state_given_observation, names)
 
 

@@ -14,6 +14,7 @@ from aos_protocol.documents import (
     AbstractionMapping,
     LocalSource,
     LocalVariable,
+    LowLevelAssignment,
     LowLevelDocument,
     ResponseRule,
     SkillModel,
@@ -37,6 +38,11 @@ def check_mapping(
     known = _known_names(mapping)
     for rule in mapping.rules:
         _check_expression(rule.condition, known, findings)
+        for assignment in rule.assignments:
+            made = scope.low_level_types | scope.low_level_names
+            _check_expression(assignment.value, known and known | made, findings)
+            if model is not None and scope.has_environment:
+                _check_assigned(assignment, model, scope, findings)
     _check_order(mapping.rules, findings)
     for field in mapping.activation.fields:
         _check_expression(field.value, known, findings)
@@ -132,14 +138,19 @@ def _check_variable(variable: LocalVariable, findings: Findings) -> None:
 
 def _parse(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
     """The syntax tree; None, with an error at its place, where it is not Python."""
+    code = snippet.code
+    is_long = mode == "eval" and "\n" in code  # An expression may go on in the next line.
+    # What closes one kind of brackets and opens it again does not pass in the other.
+    texts = (f"(\n{code}\n)", f"[\n{code}\n]") if is_long else (code,)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return ast.parse(snippet.code, mode=mode)
+            tree, *_ = [ast.parse(text, mode=mode) for text in texts]
+            return ast.increment_lineno(tree, -1) if is_long else tree
     except SyntaxError as error:
         # Python gives no column where the code ends too early.
-        end = len(snippet.code) - (snippet.code.rfind("\n") + 1) + 1
-        span = snippet.locate(error.lineno or 1, error.offset or end)
+        end = len(code) - (code.rfind("\n") + 1) + 1
+        span = snippet.locate((error.lineno or 1) - is_long, error.offset or end)
         findings.error("AOS121", f"this is not Python: {error.msg}", span)
     except (ValueError, RecursionError, MemoryError) as error:
         findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
@@ -200,20 +211,40 @@ def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, f
         message = f"the skill {model.name} has no parameter `{name}`"
         findings.error("AOS110", message, span, _hint(name, parameters))
         return
-    kind = parameters[name]
+    _field_type(parameters[name], fields, span, scope, findings)
+
+
+def _check_assigned(
+    assignment: LowLevelAssignment, model: SkillModel, scope: Scope, findings: Findings
+) -> None:
+    """A rule may give a new value to what has a low-level one: an `anyValue`."""
+    name, *fields = assignment.path.removeprefix("state.").split(".")
+    parameters = {parameter.name: parameter.type for parameter in model.parameters}
+    types = {variable.name: variable.type for variable in scope.variables.values()} | parameters
+    if name not in types:
+        message = f"there is no parameter and no state variable `{name}`"
+        findings.error("AOS110", message, assignment.span, _hint(name, types))
+        return
+    kind = _field_type(types[name], fields, assignment.span, scope, findings)
+    if kind not in ("", "anyValue"):
+        hint = "The model changes the state; a rule gives new low-level values"
+        findings.error("AOS110", f"`{assignment.path}` is no anyValue, but {kind}", assignment.span, hint)
+
+
+def _field_type(kind: str, fields: list[str], span: Span, scope: Scope, findings: Findings) -> str:
+    """The type at a path into `kind`; empty if there is none, with a finding where the documents can tell."""
     for field in fields:
         compound = scope.compounds.get(kind)
         if compound is None:
             if scope.has_environment and not scope.unknown_type_name(kind):
-                message = f"`{field}` of a {kind}, which has no fields"
-                findings.error("AOS110", message, span)
-            return
+                findings.error("AOS110", f"`{field}` of a {kind}, which has no fields", span)
+            return ""
         types = {inner.name: inner.type for inner in compound.fields}
         if field not in types:
-            message = f"the type {kind} has no field `{field}`"
-            findings.error("AOS110", message, span, _hint(field, types))
-            return
+            findings.error("AOS110", f"the type {kind} has no field `{field}`", span, _hint(field, types))
+            return ""
         kind = types[field]
+    return kind
 
 
 def _hint(name: str, known: Iterable[str]) -> str:

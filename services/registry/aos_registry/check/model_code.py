@@ -154,7 +154,7 @@ class _BlockCheck:
         name = self._cpp.code[place.start : place.end].strip()
         declared = {declaration.name for declaration in self._cpp.declarations}
         if name.isidentifier() and name not in self._enum_sizes and name not in declared:
-            hint = did_you_mean(name, self._enum_sizes) or f"The enums are {quoted(sorted(self._enum_sizes))}"
+            hint = did_you_mean(name, self._enum_sizes) or _listing("The enums are", sorted(self._enum_sizes))
             self._findings.error("AOS110", f"unknown enum `{name}`", self._span(place), hint)
 
     def _check_lone_name(self) -> None:
@@ -212,7 +212,7 @@ class _BlockCheck:
         found = self._scope.state_member(name)
         if found is None:
             known = self._scope.state_member_names()
-            hint = did_you_mean(name, known) or f"The variables are {quoted(self._scope.variables)}"
+            hint = did_you_mean(name, known) or _listing("The variables are", self._scope.variables)
             span = self._part_span(mention.extent, name)
             self._findings.error("AOS110", f"unknown state variable `{name}`", span, hint)
             return
@@ -262,7 +262,7 @@ class _BlockCheck:
                 return
             fields = {field.name: field.type for field in compound.fields}
             if part not in fields:
-                hint = did_you_mean(part, fields) or f"It has {quoted(fields)}"
+                hint = did_you_mean(part, fields) or _listing("It has", fields)
                 span = self._part_span(mention.extent, part)
                 self._findings.error("AOS110", f"the type {name} has no field `{part}`", span, hint)
                 return
@@ -283,3 +283,9 @@ class _BlockCheck:
         line = extent.line + before.count("\n")
         column = match.start() - before.rfind("\n") if "\n" in before else extent.column + match.start()
         return self._block.snippet.locate(line, column)
+
+
+def _listing(what: str, names: Iterable[str]) -> str:
+    """The hint that gives all names there are; empty where there are none."""
+    listed = quoted(names)
+    return f"{what} {listed}" if listed else ""

@@ -9,7 +9,7 @@ from aos_registry.check.blocks import DYNAMIC, Block, assignment_blocks
 from aos_registry.check.model_code import SPECIAL_NAMES, read_block
 from aos_registry.check.scope import STATE_COPIES, Scope
 from aos_registry.documents.source import Findings, did_you_mean, quoted
-from aos_runtime.snippets import Access, Cpp, Mention
+from aos_runtime.snippets import Access, Cpp, DeclarationKind, Mention
 
 __all__ = ["check_responses"]
 
@@ -24,11 +24,16 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
         return
     known = _known_names(model, scope, read)
     given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
+    enum_values, others = _own_names(model, read)
     for block, mention in _assigned_names(read):
         name = mention.path[0]
+        span = block.snippet.locate(mention.root.line, mention.root.column)
+        if name in given and name in enum_values | others:
+            message = f"`{name}` is declared in this skill too, and hides the response"
+            told = findings.error if name in enum_values else findings.warning
+            told("AOS126", message, span, "Choose another name for one of them")
         if name in given or name in known:
             continue
-        span = block.snippet.locate(mention.root.line, mention.root.column)
         message = f"the abstraction mapping of {model.name} has no response `{name}`"
         findings.error("AOS116", message, span, _hint(name, given))
     _check_text_response(model, mapping, read, findings)
@@ -82,6 +87,18 @@ def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Ment
             at = mention.extent.start
             if is_name and any(extent.start <= at < extent.end for extent in extents):
                 yield block, mention
+
+
+def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[str], set[str]]:
+    """The values of the enums that the dynamic model declares, and the names of its variables."""
+    temporaries = [each.temporary for each in model.dynamic_model if each.temporary is not None]
+    values = {value for temporary in temporaries for value in temporary.enum_values}
+    variables = {temporary.name for temporary in temporaries}
+    for _, cpp in read:
+        for declaration in cpp.declarations:
+            is_value = declaration.kind is DeclarationKind.ENUMERATOR
+            (values if is_value else variables).add(declaration.name)
+    return values, variables
 
 
 def _known_names(model: SkillModel, scope: Scope, read: list[tuple[Block, Cpp]]) -> set[str]:

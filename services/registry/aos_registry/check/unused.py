@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, SkillModel, Snippet
 from aos_registry.check.blocks import environment_blocks, skill_blocks
@@ -39,17 +39,20 @@ def check_unused_variables(
         findings.warning("AOS133", message, variable.span, "Leave it out, or use it")
 
 
-def check_unused_locals(mapping: AbstractionMapping, findings: Findings) -> None:
-    """Local variables that no rule, no field of the request and no other variable's code names."""
+def check_unused_locals(
+    mapping: AbstractionMapping, told_to_model: Collection[str], findings: Findings
+) -> None:
+    """Local variables that no rule, no field of the request and no other code names, model code included."""
     conditions = (rule.condition for rule in mapping.rules if rule.condition is not None)
     used = _words(conditions) | _words(field.value for field in mapping.activation.fields)
+    used |= _words(assignment.value for rule in mapping.rules for assignment in rule.assignments)
     for variable in mapping.local_variables:
         others = _words(
             other.code
             for other in mapping.local_variables
             if other is not variable and other.code is not None
         )
-        if variable.name not in used | others | {mapping.response_variable}:
+        if variable.name not in used | others | {mapping.response_variable, *told_to_model}:
             message = f"no rule and no field uses the local variable {variable.name}"
             findings.warning("AOS133", message, variable.span, "Leave it out, or use it")
 
@@ -63,6 +66,7 @@ def _looped_types(environment: Environment, models: Iterable[SkillModel]) -> set
     blocks += [special.code for special in environment.special_states]
     for model in models:
         blocks += [model.precondition, model.rollout_policy, model.execution_time, model.dynamic_model]
+        blocks.append(model.state_given_observation)
     return {
         loop.type
         for block in blocks

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from aos_protocol.documents import Snippet
 
-__all__ = ["cut", "dedented", "expression", "without_blank_lines"]
+__all__ = ["cut", "dedented", "expression", "guarded", "without_blank_lines"]
 
 
 def cut(snippet: Snippet, start: int, end: int) -> Snippet:
@@ -32,6 +32,15 @@ def expression(snippet: Snippet, *, drop_semicolon: bool = False) -> Snippet:
     return cut(snippet, start, len(code))
 
 
+def guarded(condition: Snippet, code: Snippet) -> Snippet:
+    """C++ statements that run only where a condition holds."""
+    shift = len(condition.origins)
+    escapes = [(line + 1, index, width) for line, index, width in condition.escapes]
+    escapes += [(line + shift + 2, index, width) for line, index, width in code.escapes]
+    origins = (condition.span, *condition.origins, code.span, *code.origins, code.span)
+    return Snippet(f"if (\n{condition.code}\n) {{\n{code.code}\n}}", origins, tuple(escapes))
+
+
 def without_blank_lines(snippet: Snippet) -> Snippet:
     """Without blank lines at the start and blanks at the end."""
     code = snippet.code.rstrip()
@@ -40,17 +49,23 @@ def without_blank_lines(snippet: Snippet) -> Snippet:
 
 
 def dedented(snippet: Snippet) -> Snippet:
-    """Without the indentation that all of its lines share, as Python wants it."""
+    """Without the indentation that all of its lines of code share, as Python wants it."""
     lines = snippet.code.split("\n")
-    indents = [line[: len(line) - len(line.lstrip(" \t"))] for line in lines if line.strip()]
-    common = indents[0] if indents else ""
-    for indent in indents:
+    indents = [line[: len(line) - len(line.lstrip(" \t"))] for line in lines]
+    of_code = [indent for indent, line in zip(indents, lines, strict=True) if _is_code(line)]
+    common = of_code[0] if of_code else ""
+    for indent in of_code:
         while not indent.startswith(common):
             common = common[:-1]
-    width = len(common)
-    if not width:
+    if not common:
         return snippet
-    cut_lines = [line[width:] if line.strip() else "" for line in lines]
-    origins = tuple(snippet.locate(number, width + 1) for number in range(1, len(lines) + 1))
-    escapes = tuple((at, index - width, size) for at, index, size in snippet.escapes if index > width)
-    return Snippet("\n".join(cut_lines), origins, escapes)
+    widths = [min(len(indent), len(common)) for indent in indents]
+    cut_lines = [line[width:] if line.strip() else "" for line, width in zip(lines, widths, strict=True)]
+    origins = tuple(snippet.locate(number, width + 1) for number, width in enumerate(widths, 1))
+    escapes = [(at, index - widths[at - 1], size) for at, index, size in snippet.escapes]
+    return Snippet("\n".join(cut_lines), origins, tuple(each for each in escapes if each[1] > 0))
+
+
+def _is_code(line: str) -> bool:
+    """Whether a line of Python says anything; comments may be indented as they like."""
+    return not line.lstrip(" \t").startswith("#") and not line.isspace() and line != ""

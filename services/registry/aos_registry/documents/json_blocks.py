@@ -21,7 +21,7 @@ def _assignment(record: Record) -> Assignment | None:
     block = Assignment(
         span=record.span,
         name=" ".join(name.text.split()) if name else "",
-        temporary=_temporary(temporary) if temporary else None,
+        temporary=_temporary(temporary) if temporary and not temporary.is_blank else None,
         over_previous=_iterations(record, "IteratePreviousStateVars"),
         over_next=_iterations(record, "IterateNextStateVars"),
         code=record.code("AssignmentCode"),

@@ -15,10 +15,11 @@ from aos_protocol.documents import (
     LowLevelDocument,
     LowLevelType,
     Parameter,
+    Snippet,
     SpecialState,
     StateVariable,
 )
-from aos_registry.documents.code import dedented
+from aos_registry.documents.code import dedented, guarded
 from aos_registry.documents.document import check_name, enum_type, normal_type
 from aos_registry.documents.json_blocks import read_block
 from aos_registry.documents.json_record import Record
@@ -142,8 +143,7 @@ def _variable(record: Record) -> StateVariable | None:
     is_array = record.boolean("IsArray")
     is_parameter_value = record.boolean("IsActionParameterValue")
     keys = record.texts("Parameters")
-    if not record.boolean("IncludeParametersCode", default=True):
-        code = None
+    code = _where_included(record, code)
     type_name = normal_type(kind, record.findings) if kind else ""
     low_level_type = _low_level_type(record, type_name)
     record.ignore("ML_IgnoreVariable", "ML_MaxPossibleValue", "Comment")
@@ -169,6 +169,19 @@ def _variable(record: Record) -> StateVariable | None:
         low_level_type=low_level_type,
         type_span=kind.span,
     )
+
+
+def _where_included(record: Record, code: Snippet | None) -> Snippet | None:
+    """The code of a map variable, for the keys where `IncludeParametersCode` holds."""
+    key = "IncludeParametersCode"
+    if not record.is_code(key):
+        return code if record.boolean(key, default=True) else None
+    condition = record.expression(key)
+    if condition is None or code is None:
+        return code
+    message = "keys that a condition leaves out stay in the map, with the type's default"
+    record.findings.warning("AOS124", message, record.value_span(key))
+    return guarded(condition, code)
 
 
 def _special_state(record: Record) -> SpecialState | None:

@@ -9,10 +9,11 @@ from aos_protocol.documents import (
     ActivationField,
     Import,
     LocalVariable,
+    LowLevelAssignment,
     ResponseRule,
     Snippet,
 )
-from aos_registry.documents.code import dedented, expression
+from aos_registry.documents.code import dedented
 from aos_registry.documents.document import check_name, normal_type
 from aos_registry.documents.json_record import Record
 from aos_registry.documents.local_variable import LocalVariableParts, build_local_variable
@@ -48,19 +49,30 @@ def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], Text | None]:
     rules = []
     for item in group.records("ResponseRules", "a response rule"):
         response = item.text("Response", required=True)
-        condition = _python_expression(item.code("ConditionCodeWithLocalVariables"))
+        condition = item.python_expression("ConditionCodeWithLocalVariables")
         item.ignore("Comment")
-        if item.has("AssignGlobalVariables"):
-            message = "a response rule that assigns low-level values is not supported"
-            record.findings.warning("AOS124", message, item.key_span("AssignGlobalVariables"))
+        assignments = _assignments(item)
         item.finish()
         if response and check_name(response, "a response", record.findings):
-            rules.append(ResponseRule(response.text, condition, response.span))
+            rules.append(ResponseRule(response.text, condition, response.span, assignments))
     variable = group.text("FromStringLocalVariable")
     group.ignore("Comment")
     group.obsolete("EnumResponse", "The response rules name the responses")
     group.finish()
     return tuple(rules), variable
+
+
+def _assignments(rule: Record) -> tuple[LowLevelAssignment, ...]:
+    assignments = []
+    for item in rule.records("AssignGlobalVariables", "a low-level assignment"):
+        path = item.text("VarName", required=True)
+        value = item.python_expression("Value")
+        item.finish()
+        if value is None:
+            item.findings.error("AOS105", 'a low-level assignment lacks "Value"', item.span)
+        elif path is not None:
+            assignments.append(LowLevelAssignment(path.text, value, path.span))
+    return tuple(assignments)
 
 
 def _activation(record: Record) -> Activation | None:
@@ -101,7 +113,7 @@ def _fields(record: Record) -> tuple[ActivationField, ...]:
     fields = []
     for item in record.records("ServiceParameters", "a service parameter"):
         name = item.text("ServiceFieldName", required=True)
-        value = _python_expression(item.code("AssignServiceFieldCode"))
+        value = item.python_expression("AssignServiceFieldCode")
         item.ignore("Comment")
         item.finish()
         if value is None:
@@ -137,7 +149,7 @@ def _local_variable(record: Record) -> LocalVariable | None:
         is_from_service=record.boolean("FromROSServiceResponse"),
         topic=record.text("RosTopicPath"),
         message_type=record.text("TopicMessageType"),
-        initial_value=_python_expression(record.code("InitialValue")),
+        initial_value=record.python_expression("InitialValue"),
         code=_python(record.code("AssignmentCode")),
         imports=_imports(record),
         is_heavy=record.boolean("IsHeavyVariable"),
@@ -163,7 +175,3 @@ def _type(record: Record) -> str:
 
 def _python(code: Snippet | None) -> Snippet | None:
     return None if code is None else dedented(code)
-
-
-def _python_expression(code: Snippet | None) -> Snippet | None:
-    return None if code is None else expression(code)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TypeVar
 
+import msgspec
+
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
 from aos_registry.documents.code import expression, without_blank_lines
@@ -44,6 +46,11 @@ class Record:
     def __contains__(self, key: str) -> bool:
         return self._value(key) is not None
 
+    @property
+    def is_blank(self) -> bool:
+        """Whether nothing in it says anything: a form that was left empty."""
+        return all(_is_blank(value) for _, value in self._members.values())
+
     def has(self, key: str) -> bool:
         """Whether the key is there, whatever its value."""
         self._known[key] = None
@@ -52,6 +59,13 @@ class Record:
     def is_text(self, key: str) -> bool:
         """Whether the key's value is a string."""
         return isinstance(self._value(key), JsonString)
+
+    def is_code(self, key: str) -> bool:
+        """Whether the key's value is text or lines that say more than true or false."""
+        value = self._value(key)
+        return isinstance(value, JsonArray) or (
+            isinstance(value, JsonString) and value.text.strip().lower() not in _BOOLEANS
+        )
 
     def key_span(self, key: str) -> Span:
         """Where the key stands; the object where it does not."""
@@ -144,17 +158,29 @@ class Record:
 
     def expression(self, key: str) -> Snippet | None:
         """One C++ expression; a number, true or false stands for itself, a final semicolon is dropped."""
-        value = self._value(key)
-        if isinstance(value, JsonNumber) or (isinstance(value, JsonConstant) and value.value is not None):
-            span = self.source.span(value.start)
-            self.findings.warning("AOS127", f'"{key}" should be text', span, "Put it in double quotes")
-            text = str(value.value).lower() if isinstance(value, JsonConstant) else str(value.value)
-            return Snippet(text, (span,))
+        if (literal := self._literal(key)) is not None:
+            return msgspec.structs.replace(literal, code=literal.code.lower())
         snippet = self.code(key)
         if snippet is None:
             return None
         short = expression(snippet, drop_semicolon=True)
         return short if short.code else None
+
+    def python_expression(self, key: str) -> Snippet | None:
+        """One Python expression; a number, true or false stands for itself."""
+        if (literal := self._literal(key)) is not None:
+            return literal
+        snippet = self.code(key)
+        return None if snippet is None else expression(snippet)
+
+    def _literal(self, key: str) -> Snippet | None:
+        """A value that should be code and is no text, as Python writes it."""
+        value = self._value(key)
+        if not isinstance(value, JsonNumber | JsonConstant):
+            return None
+        span = self.source.span(value.start)
+        self.findings.warning("AOS127", f'"{key}" should be text', span, "Put it in double quotes")
+        return Snippet(str(value.value), (span,))
 
     # --- composites ------------------------------------------------------------------------------------
 
@@ -215,3 +241,16 @@ class Record:
 
 def _boolean(value: JsonValue) -> bool | None:
     return value.value if isinstance(value, JsonConstant) else None
+
+
+def _is_blank(value: JsonValue) -> bool:
+    match value:
+        case JsonString():
+            return not value.text.strip()
+        case JsonArray():
+            return all(map(_is_blank, value.items))
+        case JsonObject():
+            return all(_is_blank(item) for _, item in value.members)
+        case JsonNumber():
+            return False
+    return value.value is None

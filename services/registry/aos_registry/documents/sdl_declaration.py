@@ -43,8 +43,13 @@ def read_declaration(part: Part, what: str, findings: Findings) -> Declaration |
 
 def read_number(part: Part, findings: Findings) -> float | None:
     """The number in a part's value; None, with an error, where it is none."""
+    text = part.value.text
+    if text.endswith(";"):
+        text = text.rstrip("; \t")
+        at = part.value.after(len(text)).strip().span
+        findings.warning("AOS127", "a semicolon after a number", at, "It is skipped")
     try:
-        number = float(part.value.text)
+        number = float(text)
     except ValueError:
         number = float("nan")
     if not abs(number) < float("inf"):

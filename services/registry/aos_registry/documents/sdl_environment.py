@@ -24,7 +24,7 @@ from aos_registry.documents.sdl_declaration import (
     read_truth,
 )
 from aos_registry.documents.sdl_sections import DEFAULT_DISCOUNT, Sections
-from aos_registry.documents.sdl_text import Part, Section, enum_values
+from aos_registry.documents.sdl_text import Part, Section, listed_values
 from aos_registry.documents.source import Findings, Text
 
 __all__ = ["read_environment"]
@@ -32,6 +32,7 @@ __all__ = ["read_environment"]
 _KEY = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)|\w+")
 _KEYS = re.compile(rf"(?:{_KEY.pattern})(?:\s*,\s*(?:{_KEY.pattern}))*")
 _LOW_LEVEL_TYPE = re.compile(r"(?:^|(?<=\s)|(?<=\]))of\s+([A-Za-z_]\w*)(?:\s+|$)")
+_ARRAY_MARK = re.compile(r"\[\s*\]\s*")
 _ARRAY_MARKS = {"[]": True, "true": True, "false": False, "": False}
 
 
@@ -124,7 +125,7 @@ def _type(section: Section, findings: Findings) -> EnumType | CompoundType | Non
         message = f"the type {name.text} is an enum or has variables, not both"
         findings.error("AOS106", message, members.span)
     if members is not None:
-        return enum_type(name, enum_values(members.value, findings), findings)
+        return enum_type(name, listed_values(members, findings), findings)
     if not fields:
         hint = "Add `enum_members:` or `variable:` lines"
         findings.error("AOS105", f"the type {name.text} is empty", name.span, hint)
@@ -136,14 +137,20 @@ def _field(part: Part, findings: Findings) -> Field | None:
     if declaration is None:
         return None
     rest, low_level_type = _low_level_type(declaration)
+    kind = declaration.type
+    if (mark := _ARRAY_MARK.match(rest.text)) is not None:
+        kind, rest = f"{kind}[]", rest.after(mark.end())
     if rest.text.startswith("["):
-        hint = f"Write `variable: vector<{declaration.type}> {declaration.name.text}`"
+        hint = f"Write `variable: vector<{kind}> {declaration.name.text}`"
         findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
         return None
+    if rest.text.startswith("="):
+        findings.warning("AOS127", "an equals sign before a default", rest.span, "It is skipped")
+        rest = rest.after(1).strip()
     default = _without_learning_scale(rest)
     snippet = expression(default.snippet(), drop_semicolon=True) if default.text else None
     name = declaration.name
-    return Field(name.text, declaration.type, name.span, snippet, low_level_type, declaration.type_text.span)
+    return Field(name.text, kind, name.span, snippet, low_level_type, declaration.type_text.span)
 
 
 def _low_level_type(declaration: Declaration) -> tuple[Text, str | None]:

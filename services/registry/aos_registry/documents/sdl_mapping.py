@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
@@ -11,6 +12,7 @@ from aos_protocol.documents import (
     ActivationField,
     Import,
     LocalVariable,
+    LowLevelAssignment,
     ResponseRule,
 )
 from aos_registry.documents.document import check_name, normal_type
@@ -23,7 +25,8 @@ from aos_registry.documents.source import Findings, Text, nearest
 __all__ = ["read_mapping"]
 
 _ACTIVATION_KINDS = ("ros_service", "skill")
-_IMPORT = re.compile(r"(?:from\s*:\s*(?P<module>\S+)\s+)?import\s*:\s*(?P<names>.+)")
+_IMPORT = re.compile(r"(?:from(?:\s*:\s*|\s+)(?P<module>\S+)\s+)?import(?:\s*:\s*|\s+)(?P<names>.+)")
+_COLON_AFTER_WORD = re.compile(r"(?:from\s*:.*\s)?import\s*:")
 
 
 def read_mapping(
@@ -63,7 +66,25 @@ def _rule(section: Section, findings: Findings) -> ResponseRule | None:
         return None
     if not check_name(section.value, "a response", findings):
         return None
-    return ResponseRule(section.value.text, condition, section.value.span)
+    assignments = _assignments(section, findings)
+    return ResponseRule(section.value.text, condition, section.value.span, assignments)
+
+
+def _assignments(section: Section, findings: Findings) -> tuple[LowLevelAssignment, ...]:
+    """Each `assign_variable:` with the `value:` after it."""
+    parts = [part for part in section.parts if part.word in ("assign_variable", "value")]
+    assignments = []
+    for part, following in pairwise([*parts, None]):
+        if part is None or part.word == "value":
+            continue
+        value = following.expression() if following is not None and following.word == "value" else None
+        if value is None:
+            hint = "Add `value:` with a Python expression below it"
+            message = f"the low-level assignment to {part.value.text or '(nothing)'} has no value"
+            findings.error("AOS105", message, part.span, hint)
+        else:
+            assignments.append(LowLevelAssignment(part.value.text, value, part.value.span))
+    return tuple(assignments)
 
 
 def _activation(section: Section, findings: Findings) -> Activation | None:
@@ -132,6 +153,9 @@ def _imports(section: Section, findings: Findings) -> tuple[Import, ...]:
             hint = "Write `imports: from: <module> import: <name>, <name>`"
             findings.error("AOS104", "this import cannot be read", part.value.span, hint)
             continue
+        if _COLON_AFTER_WORD.match(part.value.text) is None:
+            hint = "AOS writes `from: <module> import: <name>`"
+            findings.warning("AOS127", "an import as Python writes it", part.value.span, hint)
         names = tuple(name.strip() for name in match["names"].split(",") if name.strip())
         found.append(Import(match["module"] or "", names, part.span))
     return tuple(found)

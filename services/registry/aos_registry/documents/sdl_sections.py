@@ -43,7 +43,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         "version": _LINE,
         "horizon": _LINE,
         "discount": _LINE,
-        "define_type": Word(parts={"variable": _LINE, "enum_members": _LINE}),
+        "define_type": Word(parts={"variable": _LINE, "enum_members": Word(is_list=True)}),
         "state_variable": Word(parts=_VARIABLE_PARTS),
         "action_parameter": Word(parts=_VARIABLE_PARTS),
         "one_state_model": _LINE,
@@ -76,7 +76,7 @@ GRAMMARS: Mapping[str, Grammar] = {
     ".am": {
         "project": _LINE,
         "version": _LINE,
-        "response": Word(parts={"response_rule": _PYTHON}),
+        "response": Word(parts={"response_rule": _PYTHON, "assign_variable": _LINE, "value": _PYTHON}),
         "response_local_variable": _LINE,
         "module_activation": Word(
             parts={

@@ -2,7 +2,7 @@
 
 What follows the colon is the section's value, the lines below are its body. Which words open a section, and
 which open a part of the one that is open, is the grammar of the file's kind. A word inside code is code:
-`project::f()` opens nothing.
+`project::f()` opens nothing. Where no code is expected, a comment may end a line.
 """
 
 from __future__ import annotations
@@ -19,10 +19,21 @@ from aos_protocol.documents import Snippet
 from aos_registry.documents.code import dedented, expression, without_blank_lines
 from aos_registry.documents.source import Findings, Source, Text, nearest
 
-__all__ = ["Body", "Grammar", "Part", "Section", "Word", "enum_values", "last_of", "parse_sdl"]
+__all__ = [
+    "Body",
+    "Grammar",
+    "Part",
+    "Section",
+    "Word",
+    "enum_values",
+    "last_of",
+    "listed_values",
+    "parse_sdl",
+]
 
 _OPENING = re.compile(r"[ \t\f\v]*([A-Za-z_]\w*)[ \t]*:(?!:)")
 _COMMENT = re.compile(r"\s*(//|#)")
+_COMMENT_AFTER_VALUE = re.compile(r'(?:[^"\n]|"[^"\n]*")*?(?=\s(?://|#)(?:\s|$))')
 _CODE_LABELS = frozenset({
     "case", "class", "def", "default", "elif", "else", "except", "finally", "for", "if", "lambda", "match",
     "private", "protected", "public", "try", "while", "with",
@@ -38,11 +49,15 @@ class Body(Enum):
 
 
 class Word(msgspec.Struct, frozen=True):
-    """A word of the grammar: what its body is, the words that open its parts, its canonical spelling."""
+    """A word of the grammar: what its body is, the words that open its parts, its canonical spelling.
+
+    `is_list` says that its value is a list, which goes on in the next line where a line ends with a comma.
+    """
 
     body: Body = Body.NONE
     parts: Mapping[str, Word] = {}
     canonical: str = ""
+    is_list: bool = False
 
 
 Grammar = Mapping[str, Word]
@@ -56,6 +71,14 @@ class Part(msgspec.Struct):
     span: Span
     value: Text
     lines: list[Text] = []
+    is_list: bool = False
+
+    def takes(self, line: Text) -> bool:
+        """Whether a line below belongs to it."""
+        if self.body is not Body.NONE or not self.is_list:
+            return self.body is not Body.NONE
+        given = [text for part in (self.value, *self.lines) if (text := part.text.strip())]
+        return bool(line.text.strip()) and (not given or given[-1].endswith(","))
 
     def code(self) -> Snippet | None:
         """Value and body as code; None where there is none. Python loses its common indentation."""
@@ -94,6 +117,12 @@ def last_of(parts: list[P], findings: Findings) -> P | None:
         hint = f"The one on line {parts[-1].span.line} counts"
         findings.warning("AOS125", f"`{part.word}:` is given more than once", part.span, hint)
     return parts[-1] if parts else None
+
+
+def listed_values(part: Part, findings: Findings) -> list[Text]:
+    """The names between commas in a part's value and the lines below it; an error where there are none."""
+    lines = [line for line in (part.value, *part.lines) if line.text] or [part.value]
+    return [value for line in lines for value in enum_values(line, findings)]
 
 
 def enum_values(text: Text, findings: Findings) -> list[Text]:
@@ -150,11 +179,12 @@ class _Scanner:
             return self._reports_elsewhere(name, at)
         entry = inner[word] if is_part else self._grammar[word]
         canonical = entry.canonical or word
+        value = value.strip() if entry.body is not Body.NONE else _without_comment(value)
         if is_part:
-            self._current = Part(canonical, entry.body, at.span, value.strip(), [])
+            self._current = Part(canonical, entry.body, at.span, value, [], entry.is_list)
             self._sections[-1].parts.append(self._current)
         else:
-            section = Section(canonical, entry.body, at.span, value.strip(), [], [])
+            section = Section(canonical, entry.body, at.span, value, [], parts=[])
             self._current = section
             self._sections.append(section)
         return True
@@ -194,8 +224,18 @@ class _Scanner:
         return True
 
     def _add_to_body(self, line: Text) -> None:
-        if self._current is not None and self._current.body is not Body.NONE:
-            self._current.lines.append(line)
-        elif line.text.strip() and not _COMMENT.match(line.text):
+        is_comment = _COMMENT.match(line.text) is not None
+        if self._current is not None and self._current.takes(line):
+            if self._is_in_code():
+                self._current.lines.append(line)
+            elif not is_comment:
+                self._current.lines.append(_without_comment(line))
+        elif line.text.strip() and not is_comment:
             where = f"after `{self._current.word}:`" if self._current else "before the first section"
             self._findings.error("AOS104", f"text {where} that belongs to no section", line.strip().span)
+
+
+def _without_comment(value: Text) -> Text:
+    """A line's value without the comment behind it and the blanks around it."""
+    before = _COMMENT_AFTER_VALUE.match(value.text)
+    return Text(before.group() if before else value.text, value.span).strip()

@@ -171,7 +171,16 @@ def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
         ],
     }
     rules = [
-        {"Response": rule.response, "ConditionCodeWithLocalVariables": _code(rule.condition) or ""}
+        {
+            "Response": rule.response,
+            "ConditionCodeWithLocalVariables": _code(rule.condition) or "",
+            **_given(
+                AssignGlobalVariables=[
+                    {"VarName": assignment.path, "Value": _code(assignment.value)}
+                    for assignment in rule.assignments
+                ]
+            ),
+        }
         for rule in mapping.rules
     ]
     kind = "RosService" if activation.kind == "ros_service" else "Skill"

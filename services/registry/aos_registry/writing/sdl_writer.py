@@ -133,6 +133,9 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
         yield from (
             _expression("response_rule", rule.condition) if rule.condition else ("response_rule: True",)
         )
+        for assignment in rule.assignments:
+            yield f"assign_variable: {assignment.path}"
+            yield from _expression("value", assignment.value)
     if mapping.response_variable:
         yield f"response_local_variable: {mapping.response_variable}"
     activation = mapping.activation

@@ -1,7 +1,8 @@
 // A belief: distinct states with weights that sum to 1, and Bayes' rule on it.
 //
 // While steps can be enumerated the update is exact: every outcome of every state, equal states merged, no sampling and
-// so no depletion. Where they cannot, or where the states become too many, it is a particle filter by rejection.
+// so no depletion. Where the states become too many, the heavy ones stay and the light ones are thinned out, and the
+// belief bounds how far it may be from the exact one. Where steps cannot be enumerated, it is a particle filter.
 #pragma once
 
 #include <algorithm>
@@ -13,17 +14,20 @@
 #include <vector>
 
 #include "aos/enumerator.hpp"
+#include "aos/gathering.hpp"
 #include "aos/json.hpp"
+#include "aos/outcomes.hpp"
 #include "aos/random.hpp"
 #include "aos/reflection.hpp"
 #include "aos/step.hpp"
 
 namespace aos {
 
-inline constexpr std::size_t particle_count = 5000;
-inline constexpr std::size_t most_exact_states = 200'000;
-inline constexpr std::size_t most_enumerated_paths = 4'000'000;  // of one update
-inline constexpr std::size_t most_trials = 100 * particle_count;
+inline constexpr std::size_t most_weighted_states = 100'000;
+inline constexpr std::size_t most_weighted_bytes = std::size_t{64} << 20;
+inline constexpr int most_initial_paths = 1'000'000;
+inline constexpr std::size_t most_enumerated_paths = 4'000'000;  // of one update of an exact belief
+inline constexpr std::size_t most_paths_of_particles = 10 * particle_count;  // of one update of any other
 inline constexpr double negligible_weight = 1e-12;
 
 // What the belief becomes when the model holds an observation impossible.
@@ -35,54 +39,73 @@ template <class Model>
 class Belief {
  public:
   using State = typename Model::State;
-  struct Particle {
-    State state;
-    double weight;
-  };
+  using Particle = aos::Particle<Model>;
 
   const std::vector<Particle>& particles() const { return particles_; }
-  bool is_exact() const { return is_exact_; }
+  bool is_exact() const { return error_bound_ == 0; }
+  // No event's probability is further than this from the exact belief's; 1 where steps were sampled.
+  double error_bound() const { return error_bound_; }
+  // How many states of equal weight would tell as much.
+  double effective_states() const {
+    double squares = 0;
+    for (const auto& particle : particles_) squares += particle.weight * particle.weight;
+    return squares > 0 ? 1 / squares : 0;
+  }
 
   static Belief initial(Sampler& random) {
-    try {
-      Gathering gathering;
-      Enumerator{}.for_each_path([&](Enumerator& draws) {
-        State state{};
-        Model::initial(state, draws);
-        gathering.add(state, draws.probability());
-      });
-      return gathering.belief(true);
-    } catch (const NotEnumerable&) {
-      Gathering gathering;
-      for (std::size_t i = 0; i < particle_count; ++i) {
-        State state{};
-        Model::initial(state, random);
-        gathering.add(state, 1.0 / particle_count);
-      }
-      return gathering.belief(false);
+    Gathering<Model> gathering;
+    State state{};
+    Enumerator draws;
+    double combinations = 0;
+    constexpr int telling = 10;
+    for (int i = 0; i < telling; ++i) {
+      draws.draw_path(random, [&](Enumerator& path) { Model::initial(state, path); });
+      combinations += draws.combinations() / telling;
     }
+    if (combinations <= 2 * most_initial_paths) {
+      try {
+        double gone = 0;
+        const std::size_t most = most_states(Source::enumeration);
+        const auto add = [&](Enumerator& path) {
+          Model::initial(state, path);
+          gathering.add(state, path.probability());
+          if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
+        };
+        draws.for_each_path(add, most_initial_paths);
+        gone += gathering.reduce(most, random);
+        return Belief{gathering, gone, Source::enumeration};
+      } catch (const NotEnumerable&) {
+        gathering.clear();
+      }
+    }
+    for (std::size_t i = 0; i < particle_count; ++i) {
+      Model::initial(state, random);
+      gathering.add(state, 1.0);
+    }
+    return Belief{gathering, 1, Source::drawing};
   }
 
   // After an action, before any observation.
   Belief predicted(int action, Sampler& random) const {
-    Gathering gathering;
-    const Walk walk = for_each_outcome(action, random, gathering.reset(), [&](const State& next, Observation, double weight) {
-      gathering.add(next, weight);
-      return true;
-    });
-    return gathering.belief(walk.is_exact && is_exact_);
+    return gathered(action, random, [](Observation) { return true; }).first;
   }
 
   // How likely each observation is after an action, the likeliest first.
   ObservationOdds observations(int action, Sampler& random) const {
     std::unordered_map<Observation, double> odds;
-    const Walk walk =
-        for_each_outcome(action, random, [&] { odds.clear(); }, [&](const State&, Observation observation, double weight) {
-          odds[observation] += weight;
-          return true;
-        });
+    const auto add = [&](const State&, Observation observation, double weight) {
+      odds[observation] += weight;
+      return true;
+    };
+    double total = 1;
+    try {
+      enumerate_outcomes<Model>(particles_, action, most_paths(), add);
+    } catch (const NotEnumerable&) {
+      odds.clear();
+      total = DrawnOutcomes<Model>{particles_, is_thin(), action, random}.draw(add, [&] { odds.clear(); });
+    }
     ObservationOdds sorted(odds.begin(), odds.end());
-    for (auto& [observation, probability] : sorted) probability /= walk.weight;
+    for (auto& [observation, probability] : sorted) probability /= total;
     std::sort(sorted.begin(), sorted.end(), [](const auto& left, const auto& right) {
       return left.second != right.second ? left.second > right.second : left.first < right.first;
     });
@@ -91,21 +114,16 @@ class Belief {
 
   // The posterior and the probability of the observation; an empty belief and 0 where that is impossible.
   std::pair<Belief, double> posterior(int action, Observation observation, Sampler& random) const {
-    Gathering gathering;
-    const Walk walk =
-        for_each_outcome(action, random, gathering.reset(), [&](const State& next, Observation seen, double weight) {
-          if (seen == observation) gathering.add(next, weight);
-          return seen == observation;
-        });
-    return {gathering.belief(walk.is_exact && is_exact_), gathering.total() / walk.weight};
+    return gathered(action, random, [&](Observation seen) { return seen == observation; });
   }
 
   // `share` of `other` and the rest of this one.
   Belief mixed_with(const Belief& other, double share) const {
-    Gathering gathering;
+    Gathering<Model> gathering;
     for (const auto& [state, weight] : particles_) gathering.add(state, weight * (1 - share));
     for (const auto& [state, weight] : other.particles_) gathering.add(state, weight * share);
-    return gathering.belief(is_exact_ && other.is_exact_);
+    const double error_bound = (1 - share) * error_bound_ + share * other.error_bound_;
+    return Belief{gathering, error_bound, std::max(source_, other.source_)};
   }
 
   const State& sample(Sampler& random) const {
@@ -138,88 +156,69 @@ class Belief {
     json.end_array().member("entropy", entropy());
     json.member("goal_probability", probability_of(Ending::goal));
     json.member("failure_probability", probability_of(Ending::failure));
-    json.member("states", particles_.size()).member("is_exact", is_exact_).end_object();
+    json.member("states", particles_.size()).member("effective_states", effective_states());
+    json.member("is_exact", is_exact()).member("error_bound", error_bound_).end_object();
   }
 
   static Belief of(const std::vector<Particle>& particles, bool is_exact) {
-    Gathering gathering;
+    Gathering<Model> gathering;
     for (const auto& [state, weight] : particles) gathering.add(state, weight);
-    return gathering.belief(is_exact);
+    return is_exact ? Belief{gathering, 0, Source::enumeration} : Belief{gathering, 1, Source::drawing};
   }
 
  private:
-  struct Hash {
-    std::size_t operator()(const State& state) const { return Model::hash(state); }
-  };
+  enum class Source { enumeration, drawing };
 
-  // Merges equal states; the order of first appearance is kept, so that results do not depend on hashing.
-  class Gathering {
-   public:
-    void add(const State& state, double weight) {
-      const auto [entry, is_new] = index_.try_emplace(state, particles_.size());
-      if (is_new) particles_.push_back({state, 0});
-      particles_[entry->second].weight += weight;
+  Belief(const Gathering<Model>& gathering, double error_bound, Source source)
+      : error_bound_(std::min(error_bound, 1.0)), source_(source) {
+    const double sum = gathering.total();
+    double before = 0;
+    for (const auto& [state, weight] : gathering.particles()) {
+      if (weight <= negligible_weight * sum) continue;
+      particles_.push_back({state, weight / sum});
+      cumulative_.push_back(before += weight / sum);
     }
-    // Forgets everything.
-    auto reset() {
-      return [this] { *this = {}; };
-    }
-    double total() const {
-      double sum = 0;
-      for (const auto& particle : particles_) sum += particle.weight;
-      return sum;
-    }
-    Belief belief(bool is_exact) const {
-      Belief belief;
-      belief.is_exact_ = is_exact;
-      const double sum = total();
-      for (const auto& [state, weight] : particles_) {
-        if (weight <= negligible_weight * sum) continue;
-        belief.particles_.push_back({state, weight / sum});
-        belief.cumulative_.push_back((belief.cumulative_.empty() ? 0 : belief.cumulative_.back()) + weight / sum);
-      }
-      return belief;
-    }
+  }
 
-   private:
-    std::unordered_map<State, std::size_t, Hash> index_;
-    std::vector<Particle> particles_;
-  };
+  static std::size_t most_states(Source source) {
+    if (source == Source::drawing) return particle_count;
+    return std::clamp(most_weighted_bytes / sizeof(State), particle_count, most_weighted_states);
+  }
+  bool is_thin() const { return source_ == Source::drawing && particles_.size() < few_particles; }
+  std::size_t most_paths() const {
+    return source_ == Source::drawing ? most_paths_of_particles : most_enumerated_paths;
+  }
 
-  struct Walk {
-    bool is_exact;
-    double weight;  // of all outcomes, visited ones and others
-  };
-
-  // Calls `visit(next, observation, weight)`, which says whether it has a use for the outcome: for all outcomes, by
-  // enumeration; or else, after `restart()`, for drawn ones until `particle_count` were of use.
-  template <class Restart, class Visit>
-  Walk for_each_outcome(int action, Sampler& random, Restart&& restart, Visit&& visit) const {
+  // The outcomes whose observation is of use, as a belief, and their probability.
+  //
+  // Let two beliefs agree but for a share e of each. What was observed has probability p under this one, and so at least
+  // p - e under what they share: after it they agree but for e / p. Thinning out adds what it drops.
+  template <class IsOfUse>
+  std::pair<Belief, double> gathered(int action, Sampler& random, IsOfUse&& is_of_use) const {
+    Gathering<Model> gathering;
+    const auto add = [&](const State& next, Observation seen, double weight) {
+      if (!is_of_use(seen)) return false;
+      gathering.add(next, weight);
+      return true;
+    };
     try {
-      if (particles_.size() > most_exact_states) throw NotEnumerable{"too many states"};
-      Enumerator draws;
-      std::size_t paths = 0;
-      for (const auto& [state, weight] : particles_) {
-        draws.for_each_path([&](Enumerator& path) {
-          if (++paths > most_enumerated_paths) throw NotEnumerable{"too many outcomes"};
-          State next = state;
-          const Step step = Model::step(next, action, path);
-          visit(next, step.observation, weight * path.probability());
-        });
-      }
-      return {true, 1};
+      if (is_thin()) throw NotEnumerable{"the states were drawn, and are few"};
+      const std::size_t most = most_states(source_);
+      double gone = 0;
+      enumerate_outcomes<Model>(particles_, action, most_paths(), [&](const State& next, Observation seen, double weight) {
+        add(next, seen, weight);
+        if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
+      });
+      gone += gathering.reduce(most, random);
+      const double probability = gathering.total();
+      return {Belief{gathering, probability > 0 ? (error_bound_ + gone) / probability : 0, source_}, probability};
     } catch (const NotEnumerable&) {
-      restart();
+      gathering.clear();
     }
-    std::size_t used = 0;
-    std::size_t trials = 0;
-    while (trials < most_trials && used < particle_count) {
-      State next = sample(random);
-      const Step step = Model::step(next, action, random);
-      used += visit(next, step.observation, 1.0) ? 1 : 0;
-      ++trials;
-    }
-    return {false, static_cast<double>(trials)};
+    const double drawn = DrawnOutcomes<Model>{particles_, is_thin(), action, random}.draw(add, [&] { gathering.clear(); });
+    const double probability = gathering.total() / drawn;
+    gathering.reduce(particle_count, random);
+    return {Belief{gathering, 1, Source::drawing}, probability};
   }
 
   using Marginal = std::pair<std::string, std::vector<std::pair<std::string, double>>>;
@@ -251,7 +250,8 @@ class Belief {
 
   std::vector<Particle> particles_;
   std::vector<double> cumulative_;
-  bool is_exact_ = true;
+  double error_bound_ = 0;
+  Source source_ = Source::enumeration;
 };
 
 }  // namespace aos

@@ -1,16 +1,32 @@
 // Which piece of document code runs now, so that a crash or a hang can be told to its author.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace aos::blame {
 
-inline std::uint32_t unshared = 0;
+#ifdef __x86_64__
+inline constexpr std::size_t page_bytes = 4096;
+#else
+inline constexpr std::size_t page_bytes = 65536;  // the largest page that Linux has anywhere
+#endif
+inline constexpr std::size_t line_words = 64 / sizeof(std::uint32_t);  // a cache line, so that no thread waits
+inline constexpr int most_threads = 64;
 
-// Where the number goes; the engine child points it into a page that outlives the process.
-inline volatile std::uint32_t* page = &unshared;
+// One number for each thread, at the start of its line. The engine child lays a page that outlives the process over
+// this one: at a fixed place, since a pointer to it could point to anything that a step looks at.
+alignas(page_bytes) inline volatile std::uint32_t page[page_bytes / sizeof(std::uint32_t)];
+
+inline thread_local std::size_t place = 0;
+
+// A thread of number 1 to `most_threads` - 1 calls this before it runs document code; the first has line 0.
+inline void use_line(int thread) { place = static_cast<std::size_t>(thread) * line_words; }
 
 // Pieces count from 1 in the order of the emitted file; 0 is code of ours.
-inline void at(std::uint32_t piece) { *page = piece; }
+inline void at(std::uint32_t piece) { page[place] = piece; }
+
+// What runs in this thread.
+inline std::uint32_t piece() { return page[place]; }
 
 }  // namespace aos::blame

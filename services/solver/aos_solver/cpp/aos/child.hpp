@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,19 @@ Number number_of(const std::vector<std::string_view>& fields, std::size_t index)
   return number;
 }
 
+template <class Number>
+std::vector<Number> numbers_from(const std::vector<std::string_view>& fields, std::size_t first) {
+  std::vector<Number> numbers;
+  for (std::size_t index = first; index < fields.size(); ++index) numbers.push_back(number_of<Number>(fields, index));
+  return numbers;
+}
+
+inline PlannerKind planner_of(const std::vector<std::string_view>& fields, std::size_t index) {
+  const auto kind = planner_kind(fields.at(index));
+  if (!kind) throw BadCommand{"there is no planner " + std::string{fields[index]}};
+  return *kind;
+}
+
 template <class Model>
 void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, JsonWriter& json) {
   const std::string_view command = fields[0];
@@ -58,15 +72,24 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "describe") return engine.describe(json);
   if (command == "reset_belief") return engine.reset_belief(json);
   if (command == "summary") return engine.summary(json);
-  if (command == "plan") return engine.plan(json, {large(1), real(2)}, large(3), whole(4));
+  if (command == "plan") return engine.plan(json, {large(1), real(2)}, large(3), whole(4), planner_of(fields, 5));
+  if (command == "count_processor_time") return engine.count_processor_time(json, whole(1) != 0);
   if (command == "exact") return engine.exact(json, whole(1), large(2), real(3));
   if (command == "reach") return engine.reach(json, real(1));
-  if (command == "update") return engine.update(json, whole(1), fields.at(2));
+  if (command == "explore") return engine.explore(json, whole(1) != 0, real(2));
+  if (command == "predict") return engine.predict(json, whole(1));
+  if (command == "update") {
+    const bool has_locals = fields.size() > 3;
+    return engine.update(json, whole(1), fields.at(2), has_locals ? std::optional{fields[3]} : std::nullopt);
+  }
   if (command == "update_without_observation") return engine.update_without_observation(json, whole(1), real(2));
   if (command == "export_belief") return engine.export_belief(json);
   if (command == "import_belief") return engine.import_belief(json, whole(1) != 0, {fields.begin() + 2, fields.end()});
   if (command == "reset_world") return engine.reset_world(json, large(1));
   if (command == "step_world") return engine.step_world(json, whole(1));
+  if (command == "show_world") return engine.show_world(json);
+  if (command == "reset_worlds") return engine.reset_worlds(json, numbers_from<std::uint64_t>(fields, 1));
+  if (command == "step_worlds") return engine.step_worlds(json, fields.at(1));
   if (command == "rate") return engine.rate(json, real(1), large(2));
   throw BadCommand{"unknown command: " + std::string{command}};
 }
@@ -74,7 +97,7 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
 inline void write_fault(JsonWriter& json, std::string_view code, std::string_view text) {
   json.clear();
   json.begin_object().key("fault").begin_object().member("code", code).member("text", text);
-  json.member("piece", static_cast<std::uint32_t>(*blame::page)).end_object().end_object();
+  json.member("piece", blame::piece()).end_object().end_object();
 }
 
 // Runs `work`; a fault becomes the answer.
@@ -101,9 +124,9 @@ void guarded(JsonWriter& json, Work&& work) {
 inline void share_blame(const char* path) {
   const int file = ::open(path, O_RDWR);
   if (file < 0) return;
-  void* page = ::mmap(nullptr, sizeof(std::uint32_t), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  auto* const place = const_cast<std::uint32_t*>(blame::page);
+  ::mmap(place, blame::page_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file, 0);
   ::close(file);
-  if (page != MAP_FAILED) blame::page = static_cast<volatile std::uint32_t*>(page);
 }
 
 inline void say(std::FILE* out, const JsonWriter& json) {

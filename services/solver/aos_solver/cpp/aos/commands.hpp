@@ -1,20 +1,31 @@
 // What an engine child can be asked, one method for each command; answers are JSON objects.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <exception>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "aos/base64.hpp"
 #include "aos/belief.hpp"
+#include "aos/blame.hpp"
+#include "aos/clock.hpp"
+#include "aos/correction.hpp"
 #include "aos/exact.hpp"
+#include "aos/exploration.hpp"
+#include "aos/fault.hpp"
 #include "aos/json.hpp"
-#include "aos/pomcp.hpp"
+#include "aos/planner.hpp"
 #include "aos/reachability.hpp"
+#include "aos/walk.hpp"
+#include "aos/worlds.hpp"
 
 namespace aos {
 
@@ -27,6 +38,7 @@ template <class Model>
 class Engine {
  public:
   using State = typename Model::State;
+  using Corrected = CorrectedModel<Model>;
   static_assert(std::is_trivially_copyable_v<State>);
 
   explicit Engine(std::uint64_t seed, ImpossiblePolicy policy)
@@ -60,13 +72,14 @@ class Engine {
 
   void summary(JsonWriter& json) const { belief_.write_summary(json); }
 
-  void plan(JsonWriter& json, Budget budget, std::uint64_t seed, int horizon) {
+  void plan(JsonWriter& json, Budget budget, std::uint64_t seed, int horizon, PlannerKind planner) {
     const auto start = std::chrono::steady_clock::now();
+    const auto processor_start = processor_time();
     if (horizon <= 0) horizon = Model::horizon;
     if (horizon != planned_horizon_) search_.forget();
     planned_horizon_ = horizon;
     Sampler random{seed};
-    const std::uint64_t simulations = search_.search(belief_, budget, horizon, random);
+    const std::uint64_t simulations = search_.search(planner, belief_, budget, horizon, random);
     const auto estimates = search_.estimates(belief_);
     int best = 0;
     for (int action = 1; action < Model::action_count(); ++action) {
@@ -75,6 +88,7 @@ class Engine {
       if (candidate.n > 0 && (leader.n == 0 || candidate.q > leader.q)) best = action;
     }
     json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
+    json.member("planner", search_.name()).member("why", search_.why());
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       const auto& estimate = estimates[static_cast<std::size_t>(action)];
@@ -84,7 +98,13 @@ class Engine {
     json.end_array().key("predicted");
     write_predicted(json, best);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    json.member("seconds", spent.count()).end_object();
+    json.member("seconds", spent.count()).member("cpu_seconds", seconds_since(processor_start)).end_object();
+  }
+
+  // Budgets in seconds are of processor time from now on, or of real time again.
+  void count_processor_time(JsonWriter& json, bool counts) {
+    PlanningClock::counts_processor_time = counts;
+    json.begin_object().end_object();
   }
 
   void exact(JsonWriter& json, int horizon, std::uint64_t belief_budget, double seconds) const {
@@ -109,9 +129,13 @@ class Engine {
     json.member("limit", reached.limit()).end_object();
   }
 
-  void update(JsonWriter& json, int action, std::string_view response) {
+  // `locals`, where given, are the values of the mapping's local variables, and the belief is corrected with them; a fault
+  // in that is told with the answer, which is then that of the response alone.
+  void update(JsonWriter& json, int action, std::string_view response, std::optional<std::string_view> locals) {
     const Observation observation = observation_of(checked(action), response);
-    auto [posterior, probability] = belief_.posterior(action, observation, random_);
+    Uncorrected uncorrected;
+    auto [posterior, probability] = locals ? corrected_posterior(action, observation, *locals, uncorrected)
+                                           : belief_.posterior(action, observation, random_);
     const bool is_impossible = posterior.particles().empty();
     if (is_impossible) {
       belief_ = after_impossible(action);
@@ -121,6 +145,10 @@ class Engine {
       search_.move_to(action, observation);
     }
     json.begin_object().member("probability", probability).member("is_impossible", is_impossible);
+    if (!uncorrected.code.empty()) {
+      json.key("uncorrected").begin_object().member("code", uncorrected.code).member("text", uncorrected.text);
+      json.member("piece", uncorrected.piece).end_object();
+    }
     summary(json.key("summary"));
     json.end_object();
   }
@@ -131,6 +159,19 @@ class Engine {
     search_.forget();
     json.begin_object().member("probability", 1.0).member("is_impossible", false);
     summary(json.key("summary"));
+    json.end_object();
+  }
+
+  // The model as numbers from the current belief on: `is_new` begins, each further call goes on for about so long.
+  void explore(JsonWriter& json, bool is_new, double seconds) {
+    if (is_new || !exploration_) exploration_.emplace(belief_);
+    exploration_->go_on(json, seconds, [](int action, Observation seen) { return response_text(action, seen); });
+  }
+
+  // How likely each observation is after an action.
+  void predict(JsonWriter& json, int action) {
+    json.begin_object().key("predicted");
+    write_predicted(json, checked(action));
     json.end_object();
   }
 
@@ -156,6 +197,17 @@ class Engine {
     summary(json);
   }
 
+  // Worlds for somebody who learns.
+  void reset_worlds(JsonWriter& json, const std::vector<std::uint64_t>& seeds) { worlds_.reset(json, seeds); }
+
+  // The actions are 32-bit numbers in base64.
+  void step_worlds(JsonWriter& json, std::string_view text) {
+    const auto actions = from_base64<std::int32_t>(text);
+    if (!actions || actions->size() != worlds_.count()) throw BadCommand{"not one action for each world"};
+    for (const std::int32_t action : *actions) checked(std::max(action, 0));
+    worlds_.step(json, *actions);
+  }
+
   // A world of its own, stepped by the model, for missions without a robot.
   void reset_world(JsonWriter& json, std::uint64_t seed) {
     world_random_ = Sampler{seed};
@@ -170,31 +222,66 @@ class Engine {
     json.member("response", response_text(action, step.observation)).member("ending", ending_text(hidden_)).end_object();
   }
 
-  // Samples of (next state, observation, reward) for random actions; a new start at the end or at the horizon.
+  // The hidden state as text for people.
+  void show_world(JsonWriter& json) const {
+    json.begin_object().member("state", Model::state_text(hidden_)).end_object();
+  }
+
+  // Samples of (next state, observation, reward) for random actions, from initial states: see walk.hpp.
   void rate(JsonWriter& json, double seconds, std::uint64_t seed) const {
     Sampler random{seed};
-    const int actions = Model::action_count();
     const auto start = std::chrono::steady_clock::now();
+    const auto processor_start = processor_time();
     std::chrono::duration<double> spent{};
     std::uint64_t samples = 0;
     double rewards = 0;
-    State state = belief_.sample(random);
-    int depth = 0;
-    do {
-      for (int i = 0; i < 4096; ++i, ++samples) {
-        if (depth++ == Model::horizon || Model::ending(state) != Ending::running) {
-          state = belief_.sample(random);
-          depth = 1;
-        }
-        rewards += Model::step(state, random.below(actions), random).reward;
-      }
+    for (std::uint64_t steps = 64; spent.count() < seconds; steps = std::min<std::uint64_t>(2 * steps, 1 << 16)) {
+      const Walked walked = Model::walk(steps, random);
+      samples += walked.steps;
+      rewards += walked.rewards;
       spent = std::chrono::steady_clock::now() - start;
-    } while (spent.count() < seconds);
+    }
     json.begin_object().member("samples", samples).member("seconds", spent.count());
+    json.member("cpu_seconds", seconds_since(processor_start));
     json.member("mean_reward", rewards / static_cast<double>(samples)).end_object();
   }
 
  private:
+  // Why an observation did not correct the belief; no code where it did.
+  struct Uncorrected {
+    std::string code;
+    std::string text;
+    std::uint32_t piece = 0;
+  };
+
+  std::pair<Belief<Model>, double> corrected_posterior(int action, Observation observation, std::string_view locals,
+                                                       Uncorrected& uncorrected) {
+    try {
+      Model::read_locals(action, locals);
+      Corrected::made = observation;
+      const auto [posterior, probability] =
+          belief_of<Corrected>(belief_).posterior(action, observation, random_);
+      return {belief_of<Model>(posterior), probability};
+    } catch (const ModelFault& fault) {
+      uncorrected = {fault.code, fault.text, blame::piece()};
+    } catch (const std::exception& error) {
+      uncorrected = {"AOS215", error.what(), blame::piece()};
+    }
+    return belief_.posterior(action, observation, random_);
+  }
+
+  // The same belief for a model with the same states.
+  template <class To, class From>
+  static Belief<To> belief_of(const Belief<From>& belief) {
+    std::vector<typename Belief<To>::Particle> particles;
+    for (const auto& [state, weight] : belief.particles()) particles.push_back({state, weight});
+    return Belief<To>::of(particles, belief.is_exact());
+  }
+
+  static double seconds_since(std::chrono::nanoseconds processor_start) {
+    return std::chrono::duration<double>{processor_time() - processor_start}.count();
+  }
+
   static int checked(int action) {
     if (action < 0 || action >= Model::action_count()) throw BadCommand{"there is no such action"};
     return action;
@@ -246,10 +333,12 @@ class Engine {
   Sampler random_;
   ImpossiblePolicy policy_;
   Belief<Model> belief_;
-  Pomcp<Model> search_;
+  Planner<Model> search_;
   int planned_horizon_ = 0;
   State hidden_;
   Sampler world_random_{0};
+  Worlds<Model> worlds_;
+  std::optional<Exploration<Model>> exploration_;
 };
 
 }  // namespace aos

@@ -1,6 +1,7 @@
 // Vectors of fixed storage, with the part of std::vector's interface that documents use.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -20,8 +21,13 @@ E nth(std::initializer_list<E> values, int index) {
   return values.begin()[index];
 }
 
-[[noreturn]] inline void out_of_range(std::ptrdiff_t index, std::size_t size) {
+// Out of the way of the code that runs in every step.
+[[noreturn, gnu::cold, gnu::noinline]] inline void out_of_range(std::ptrdiff_t index, std::size_t size) {
   throw ModelFault{"AOS215", "element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
+}
+[[noreturn, gnu::cold, gnu::noinline]] inline void no_room(std::size_t size, std::size_t room) {
+  const std::string holds = "; its state variable holds " + std::to_string(room);
+  throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
 }
 
 // A vector of up to `Room` elements in place, so that a state stays trivially copyable. Converts from and to
@@ -105,6 +111,7 @@ class Vector {
   }
   void clear() { size_ = 0; }
   void reserve(std::size_t) {}
+  void shrink_to_fit() {}
   void resize(std::size_t size, const T& value = T{}) {
     while (size_ < size) push_back(value);
     size_ = static_cast<std::uint32_t>(size);
@@ -129,6 +136,21 @@ class Vector {
     }
     values_[position] = copy;
     return values_ + position;
+  }
+  template <class Iterator>
+    requires(!std::is_integral_v<Iterator>)
+  T* insert(const T* before, Iterator first, Iterator last) {
+    const std::vector<T> added(first, last);  // They may be our own.
+    const std::ptrdiff_t position = before - values_;
+    grown(added.size());
+    std::copy_backward(values_ + position, end() - added.size(), end());
+    std::copy(added.begin(), added.end(), values_ + position);
+    return values_ + position;
+  }
+  T* insert(const T* before, std::initializer_list<T> values) { return insert(before, values.begin(), values.end()); }
+  T* insert(const T* before, std::size_t count, const T& value) {
+    const std::vector<T> added(count, value);
+    return insert(before, added.begin(), added.end());
   }
   T* erase(const T* position) { return erase(position, position + 1); }
   T* erase(const T* first, const T* last) {
@@ -159,10 +181,7 @@ class Vector {
   // Makes room for `more` elements; the index of the first.
   std::size_t grown(std::size_t more) {
     const std::size_t before = size_;
-    if (before + more > Room) {
-      throw ModelFault{"AOS215", "a vector of " + std::to_string(before + more) + " elements; its state variable holds " +
-                                     std::to_string(Room)};
-    }
+    if (before + more > Room) no_room(before + more, Room);
     size_ = static_cast<std::uint32_t>(before + more);
     return before;
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "aos/model_table.hpp"
 
@@ -41,9 +42,11 @@ struct ErasedModel {
   static const char* response_name(int skill, int response) { return compiled_model.response_name(skill, response); }
   static bool has_text_response(int skill) { return compiled_model.has_text_response(skill); }
   static void write_parameters(int action, JsonWriter& json) { compiled_model.write_parameters(action, json); }
+  static void read_locals(int action, std::string_view text) { compiled_model.read_locals(action, text); }
 
   static Ending ending(const State& state) { return static_cast<Ending>(state.bytes[compiled_model.ending_offset]); }
   static std::uint64_t hash(const State& state) { return compiled_model.hash(state.bytes); }
+  static std::string state_text(const State& state) { return compiled_model.state_text(state.bytes); }
   static std::string save_state(const State& state) { return compiled_model.save_state(state.bytes); }
   static void load_state(State& state, std::string_view saved) { compiled_model.load_state(state.bytes, saved); }
   template <class Visitor>
@@ -53,6 +56,8 @@ struct ErasedModel {
                            (*static_cast<std::remove_reference_t<Visitor>*>(context))(name, text);
                          });
   }
+  // Where the state's single values stand, in the order of `visit`.
+  static std::vector<Place> places(const State& state) { return compiled_model.places(state.bytes); }
 
   template <class Random>
   static void initial(State& state, Random& random) {
@@ -74,6 +79,16 @@ struct ErasedModel {
   static double state_value(const State& state, Random& random) {
     return functions<Random>().state_value(state.bytes, random);
   }
+  template <class Random>
+  static void correct(const State& before, State& next, int action, Random& random) {
+    functions<Random>().correct(before.bytes, next.bytes, action, random);
+  }
+  // A whole rollout in one call: see rollout.hpp.
+  static double rollout(const State& state, int horizon, Sampler& random) {
+    return compiled_model.rollout(state.bytes, horizon, random);
+  }
+  // Many steps in one call: see walk.hpp.
+  static Walked walk(std::uint64_t steps, Sampler& random) { return compiled_model.walk(steps, random); }
 
  private:
   template <class Random>

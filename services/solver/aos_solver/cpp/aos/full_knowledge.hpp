@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <unordered_map>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "aos/belief.hpp"
+#include "aos/clock.hpp"
 
 namespace aos {
 
@@ -27,7 +27,7 @@ class FullKnowledge {
 
   // Prepares values for every number of decisions up to `horizon`. Returns whether the model is small enough, and quick
   // enough for `latest`; a belief whose states are known already costs nothing.
-  bool prepare(const Belief<Model>& belief, int horizon, std::chrono::steady_clock::time_point latest) {
+  bool prepare(const Belief<Model>& belief, int horizon, PlanningClock::time_point latest) {
     if (is_too_large_) return false;
     try {
       const std::size_t known = states_.size();
@@ -66,10 +66,10 @@ class FullKnowledge {
     return entry->second;
   }
 
-  void explore(std::size_t from, std::chrono::steady_clock::time_point latest) {
+  void explore(std::size_t from, PlanningClock::time_point latest) {
     Enumerator draws;
     for (std::size_t number = from; number < states_.size(); ++number) {
-      if (std::chrono::steady_clock::now() > latest) throw NotEnumerable{"no time"};
+      if (PlanningClock::now() > latest) throw NotEnumerable{"no time"};
       for (int action = 0; action < Model::action_count(); ++action) {
         Outcomes found;
         if (Model::ending(states_[number]) == Ending::running) {

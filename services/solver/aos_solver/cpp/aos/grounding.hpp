@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -14,11 +15,17 @@ struct Grounding {
   Parameters parameters;
 };
 
+// `parameters` are of the skill's type; the grounding that holds them stays where it is.
 struct GroundedAction {
   int skill = 0;
-  int grounding = 0;
+  const void* parameters = nullptr;
   const char* name = "";
 };
+
+template <class Skill>
+const typename Skill::Parameters& parameters_of(const GroundedAction& action) {
+  return *static_cast<const typename Skill::Parameters*>(action.parameters);
+}
 
 // A value that parameters of type T may take, and the variable that holds it.
 template <class T>
@@ -44,8 +51,16 @@ inline std::string action_name(const char* skill, std::initializer_list<std::pai
 
 template <class Parameters>
 void add_actions(std::vector<GroundedAction>& actions, int skill, const std::vector<Grounding<Parameters>>& groundings) {
-  int number = 0;
-  for (const auto& grounding : groundings) actions.push_back({skill, number++, grounding.name.c_str()});
+  for (const auto& grounding : groundings) actions.push_back({skill, &grounding.parameters, grounding.name.c_str()});
+}
+
+// Calls `use` with a skill's type and the parameters of each of its groundings, skill by skill.
+template <class... Skills>
+void with_each_grounding(auto&& use) {
+  const auto groundings_of = [&]<class Skill>(std::type_identity<Skill> skill) {
+    for (const auto& grounding : Skill::groundings) use(skill, grounding.parameters);
+  };
+  (groundings_of(std::type_identity<Skills>{}), ...);
 }
 
 // Draws for code that runs once, before there is a particle: the likeliest outcome, the mean, the middle.
@@ -53,6 +68,10 @@ struct FixedDraws {
   bool Bernoulli(double probability) { return probability >= 0.5; }
   int SampleDiscrete(int name, std::initializer_list<double> weights) { return name + 1 + likeliest(weights); }
   template <class Weights>
+  int SampleDiscrete(int name, const Weights& weights) {
+    return name + 1 + likeliest(weights);
+  }
+  template <class Weights = std::initializer_list<double>>
   int SampleDiscrete(const Weights& weights) {
     return likeliest(weights);
   }

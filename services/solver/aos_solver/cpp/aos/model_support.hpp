@@ -12,6 +12,7 @@
 
 #include "aos/blame.hpp"
 #include "aos/containers.hpp"
+#include "aos/correction.hpp"
 #include "aos/fault.hpp"
 #include "aos/grounding.hpp"
 #include "aos/json.hpp"

@@ -8,16 +8,21 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
+#include "aos/blame.hpp"
 #include "aos/enumerator.hpp"
 #include "aos/json.hpp"
 #include "aos/random.hpp"
 #include "aos/reflection.hpp"
+#include "aos/rollout.hpp"
 #include "aos/step.hpp"
+#include "aos/walk.hpp"
 
 namespace aos {
 
 using LeafVisitor = void (*)(void* context, const std::string& name, const std::string& text);
+
 
 // The model functions that draw, for one source of randomness.
 template <class Random>
@@ -27,6 +32,7 @@ struct DrawingFunctions {
   bool (*meets_precondition)(const void* state, int action, Random& random);
   double (*rollout_weight)(const void* state, int action, Random& random);
   double (*state_value)(const void* state, Random& random);
+  void (*correct)(const void* before, void* next, int action, Random& random);
 };
 
 // The size of a state as text that the build finds in the object file, to link the engine for such states.
@@ -57,15 +63,20 @@ struct ModelTable {
   const char* (*response_name)(int skill, int response);
   bool (*has_text_response)(int skill);
   void (*write_parameters)(int action, JsonWriter& json);
+  void (*read_locals)(int action, std::string_view text);
 
   bool (*equal)(const void* left, const void* right);
   std::uint64_t (*hash)(const void* state);
   void (*visit)(const void* state, void* context, LeafVisitor visitor);
+  std::vector<Place> (*places)(const void* state);
+  std::string (*state_text)(const void* state);
   std::string (*save_state)(const void* state);
   void (*load_state)(void* state, std::string_view saved);
 
   DrawingFunctions<Sampler> sampling;
   DrawingFunctions<Enumerator> enumerating;
+  double (*rollout)(const void* state, int horizon, Sampler& random);
+  Walked (*walk)(std::uint64_t steps, Sampler& random);
 };
 
 // The model that this executable is linked with.
@@ -78,19 +89,29 @@ constexpr DrawingFunctions<Random> drawing_functions() {
       .initial = [](void* state, Random& random) { Model::initial(*static_cast<State*>(state), random); },
       .step =
           [](void* state, int action, Random& random) {
-            return Model::step(*static_cast<State*>(state), action, random);
+            const Step step = Model::step(*static_cast<State*>(state), action, random);
+            blame::at(0);
+            return step;
           },
       .meets_precondition =
           [](const void* state, int action, Random& random) {
-            return Model::meets_precondition(*static_cast<const State*>(state), action, random);
+            const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, random);
+            blame::at(0);
+            return meets;
           },
       .rollout_weight =
           [](const void* state, int action, Random& random) {
-            return Model::rollout_weight(*static_cast<const State*>(state), action, random);
+            const double weight = Model::rollout_weight(*static_cast<const State*>(state), action, random);
+            blame::at(0);
+            return weight;
           },
       .state_value =
           [](const void* state, Random& random) {
             return Model::state_value(*static_cast<const State*>(state), random);
+          },
+      .correct =
+          [](const void* before, void* next, int action, Random& random) {
+            Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, random);
           },
   };
 }
@@ -117,6 +138,7 @@ constexpr ModelTable table_of() {
       .response_name = Model::response_name,
       .has_text_response = Model::has_text_response,
       .write_parameters = Model::write_parameters,
+      .read_locals = Model::read_locals,
       .equal =
           [](const void* left, const void* right) {
             return *static_cast<const State*>(left) == *static_cast<const State*>(right);
@@ -128,11 +150,26 @@ constexpr ModelTable table_of() {
               visitor(context, name, leaf_text(leaf));
             });
           },
+      .places =
+          [](const void* state) { return places_in(*static_cast<const State*>(state)); },
+      .state_text = [](const void* state) { return Model::state_text(*static_cast<const State*>(state)); },
       .save_state = [](const void* state) { return Model::save_state(*static_cast<const State*>(state)); },
       .load_state =
           [](void* state, std::string_view saved) { Model::load_state(*static_cast<State*>(state), saved); },
       .sampling = drawing_functions<Model, Sampler>(),
       .enumerating = drawing_functions<Model, Enumerator>(),
+      .rollout =
+          [](const void* state, int horizon, Sampler& random) {
+            const double value = aos::rollout<Model>(*static_cast<const State*>(state), horizon, random);
+            blame::at(0);
+            return value;
+          },
+      .walk =
+          [](std::uint64_t steps, Sampler& random) {
+            const Walked walked = aos::walk<Model>(steps, random);
+            blame::at(0);
+            return walked;
+          },
   };
 }
 

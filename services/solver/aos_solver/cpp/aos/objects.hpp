@@ -76,6 +76,10 @@ class Objects {
   State* state_;
 };
 
+// A pointer to an object of a state, const where the state is.
+template <class T, class State>
+using Pointer = std::conditional_t<std::is_const_v<std::remove_reference_t<State>>, const T*, T*>;
+
 template <class T, auto... Members, class State>
 Objects<State, T, Members...> objects(State& state) {
   return Objects<State, T, Members...>{state};

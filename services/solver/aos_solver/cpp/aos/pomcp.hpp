@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "aos/belief.hpp"
+#include "aos/clock.hpp"
 #include "aos/full_knowledge.hpp"
 #include "aos/random.hpp"
 #include "aos/step.hpp"
@@ -54,7 +55,7 @@ class Pomcp {
 
   // Runs the search and returns how many simulations it took.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
-    using Clock = std::chrono::steady_clock;
+    using Clock = PlanningClock;
     const Clock::time_point start = Clock::now();
     const auto after = [&](double seconds) {
       return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
@@ -227,36 +228,7 @@ class Pomcp {
   }
 
   double leaf_value(State& state, int horizon, Sampler& random) const {
-    return has_knowledge_ ? knowledge_.value(state, horizon) : rollout(state, horizon, random);
-  }
-
-  static double rollout(State& state, int horizon, Sampler& random) {
-    double sum = 0;
-    double discount = 1;
-    for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
-      if (Model::has_state_heuristic && random.flag(0.75)) return sum + discount * Model::state_value(state, random);
-      const Step step = Model::step(state, rollout_action(state, random), random);
-      sum += discount * step.reward;
-      discount *= Model::discount;
-    }
-    return sum;
-  }
-
-  // By the documents' rollout policy where it prefers anything; else any action whose precondition holds; else any.
-  static int rollout_action(const State& state, Sampler& random) {
-    const int count = Model::action_count();
-    if (Model::has_rollout_policy) {
-      thread_local std::vector<double> weights;
-      weights.assign(static_cast<std::size_t>(count), 0);
-      double total = 0;
-      for (int a = 0; a < count; ++a) total += weights[a] = Model::rollout_weight(state, a, random);
-      if (total > 0) return random.choose(weights.data(), count, total);
-    }
-    for (int attempt = 0; attempt < 2 * count; ++attempt) {
-      const int a = random.below(count);
-      if (Model::meets_precondition(state, a, random)) return a;
-    }
-    return random.below(count);
+    return has_knowledge_ ? knowledge_.value(state, horizon) : Model::rollout(state, horizon, random);
   }
 
   std::uint32_t copy_subtree(std::uint32_t from, std::vector<HistoryNode>& histories,

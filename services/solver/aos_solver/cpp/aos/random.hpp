@@ -12,6 +12,9 @@
 
 namespace aos {
 
+// Out of the way of the code that runs in every step.
+[[noreturn, gnu::cold, gnu::noinline]] inline void bad_weights(const char* text) { throw ModelFault{"AOS215", text}; }
+
 // The built-ins that document code calls on `AOS` and `AOSUtils`. A source gives `flag(probability)`,
 // `choose(weights, count, total)` with a positive total, and `uniform()`.
 template <class Source>
@@ -31,7 +34,7 @@ class Draws {
 
   // An index, or -1 where the weights, which are not normalised, leave room. A gap that single precision explains is
   // none.
-  template <class Weights>
+  template <class Weights = std::initializer_list<double>>
   int SampleDiscrete(const Weights& weights) {
     Copied copied{weights};
     const double total = checked_total(copied.weights.data(), copied.count, /*may_be_zero=*/true);
@@ -63,7 +66,7 @@ class Draws {
       for (const double weight : from) append(weight);
     }
     void append(double weight) {
-      if (count == most_weights) throw ModelFault{"AOS215", "more than 511 weights in one draw"};
+      if (count == most_weights) bad_weights("more than 511 weights in one draw");
       weights[count++] = weight;
     }
     std::array<double, most_weights> weights;
@@ -79,10 +82,10 @@ class Draws {
   static double checked_total(const double* weights, int count, bool may_be_zero) {
     double total = 0;
     for (int i = 0; i < count; ++i) {
-      if (!(weights[i] >= 0)) throw ModelFault{"AOS215", "a weight is negative or not a number"};
+      if (!(weights[i] >= 0)) bad_weights("a weight is negative or not a number");
       total += weights[i];
     }
-    if (total <= 0 && !may_be_zero) throw ModelFault{"AOS215", "all weights of a draw are zero"};
+    if (total <= 0 && !may_be_zero) bad_weights("all weights of a draw are zero");
     return total;
   }
 };

@@ -4,12 +4,15 @@
 
 #include <bit>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 #include "aos/json.hpp"
 #include "aos/text.hpp"
@@ -23,7 +26,7 @@ concept Sequence = requires(const T& value) {
   typename T::value_type;
   value.size();
   value.begin();
-} && !std::same_as<T, Text>;
+} && !std::same_as<T, Text> && !std::same_as<T, std::string>;
 template <class T>
 concept Mapping = requires { typename T::mapped_type; };
 
@@ -51,6 +54,13 @@ std::string leaf_text(const T& leaf) {
   }
 }
 
+// Document code writes enums to streams as numbers. Those of a state are as small as characters, and are none.
+template <class Stream, class Enum>
+  requires std::is_enum_v<Enum> && requires { typename Stream::char_type; }
+Stream& operator<<(Stream& out, Enum value) {
+  return static_cast<Stream&>(out << static_cast<int>(value));
+}
+
 template <class Key>
 std::string key_text(const Key& key) {
   std::string text;
@@ -73,6 +83,43 @@ void visit_leaves(const std::string& name, const T& value, Visit&& visit) {
   } else {
     visit(name, value);
   }
+}
+
+// All leaves of a state with their names, as one line.
+template <class State>
+std::string leaves_text(const State& state) {
+  std::string text;
+  visit_leaves("", state, [&](const std::string& name, const auto& leaf) {
+    text += (text.empty() ? "" : ", ") + name + "=" + leaf_text(leaf);
+  });
+  return text;
+}
+
+// Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
+struct Place {
+  std::size_t offset;
+  std::size_t size;
+  friend bool operator==(const Place&, const Place&) = default;
+};
+
+// The places of a state, without overlap.
+template <class State>
+std::vector<Place> places_in(const State& state) {
+  std::vector<Place> places;
+  std::string compound;
+  visit_leaves("", state, [&](const std::string& name, const auto& leaf) {
+    const auto offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(std::addressof(leaf)) -
+                                                 reinterpret_cast<const std::byte*>(std::addressof(state)));
+    const auto dot = name.rfind('.');
+    const std::string owner = dot == std::string::npos ? "" : name.substr(0, dot);
+    if (!owner.empty() && owner == compound) {
+      places.back().size = offset + sizeof leaf - places.back().offset;
+    } else {
+      places.push_back({offset, sizeof leaf});
+    }
+    compound = owner;
+  });
+  return places;
 }
 
 // Text of a whole value, for the names of grounded actions.

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "aos/fault.hpp"
 #include "aos/reflection.hpp"
@@ -58,7 +59,10 @@ class StateReader {
       T::__fields(value, [this](const char*, auto& member) { read(member); });
     } else if constexpr (Mapping<T>) {
       for (auto& entry : value) read(entry.second);
-    } else if constexpr (Sequence<T> || std::same_as<T, Text>) {
+    } else if constexpr (std::derived_from<T, std::vector<bool>>) {
+      value.resize(static_cast<std::size_t>(next()));
+      for (auto element : value) element = next() != 0;
+    } else if constexpr (Sequence<T> || std::same_as<T, Text> || std::same_as<T, std::string>) {
       resize(value, static_cast<std::size_t>(next()));
       for (auto& element : value) read(element);
     } else if constexpr (std::floating_point<T>) {

@@ -78,6 +78,15 @@ class Text {
   std::string substr(std::size_t from = 0, std::size_t count = npos) const { return str().substr(from, count); }
   std::size_t find(std::string_view part, std::size_t from = 0) const { return view().find(part, from); }
   std::size_t find(char part, std::size_t from = 0) const { return view().find(part, from); }
+  std::size_t rfind(std::string_view part, std::size_t from = npos) const { return view().rfind(part, from); }
+  std::size_t rfind(char part, std::size_t from = npos) const { return view().rfind(part, from); }
+  std::size_t find_first_of(std::string_view any, std::size_t from = 0) const { return view().find_first_of(any, from); }
+  std::size_t find_last_of(std::string_view any, std::size_t from = npos) const { return view().find_last_of(any, from); }
+  std::size_t find_first_not_of(std::string_view any, std::size_t from = 0) const {
+    return view().find_first_not_of(any, from);
+  }
+  bool starts_with(std::string_view part) const { return view().starts_with(part); }
+  bool ends_with(std::string_view part) const { return view().ends_with(part); }
   int compare(std::string_view other) const { return view().compare(other); }
 
   friend bool operator==(const Text& left, const Text& right) { return left.view() == right.view(); }

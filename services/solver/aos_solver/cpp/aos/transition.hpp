@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "aos/blame.hpp"
@@ -32,10 +33,15 @@ struct SkillDefaults {
   };
   static constexpr double violation_penalty = 0;
   static constexpr bool has_text_response = false;
+  // Whether the code of a step reads `state` (`state_`) where it has already changed a later copy.
+  static constexpr bool keeps_state = false;
+  static constexpr bool keeps_state_ = false;
   static void precondition(const auto&, bool&, const auto&, auto&) {}
   static void execution_time(const auto&, int&, const auto&, auto&) {}
   static void next_state(auto&, auto&, auto&, bool, int, auto&, const auto&, auto&) {}
   static void rollout_policy(const auto&, double&, const auto&, auto&) {}
+  static void read_locals(std::string_view) {}
+  static void given_observation(const auto&, auto&, const auto&, auto&) {}
 };
 
 // What an environment document leaves out.
@@ -90,7 +96,7 @@ Observation observation_of(const auto& effect) {
   return effect.response - 1;
 }
 
-// The phases in their order. In a model with one state all three are the same object.
+// The phases in their order. Copies of the state that nothing tells apart are the same object.
 template <class Environment, class Skill>
 Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, auto& random) {
   bool meets_precondition = true;
@@ -103,7 +109,7 @@ Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, a
     const typename Environment::Chosen chosen{parameters};
     Environment::extrinsic_changes(state, state_, extrinsic_reward, execution_time, chosen, random);
     check_reward(extrinsic_reward);
-    if constexpr (!Environment::is_one_state) next = state_;
+    if constexpr (!Environment::is_one_state && Skill::keeps_state_) next = state_;
   }
 
   std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
@@ -116,20 +122,23 @@ Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, a
   step.reward = penalty + extrinsic_reward + effect.reward + special_reward;
   check_reward(step.reward);
   step.observation = observation_of<Skill>(effect);
-  blame::at(0);
   return step;
 }
+
+// A copy of what it is made of, or another name for it.
+template <class State, bool is_kept>
+using Kept = std::conditional_t<is_kept, State, State&>;
 
 template <class Environment, class Skill, class State>
 Step transition(State& next, const auto& parameters, auto& random) {
   if constexpr (Environment::is_one_state) {
     return run_phases<Environment, Skill>(next, next, next, parameters, random);
   } else if constexpr (Environment::has_extrinsic_changes) {
-    const State state = next;
-    State state_ = next;
+    const Kept<const State, Skill::keeps_state> state = next;
+    Kept<State, Skill::keeps_state_> state_ = next;
     return run_phases<Environment, Skill>(state, state_, next, parameters, random);
   } else {
-    const State state = next;
+    const Kept<const State, Skill::keeps_state> state = next;
     return run_phases<Environment, Skill>(state, state, next, parameters, random);
   }
 }
@@ -137,7 +146,7 @@ Step transition(State& next, const auto& parameters, auto& random) {
 // What an ended state lets the robot observe: what the documents give for it, or the default observation where they do
 // not reckon with such a state.
 template <class Environment, class Skill, class State>
-[[gnu::noinline]] Step step_after_the_end(State copy, const auto& parameters, auto& random) {
+[[gnu::cold, gnu::noinline]] Step step_after_the_end(State copy, const auto& parameters, auto& random) {
   copy.__ending = Ending::running;
   try {
     return {0, transition<Environment, Skill>(copy, parameters, random).observation};
@@ -161,7 +170,6 @@ template <class Skill>
 bool meets_precondition(const auto& state, const auto& parameters, auto& random) {
   bool meets = true;
   Skill::precondition(state, meets, parameters, random);
-  blame::at(0);
   return meets;
 }
 
@@ -170,7 +178,6 @@ template <class Skill>
 double rollout_weight(const auto& state, const auto& parameters, auto& random) {
   double weight = 0;
   Skill::rollout_policy(state, weight, parameters, random);
-  blame::at(0);
   return weight > 0 ? weight : 0;
 }
 

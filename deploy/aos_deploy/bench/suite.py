@@ -1,0 +1,192 @@
+"""The whole benchmark: every figure of the problems asked for, ours and the others', one after the other."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.bench import baseline, pomdp_py_peer
+from aos_deploy.bench.measure import (
+    discounted_returns,
+    sampling_rate,
+    search_rate,
+)
+from aos_deploy.bench.problems import Problem
+from aos_deploy.bench.rows import OURS, Report, Row, Skipped, figure, this_machine, with_ratios
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError, DocumentError
+from aos_registry.load import load_bundle
+from aos_solver.compiler import find_compiler
+from aos_solver.engine import Engine, Planner
+from aos_solver.hot_plug import build_project
+
+__all__ = ["METRICS", "Effort", "Suite"]
+
+METRICS = ("steps", "simulations", "return")
+
+Step = Callable[[str], None]
+"""Told before each piece of work, with its name."""
+
+
+class Effort(msgspec.Struct, frozen=True, kw_only=True):
+    """How long to measure. `runs` and `budget_s` are of returns; `jobs` missions are run at a time."""
+
+    metrics: tuple[str, ...] = METRICS
+    repetitions: int = 5
+    seconds: float = 1.0
+    peer_simulations: int = 4_000
+    runs: int | None = None
+    budget_s: float = 0.1
+    planners: tuple[Planner, ...] = ("auto",)
+    jobs: int = 1
+    seed: int = 1
+
+    def runs_of(self, problem: Problem) -> int:
+        if "return" not in self.metrics or problem.runs == 0:
+            return 0
+        return problem.runs if self.runs is None else self.runs
+
+
+class Suite:
+    """One benchmark. Whatever fails or is missing is told in the report, and the rest is measured."""
+
+    def __init__(self, problems: list[Problem], effort: Effort, cache_dir: Path, on_step: Step) -> None:
+        self._problems = problems
+        self._effort = effort
+        self._cache_dir = cache_dir
+        self._on_step = on_step
+        self._rows: list[Row] = []
+        self._skipped: list[Skipped] = []
+
+    @property
+    def steps(self) -> int:
+        """How often `on_step` is called at most."""
+        planners = len(self._effort.planners)
+        return sum(3 + planners * self._effort.runs_of(problem) for problem in self._problems)
+
+    async def run(self) -> Report:
+        """Measures everything."""
+        compiler = await find_compiler()
+        machine = this_machine(compiler.version, self._effort.seed, self._effort.budget_s)
+        if not pomdp_py_peer.is_installed():
+            self._skip(pomdp_py_peer.NAME, "it is not installed: pip install 'aos[bench]'")
+        for problem in self._problems:
+            if not problem.bundle.is_dir():
+                self._skip(problem.name, "its documents are not there")
+                continue
+            with self._telling(problem.name):
+                await self._measure_ours(problem)
+            with self._telling(f"{pomdp_py_peer.NAME} on {problem.name}"):
+                self._measure_peer(problem)
+        with self._telling(baseline.NAME):
+            async with baseline.Baselines(compiler) as baselines:
+                await self._measure_baselines(baselines)
+        return Report(machine, with_ratios(self._rows), tuple(self._skipped))
+
+    async def _measure_ours(self, problem: Problem) -> None:
+        effort = self._effort
+        self._on_step(f"{problem.name}: building")
+        project = project_of(problem)
+        async with self._engine(project) as engine:
+            self._on_step(f"{problem.name}: rates")
+            if "steps" in effort.metrics:
+                rates = await sampling_rate(engine, effort.repetitions, effort.seconds, effort.seed)
+                self._rows.append(figure(OURS, problem.name, "steps", rates, "1/s"))
+            if "simulations" in effort.metrics and problem.is_searched:
+                await self._search_rate(engine, problem, "simulations")
+        if "simulations" in effort.metrics and (plain := without_policies(project)) is not project:
+            async with self._engine(plain) as engine:
+                await self._search_rate(engine, problem, baseline.WITHOUT_KNOWLEDGE)
+        if runs := effort.runs_of(problem):
+            for planner in effort.planners:
+                self._rows.append(await self._returns(problem, planner, project, runs))
+
+    async def _search_rate(self, engine: Engine, problem: Problem, metric: str) -> None:
+        rates = await search_rate(engine, self._effort.repetitions, self._effort.seed)
+        self._rows.append(figure(OURS, problem.name, metric, rates, "1/s"))
+
+    async def _returns(self, problem: Problem, planner: Planner, project: Project, runs: int) -> Row:
+        """Missions with the seeds from `seed` on, dealt out to the jobs."""
+        seed = self._effort.seed
+        label = f"{problem.name}: missions with {planner}"
+
+        async def job(number: int) -> list[float]:
+            async with self._engine(project) as engine:
+                seeds = range(seed + number, seed + runs, self._effort.jobs)
+                return await discounted_returns(
+                    engine, problem, planner, seeds, self._effort.budget_s, lambda: self._on_step(label)
+                )
+
+        async with asyncio.TaskGroup() as tasks:
+            jobs = [tasks.create_task(job(number)) for number in range(self._effort.jobs)]
+        values = [value for task in jobs for value in task.result()]
+        return figure(OURS, problem.name, f"return, {planner}", values, f"{runs} runs")
+
+    def _measure_peer(self, problem: Problem) -> None:
+        if problem.name not in pomdp_py_peer.PROBLEMS or not pomdp_py_peer.is_installed():
+            return
+        self._on_step(f"{problem.name}: {pomdp_py_peer.NAME}")
+        effort = self._effort
+        if "steps" in effort.metrics:
+            rate = pomdp_py_peer.sampling_rate(problem.name, effort.seconds, effort.seed)
+            self._rows.append(figure(pomdp_py_peer.NAME, problem.name, "steps", [rate], "1/s"))
+        if "simulations" in effort.metrics:
+            rate = pomdp_py_peer.search_rate(problem.name, effort.peer_simulations, effort.seed)
+            self._rows.append(figure(pomdp_py_peer.NAME, problem.name, "simulations", [rate], "1/s"))
+
+    async def _measure_baselines(self, baselines: baseline.Baselines) -> None:
+        effort = self._effort
+        for problem in self._problems:
+            if problem.name not in baseline.PROBLEMS:
+                continue
+            self._on_step(f"{problem.name}: {baseline.NAME}")
+            repetitions = [
+                await baselines.measure(problem.name, effort.seconds, effort.seed + turn)
+                for turn in range(effort.repetitions)
+            ]
+            for turns in zip(*repetitions, strict=True):
+                metric = turns[0].metric
+                if metric.partition(",")[0] in effort.metrics:
+                    values = [turn.value for turn in turns]
+                    self._rows.append(figure(baseline.NAME, problem.name, metric, values, "1/s"))
+
+    @asynccontextmanager
+    async def _engine(self, project: Project) -> AsyncIterator[Engine]:
+        built = await build_project(project, self._cache_dir, lambda remark: None)
+        engine = await Engine.start(built, seed=self._effort.seed)
+        try:
+            yield engine
+        finally:
+            await engine.close()
+
+    @contextmanager
+    def _telling(self, name: str) -> Iterator[None]:
+        """A fault within becomes a remark of the report."""
+        try:
+            yield
+        except AosError as error:
+            self._skip(name, str(error))
+
+    def _skip(self, name: str, reason: str) -> None:
+        self._skipped.append(Skipped(name, reason))
+
+
+def without_policies(project: Project) -> Project:
+    """The same documents with uniform play-outs; the project itself if it has no rollout policies."""
+    if not any(skill.model.rollout_policy for skill in project.skills):
+        return project
+    replace = msgspec.structs.replace
+    skills = [replace(skill, model=replace(skill.model, rollout_policy=())) for skill in project.skills]
+    return replace(project, skills=tuple(skills))
+
+
+def project_of(problem: Problem) -> Project:
+    """The documents of a problem; DocumentError if they have mistakes."""
+    loaded = load_bundle(problem.bundle)
+    if loaded.project is None:
+        raise DocumentError(f"{problem.bundle} has errors", hint=f"See aos lint {problem.bundle}")
+    return loaded.project

@@ -1,0 +1,38 @@
+"""The engine of a bundle, for commands that need no robot."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import typer
+
+from aos_deploy.program import cache_dir
+from aos_protocol.diagnostics import render
+from aos_protocol.errors import DocumentError
+from aos_registry.load import load_bundle
+from aos_solver.engine import Engine
+from aos_solver.hot_plug import build_project
+
+__all__ = ["engine_of_bundle"]
+
+
+@asynccontextmanager
+async def engine_of_bundle(bundle: Path, seed: int) -> AsyncIterator[Engine]:
+    """The engine of a bundle, compiled if need be; the bundle's mistakes as one DocumentError."""
+    loaded = load_bundle(bundle)
+    if loaded.project is None:
+        raise DocumentError(
+            f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
+        )
+    for diagnostic in loaded.diagnostics:
+        typer.echo(render(diagnostic), err=True)
+    built = await build_project(
+        loaded.project, cache_dir(), lambda remark: typer.echo(f"aos: {remark}", err=True)
+    )
+    engine = await Engine.start(built, seed=seed)
+    try:
+        yield engine
+    finally:
+        await engine.close()

@@ -1,0 +1,95 @@
+"""The hidden worlds of a bundle's model in its engine child, for callers that are not asynchronous."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aos_deploy.program import cache_dir
+from aos_protocol.errors import DocumentError
+from aos_registry.load import load_bundle
+from aos_solver.engine import Engine
+from aos_solver.hot_plug import build_project
+
+__all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes"]
+
+ENDINGS = ("", "goal", "failure")
+"""How an episode has ended, by number."""
+
+TEXT_BYTES = 62
+"""What a text observation has room for; shorter ones end in zeros."""
+
+T = TypeVar("T")
+
+
+class Steps(NamedTuple):
+    """One step of all worlds, an entry for each; `endings` are places in ENDINGS."""
+
+    observations: NDArray[np.int64]
+    texts: list[str]
+    rewards: NDArray[np.float64]
+    endings: NDArray[np.uint8]
+
+
+class HiddenWorlds:
+    """Owns an engine child and the event loop that talks to it; to be used in the thread that made it.
+
+    `actions` and `responses` are names by number; response 0 means that nothing is told, as at a start.
+    """
+
+    def __init__(self, bundle: Path) -> None:
+        self._loop = asyncio.new_event_loop()
+        try:
+            self._engine = self._run(_start(bundle))
+            told = self._run(self._engine.reset_worlds([0]))
+        except BaseException:
+            self._loop.close()
+            raise
+        self.actions = tuple(action.name for action in self._engine.description.actions)
+        self.responses = told.observations
+        self.has_texts = told.has_texts
+        self.discount = self._engine.description.discount
+
+    def start(self, seeds: Sequence[int]) -> None:
+        """One new world for each seed."""
+        self._run(self._engine.reset_worlds(seeds))
+
+    def step(self, actions: NDArray[Any]) -> Steps:
+        """One action in each world; -1 starts it anew."""
+        done = self._run(self._engine.step_worlds(actions.astype(np.int32).tobytes()))
+        return Steps(
+            np.frombuffer(done.observations, np.int32).astype(np.int64),
+            done.texts,
+            np.frombuffer(done.rewards, np.float64).copy(),
+            np.frombuffer(done.endings, np.uint8),
+        )
+
+    def close(self) -> None:
+        """Ends the child. Closing twice does nothing."""
+        if not self._loop.is_closed():
+            self._run(self._engine.close())
+            self._loop.close()
+
+    def _run(self, work: Coroutine[Any, Any, T]) -> T:
+        return self._loop.run_until_complete(work)
+
+
+async def _start(bundle: Path) -> Engine:
+    loaded = load_bundle(bundle)
+    if loaded.project is None:
+        raise DocumentError(
+            f"{bundle} has errors", hint=f"See aos lint {bundle}", diagnostics=loaded.diagnostics
+        )
+    built = await build_project(loaded.project, cache_dir(), lambda remark: None)
+    return await Engine.start(built, seed=1)
+
+
+def as_bytes(texts: Sequence[str]) -> NDArray[np.uint8]:
+    """Texts as rows of `TEXT_BYTES` bytes, in UTF-8, cut where they are longer."""
+    cut = np.array([text.encode()[:TEXT_BYTES] for text in texts], dtype=f"S{TEXT_BYTES}")
+    return cut.view(np.uint8).reshape(len(texts), TEXT_BYTES)

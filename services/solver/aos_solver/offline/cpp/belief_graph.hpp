@@ -1,0 +1,244 @@
+// The beliefs that were met, what actions lead to from them, and both bounds of their values.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "bounds.hpp"
+#include "initial_bounds.hpp"
+#include "regions.hpp"
+
+namespace aos::offline {
+
+inline constexpr double negligible = 1e-12;
+
+struct Successor {
+  double probability;
+  std::uint32_t sight;
+  std::uint32_t node;
+};
+
+struct Branch {
+  std::uint32_t action;
+  double reward;
+  double upper;
+  std::vector<Successor> successors;
+};
+
+struct Node {
+  Belief belief;
+  std::uint32_t region;
+  std::uint32_t vector = 0;          // the best alpha vector
+  std::uint32_t seen_vectors = 0;    // how many the lower bound is of
+  std::uint32_t seen_changes = 0;    // of the upper bound
+  std::uint32_t point = nowhere;     // in the upper bound
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool is_expanded = false;
+  std::vector<Branch> branches;  // actions that may still be the best
+};
+
+class BeliefGraph {
+ public:
+  BeliefGraph(const FlatModel& model, const Regions& regions)
+      : model_(model), regions_(regions), informed_(InitialBounds{model, regions}.informed_values()) {
+    const InitialBounds bounds{model, regions};
+    std::vector<std::vector<double>> blind;
+    for (std::size_t action = 0; action < model.actions; ++action) blind.push_back(bounds.blind_values(action));
+    std::size_t largest = 0;
+    for (const Region& region : regions.all) {
+      largest = std::max(largest, region.states.size());
+      add_bounds(region, blind);
+    }
+    posterior_.assign(largest, 0.0);
+  }
+
+  // The node of a belief over the region's states (by local number, ascending; normalised).
+  std::uint32_t node_of(std::uint32_t region, Belief belief) {
+    const Key key = key_of(region, belief);
+    const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(nodes_.size()));
+    if (!is_new) return entry->second;
+    bytes_ += sizeof(Node) + belief.size() * (sizeof(double) + sizeof(std::uint32_t)) + 64;
+    Node& node = nodes_.emplace_back();
+    node.region = region;
+    node.belief = std::move(belief);
+    UpperBound& bound = upper_[region];
+    node.upper = std::min(bound.of(node.belief), best_informed(node));
+    node.seen_changes = bound.changes();
+    refresh_lower(node);
+    return entry->second;
+  }
+
+  Node& operator[](std::uint32_t number) { return nodes_[number]; }
+  std::size_t size() const { return nodes_.size(); }
+  std::size_t bytes() const { return bytes_; }
+  LowerBound& lower(std::uint32_t region) { return lower_[region]; }
+  const LowerBound& lower(std::uint32_t region) const { return lower_[region]; }
+  UpperBound& upper(std::uint32_t region) { return upper_[region]; }
+  void count_bytes(std::size_t bytes) { bytes_ += bytes; }
+
+  // Finds what the actions lead to, those left out that cannot be the best.
+  void expand(Node& node) {
+    if (node.is_expanded) return;
+    node.is_expanded = true;
+    const Region& region = regions_.all[node.region];
+    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+      const double upper = informed(node, action);
+      if (upper < node.lower) continue;
+      Branch branch{action, expected(region.moves[action].rewards, node.belief), upper, {}};
+      add_successors(node.belief, region.moves[action], branch.successors);
+      node.branches.push_back(std::move(branch));
+    }
+  }
+
+  void refresh_lower(Node& node) {
+    const LowerBound& bound = lower_[node.region];
+    if (bound[node.vector].is_gone()) node.seen_vectors = 0;
+    if (node.seen_vectors == bound.size()) return;
+    double best = node.seen_vectors == 0 ? -std::numeric_limits<double>::infinity() : node.lower;
+    for (; node.seen_vectors < bound.size(); ++node.seen_vectors) {
+      const AlphaVector& vector = bound[node.seen_vectors];
+      if (vector.is_gone()) continue;
+      const double value = expected(vector.values, node.belief);
+      if (value <= best) continue;
+      best = value;
+      node.vector = node.seen_vectors;
+    }
+    node.lower = std::max(node.lower, best);
+  }
+
+  void refresh_upper(Node& node) {
+    UpperBound& bound = upper_[node.region];
+    node.upper = bound.of(node.belief, node.upper, node.seen_changes);
+    node.seen_changes = bound.changes();
+  }
+
+  // Where an observation leads from a region about which nothing else is known.
+  std::uint32_t uninformed_successor(std::uint32_t region, std::uint32_t action, std::uint32_t sight) {
+    const std::uint64_t key = (std::uint64_t{region} * model_.actions + action) << 24 | sight;
+    const auto known = uninformed_.find(key);
+    if (known != uninformed_.end()) return known->second;
+    const Region& from = regions_.all[region];
+    Belief belief;
+    for (std::uint32_t state = 0; state < from.states.size(); ++state) {
+      belief.states.push_back(state);
+      belief.probabilities.push_back(1.0 / static_cast<double>(from.states.size()));
+    }
+    std::vector<Successor> successors;
+    add_successors(belief, from.moves[action], successors);
+    for (const Successor& successor : successors) {
+      uninformed_[(std::uint64_t{region} * model_.actions + action) << 24 | successor.sight] = successor.node;
+    }
+    return uninformed_.at(key);
+  }
+
+ private:
+  struct Key {
+    std::uint64_t high, low;
+    bool operator==(const Key&) const = default;
+  };
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const { return key.high ^ key.low; }
+  };
+
+  static std::uint64_t mixed(std::uint64_t left, std::uint64_t right) {
+    std::uint64_t x = (left ^ right) * 0x9e3779b97f4a7c15u;
+    x ^= x >> 32;
+    x *= 0xd6e8feb86659fd93u;
+    return x ^ (x >> 29);
+  }
+
+  // Probabilities are rounded to 1e-9, so that different ways to the same belief meet.
+  static Key key_of(std::uint32_t region, const Belief& belief) {
+    Key key{mixed(0x9ae16a3b2f90404fu, region), mixed(0xc949d7c7509e6557u, region)};
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      const auto rounded = static_cast<std::uint64_t>(std::llround(belief.probabilities[i] * 1e9));
+      key.high = mixed(key.high, rounded * 0x2545f4914f6cdd1du + belief.states[i]);
+      key.low = mixed(key.low + belief.states[i], rounded);
+    }
+    return key;
+  }
+
+  void add_bounds(const Region& region, const std::vector<std::vector<double>>& blind) {
+    std::vector<double> corners;
+    for (const std::uint32_t state : region.states) {
+      const double* first = informed_.data() + model_.row(state, 0);
+      corners.push_back(*std::max_element(first, first + model_.actions));
+    }
+    upper_.emplace_back(std::move(corners));
+    LowerBound lower;
+    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+      AlphaVector vector{action, true, {}};
+      for (const std::uint32_t state : region.states) vector.values.push_back(blind[action][state]);
+      lower.add(std::move(vector));
+    }
+    lower_.push_back(std::move(lower));
+  }
+
+  double informed(const Node& node, std::uint32_t action) const {
+    const std::vector<std::uint32_t>& states = regions_.all[node.region].states;
+    double sum = 0;
+    for (std::size_t i = 0; i < node.belief.size(); ++i) {
+      sum += node.belief.probabilities[i] * informed_[model_.row(states[node.belief.states[i]], action)];
+    }
+    return sum;
+  }
+
+  double best_informed(const Node& node) const {
+    double best = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t action = 0; action < model_.actions; ++action) best = std::max(best, informed(node, action));
+    return best;
+  }
+
+  void add_successors(const Belief& belief, const Move& move, std::vector<Successor>& successors) {
+    predicted_.assign(move.targets, 0.0);
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      const auto* last = move.flows.end(belief.states[i]);
+      for (const auto* flow = move.flows.begin(belief.states[i]); flow != last; ++flow) {
+        predicted_[flow->target] += belief.probabilities[i] * flow->probability;
+      }
+    }
+    for (std::uint32_t sight = 0; sight < move.sights.size(); ++sight) {
+      double total = 0;
+      reached_.clear();
+      for (const Sight::Landing& landing : move.sights[sight].landings) {
+        const double weight = predicted_[landing.target] * landing.probability;
+        if (weight <= 0) continue;
+        if (posterior_[landing.local] == 0) reached_.push_back(landing.local);
+        posterior_[landing.local] += weight;
+        total += weight;
+      }
+      Belief next;
+      std::sort(reached_.begin(), reached_.end());
+      for (const std::uint32_t local : reached_) {
+        if (posterior_[local] > negligible * total) {
+          next.states.push_back(local);
+          next.probabilities.push_back(posterior_[local] / total);
+        }
+        posterior_[local] = 0;
+      }
+      if (total <= negligible) continue;
+      successors.push_back({total, sight, node_of(move.sights[sight].region, std::move(next))});
+    }
+  }
+
+  const FlatModel& model_;
+  const Regions& regions_;
+  ActionValues informed_;
+  std::vector<LowerBound> lower_;
+  std::vector<UpperBound> upper_;
+  std::deque<Node> nodes_;
+  std::unordered_map<Key, std::uint32_t, KeyHash> index_;
+  std::unordered_map<std::uint64_t, std::uint32_t> uninformed_;
+  std::size_t bytes_ = 0;
+  std::vector<double> predicted_;
+  std::vector<double> posterior_;
+  std::vector<std::uint32_t> reached_;
+};
+
+}  // namespace aos::offline

@@ -1,0 +1,137 @@
+// Both bounds of the value function over the beliefs of a region, as far as they are known.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "regions.hpp"
+
+namespace aos::offline {
+
+// The states that have a probability, by their numbers in the region, ascending.
+struct Belief {
+  std::vector<std::uint32_t> states;
+  std::vector<double> probabilities;
+
+  std::size_t size() const { return states.size(); }
+};
+
+// Values by a region's states: for every one what a plan gives that begins with `action`.
+struct AlphaVector {
+  std::uint32_t action;
+  bool is_blind;  // always this action; never given up
+  std::vector<double> values;
+
+  bool is_gone() const { return values.empty(); }
+};
+
+inline double expected(const std::vector<double>& values, const Belief& belief) {
+  double sum = 0;
+  if (belief.size() == values.size()) {
+    for (std::size_t i = 0; i < values.size(); ++i) sum += belief.probabilities[i] * values[i];
+  } else {
+    for (std::size_t i = 0; i < belief.size(); ++i) sum += belief.probabilities[i] * values[belief.states[i]];
+  }
+  return sum;
+}
+
+// Alpha vectors of a region. Their numbers stay; those that were given up are empty.
+class LowerBound {
+ public:
+  std::uint32_t add(AlphaVector vector) {
+    vectors_.push_back(std::move(vector));
+    ++kept_;
+    return static_cast<std::uint32_t>(vectors_.size() - 1);
+  }
+  void give_up(std::uint32_t number) {
+    vectors_[number].values = {};
+    --kept_;
+  }
+  const AlphaVector& operator[](std::uint32_t number) const { return vectors_[number]; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(vectors_.size()); }
+  std::size_t kept() const { return kept_; }
+
+ private:
+  std::vector<AlphaVector> vectors_;
+  std::size_t kept_ = 0;
+};
+
+// Values of single states, and of beliefs that were looked at; between them the bound is interpolated from the states
+// and one belief ("sawtooth": Hauskrecht, 2000).
+class UpperBound {
+ public:
+  explicit UpperBound(std::vector<double> corners) : corners_(std::move(corners)), dense_(corners_.size(), 0.0) {}
+
+  // Takes the belief by its address: it must stay where it is. Returns the point's number.
+  std::uint32_t add(const Belief& belief, double value) {
+    points_.push_back({&belief, value - expected(corners_, belief)});
+    const auto number = static_cast<std::uint32_t>(points_.size() - 1);
+    changes_.push_back(number);
+    return number;
+  }
+  void improve(std::uint32_t number, double value) {
+    Point& point = points_[number];
+    point.drop = std::min(point.drop, value - expected(corners_, *point.belief));
+    changes_.push_back(number);
+  }
+
+  double of(const Belief& belief) {
+    double drop = 0;
+    spread(belief);
+    for (const Point& point : points_) lower(drop, point, belief.size());
+    clear(belief);
+    return expected(corners_, belief) + drop;
+  }
+  // `value` improved by what has changed since so many changes.
+  double of(const Belief& belief, double value, std::uint32_t seen) {
+    if (seen == changes_.size()) return value;
+    if (changes_.size() - seen > points_.size()) return std::min(value, of(belief));
+    const double corner = expected(corners_, belief);
+    double drop = std::min(0.0, value - corner);
+    spread(belief);
+    for (std::size_t i = seen; i < changes_.size(); ++i) lower(drop, points_[changes_[i]], belief.size());
+    clear(belief);
+    return std::min(value, corner + drop);
+  }
+
+  std::uint32_t changes() const { return static_cast<std::uint32_t>(changes_.size()); }
+  std::size_t points() const { return points_.size(); }
+
+ private:
+  struct Point {
+    const Belief* belief;
+    double drop;  // from the interpolation of the states; negative
+  };
+
+  void spread(const Belief& belief) {
+    for (std::size_t i = 0; i < belief.size(); ++i) dense_[belief.states[i]] = belief.probabilities[i];
+  }
+  void clear(const Belief& belief) {
+    for (const std::uint32_t state : belief.states) dense_[state] = 0;
+  }
+
+  // The belief in `dense_` holds a share of the point's, and so much of the drop.
+  void lower(double& drop, const Point& point, std::size_t support) const {
+    if (point.drop >= drop || point.belief->size() > support) return;
+    const double needed = drop / point.drop;
+    double share = 1;
+    for (std::size_t i = 0; i < point.belief->size(); ++i) {
+      const double part = dense_[point.belief->states[i]];
+      if (part < share * point.belief->probabilities[i]) {
+        share = part / point.belief->probabilities[i];
+        if (share <= needed) return;
+      }
+    }
+    drop = share * point.drop;
+  }
+
+  std::vector<double> corners_;
+  std::vector<double> dense_;
+  std::vector<Point> points_;
+  std::vector<std::uint32_t> changes_;
+};
+
+}  // namespace aos::offline

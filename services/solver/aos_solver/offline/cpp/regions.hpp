@@ -1,0 +1,217 @@
+// The states parted by what the robot always knows.
+//
+// A region holds all states of every belief that touches it: whoever is in a region knows it. Regions are found, not
+// declared: states that one belief can hold together are put together, from the start over every action and
+// observation. Where a robot sees its own position there is a region for each position, and beliefs and alpha vectors
+// have the length of a region instead of the whole (the idea of mixed observability: Ong, Png, Hsu and Lee, 2010).
+// States that are worth nothing whatever is done (the mission has ended) are in no region: beliefs need not sum to 1.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "flat_model.hpp"
+
+namespace aos::offline {
+
+inline constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
+
+// One thing that may be observed after an action in a region, and where it leads.
+struct Sight {
+  struct Landing {
+    std::uint32_t target;
+    std::uint32_t local;  // the state's number in the region that is entered
+    double probability;   // of the observation there
+  };
+  std::uint32_t observation;
+  std::uint32_t region;
+  std::vector<Landing> landings;
+};
+
+// An action in a region. A target is a next state with its sensing.
+struct Move {
+  struct Flow {
+    std::uint32_t target;
+    double probability;
+  };
+  std::vector<double> rewards;  // by local state
+  Rows<Flow> flows;             // of a local state
+  std::size_t targets = 0;
+  std::vector<Sight> sights;
+};
+
+struct Region {
+  std::vector<std::uint32_t> states;
+  std::vector<Move> moves;  // by action
+};
+
+class Regions {
+ public:
+  explicit Regions(const FlatModel& model)
+      : model_(model), is_worthless_(worthless_states()), parent_(model.states), region_of(model.states, nowhere),
+        local_of(model.states, nowhere) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+    find_reached();
+    for (const Start& start : model.starts) unite_start(start);
+    while (unite_successors()) {}
+    number();
+    for (Region& region : all) add_moves(region);
+  }
+
+  bool is_worthless(std::size_t state) const { return is_worthless_[state]; }
+
+ private:
+  const FlatModel& model_;
+  std::vector<bool> is_worthless_;
+  std::vector<bool> is_reached_;
+  std::vector<std::uint32_t> parent_;
+
+ public:
+  std::vector<Region> all;
+  std::vector<std::uint32_t> region_of;  // of a state; nowhere if it is worthless or never reached
+  std::vector<std::uint32_t> local_of;
+
+ private:
+  // The largest set of states without rewards that no action leaves.
+  std::vector<bool> worthless_states() const {
+    std::vector<bool> worthless(model_.states);
+    for (std::size_t state = 0; state < model_.states; ++state) {
+      const auto first = model_.rewards.begin() + static_cast<std::ptrdiff_t>(model_.row(state, 0));
+      worthless[state] = std::all_of(first, first + static_cast<std::ptrdiff_t>(model_.actions), [](double r) { return r == 0; });
+    }
+    for (bool has_changed = true; has_changed;) {
+      has_changed = false;
+      for (std::size_t state = 0; state < model_.states; ++state) {
+        if (!worthless[state]) continue;
+        const auto* first = model_.outcomes.begin(model_.row(state, 0));
+        const auto* last = model_.outcomes.end(model_.row(state, model_.actions - 1));
+        if (std::any_of(first, last, [&](const Outcome& outcome) { return !worthless[outcome.next]; })) {
+          worthless[state] = false;
+          has_changed = true;
+        }
+      }
+    }
+    return worthless;
+  }
+
+  void find_reached() {
+    is_reached_.assign(model_.states, false);
+    std::vector<std::uint32_t> waiting;
+    const auto reach = [&](std::uint32_t state) {
+      if (is_reached_[state] || is_worthless_[state]) return;
+      is_reached_[state] = true;
+      waiting.push_back(state);
+    };
+    for (const Start& start : model_.starts) {
+      for (const auto& [state, probability] : start.belief) reach(state);
+    }
+    while (!waiting.empty()) {
+      const std::size_t state = waiting.back();
+      waiting.pop_back();
+      const auto* first = model_.outcomes.begin(model_.row(state, 0));
+      const auto* last = model_.outcomes.end(model_.row(state, model_.actions - 1));
+      for (const auto* outcome = first; outcome != last; ++outcome) reach(outcome->next);
+    }
+  }
+
+  std::uint32_t root_of(std::uint32_t state) {
+    while (parent_[state] != state) state = parent_[state] = parent_[parent_[state]];
+    return state;
+  }
+
+  bool unite(std::uint32_t left, std::uint32_t right) {
+    left = root_of(left);
+    right = root_of(right);
+    if (left == right) return false;
+    parent_[std::max(left, right)] = std::min(left, right);
+    return true;
+  }
+
+  void unite_start(const Start& start) {
+    std::uint32_t first = nowhere;
+    for (const auto& [state, probability] : start.belief) {
+      if (is_worthless_[state]) continue;
+      if (first == nowhere) first = state;
+      unite(first, state);
+    }
+  }
+
+  // Once over all outcomes; returns whether anything was united.
+  bool unite_successors() {
+    bool has_united = false;
+    // What (region, observation) leads to, for one action.
+    std::unordered_map<std::uint64_t, std::uint32_t> successor;
+    for (std::size_t action = 0; action < model_.actions; ++action) {
+      successor.clear();
+      for (std::uint32_t state = 0; state < model_.states; ++state) {
+        if (!is_reached_[state]) continue;
+        const std::size_t row = model_.row(state, action);
+        for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+          if (is_worthless_[outcome->next]) continue;
+          const auto* last = model_.readings.end(outcome->sensing);
+          for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
+            const std::uint64_t key = std::uint64_t{root_of(state)} << 32 | reading->observation;
+            const auto [entry, is_new] = successor.try_emplace(key, outcome->next);
+            if (!is_new && unite(entry->second, outcome->next)) has_united = true;
+          }
+        }
+      }
+    }
+    return has_united;
+  }
+
+  void number() {
+    for (std::uint32_t state = 0; state < model_.states; ++state) {
+      if (!is_reached_[state]) continue;
+      const std::uint32_t root = root_of(state);
+      if (root == state) {
+        region_of[root] = static_cast<std::uint32_t>(all.size());
+        all.emplace_back();
+      }
+      std::vector<std::uint32_t>& states = all[region_of[root]].states;
+      region_of[state] = region_of[root];
+      local_of[state] = static_cast<std::uint32_t>(states.size());
+      states.push_back(state);
+    }
+  }
+
+  void add_moves(Region& region) const {
+    for (std::size_t action = 0; action < model_.actions; ++action) {
+      Move move;
+      std::unordered_map<std::uint64_t, std::uint32_t> targets;
+      std::unordered_map<std::uint32_t, std::size_t> sights;
+      move.flows.first.push_back(0);
+      for (const std::uint32_t state : region.states) {
+        const std::size_t row = model_.row(state, action);
+        move.rewards.push_back(model_.rewards[row]);
+        for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+          if (is_worthless_[outcome->next]) continue;
+          const std::uint64_t key = std::uint64_t{outcome->next} << 32 | outcome->sensing;
+          const auto [target, is_new] = targets.try_emplace(key, static_cast<std::uint32_t>(targets.size()));
+          move.flows.elements.push_back({target->second, outcome->probability});
+          if (is_new) add_target(move, sights, *outcome, target->second);
+        }
+        move.flows.first.push_back(move.flows.elements.size());
+      }
+      move.targets = targets.size();
+      region.moves.push_back(std::move(move));
+    }
+  }
+
+  void add_target(Move& move, std::unordered_map<std::uint32_t, std::size_t>& sights, const Outcome& outcome,
+                  std::uint32_t target) const {
+    const auto* last = model_.readings.end(outcome.sensing);
+    for (const auto* reading = model_.readings.begin(outcome.sensing); reading != last; ++reading) {
+      const auto [sight, is_new] = sights.try_emplace(reading->observation, move.sights.size());
+      if (is_new) move.sights.push_back({reading->observation, region_of[outcome.next], {}});
+      move.sights[sight->second].landings.push_back({target, local_of[outcome.next], reading->probability});
+    }
+  }
+};
+
+}  // namespace aos::offline

@@ -1,0 +1,82 @@
+// The offline solver: a flat model in, alpha vectors out, and on the way a line of JSON for every progress.
+//
+// It ends when the bounds are as near as asked for, when its time or memory is used up, or when anything comes on
+// standard input or that is closed; what is written then is the best so far.
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+
+#include "aos/json.hpp"
+#include "flat_model.hpp"
+#include "policy_file.hpp"
+#include "regions.hpp"
+#include "sarsop.hpp"
+
+namespace {
+
+using namespace aos::offline;
+
+// Of this process, so that a busy machine changes nothing.
+double cpu_seconds() {
+  timespec time{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+bool is_told_to_stop() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  return ::poll(&input, 1, 0) > 0;
+}
+
+void tell(Sarsop& solver, const char* ending) {
+  aos::JsonWriter json;
+  json.begin_object().member("seconds", cpu_seconds());
+  json.member("lower", solver.lower()).member("upper", solver.upper());
+  json.member("vectors", solver.vectors()).member("beliefs", solver.beliefs()).member("backups", solver.backups());
+  json.member("ending", ending).end_object();
+  std::puts(json.text().c_str());
+  std::fflush(stdout);
+}
+
+const char* improve(Sarsop& solver, double precision, double seconds, std::size_t memory_bytes) {
+  double next_line = 0;
+  for (;;) {
+    if (const double now = cpu_seconds(); now >= next_line) {
+      tell(solver, "");
+      // Often at first, when most happens.
+      next_line = now + std::clamp(0.25 * now, 0.005, 2.0);
+    }
+    if (solver.upper() - solver.lower() <= precision) return "precision";
+    if (cpu_seconds() >= seconds) return "time";
+    if (solver.bytes() >= memory_bytes) return "memory";
+    if (is_told_to_stop()) return "stopped";
+    solver.improve(precision);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 6) {
+    std::fprintf(stderr, "usage: %s MODEL POLICY PRECISION CPU_SECONDS MEMORY_BYTES\n", argv[0]);
+    return 2;
+  }
+  try {
+    const FlatModel model = read_flat_model(argv[1]);
+    const Regions regions{model};
+    Sarsop solver{model, regions};
+    const char* ending = improve(solver, std::atof(argv[3]), std::atof(argv[4]), std::strtoull(argv[5], nullptr, 10));
+    solver.prune();
+    write_policy(argv[2], regions, solver);
+    tell(solver, ending);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

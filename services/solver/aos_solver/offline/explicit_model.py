@@ -1,0 +1,116 @@
+"""A POMDP as numbers: every state, every outcome of every action."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["ExplicitModel", "Floats", "ModelSize", "Ragged", "StartBelief"]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+_MARK = b"AOSFLAT1"
+
+
+class Ragged(msgspec.Struct, frozen=True):
+    """Rows of different lengths: row k is `numbers[first[k]:first[k + 1]]` with `probabilities` beside it."""
+
+    first: Integers
+    numbers: Integers
+    probabilities: Floats
+
+    def __len__(self) -> int:
+        return len(self.first) - 1
+
+    def row(self, index: int) -> tuple[Integers, Floats]:
+        """The numbers of a row and their probabilities."""
+        part = slice(self.first[index], self.first[index + 1])
+        return self.numbers[part], self.probabilities[part]
+
+    @property
+    def row_numbers(self) -> Integers:
+        """For every element the row it is in."""
+        return np.repeat(np.arange(len(self)), np.diff(self.first))
+
+
+class StartBelief(msgspec.Struct, frozen=True):
+    """One of the beliefs that the robot may start with, and knows which: `weight` is how likely it is."""
+
+    weight: float
+    states: Integers
+    probabilities: Floats
+
+
+class ModelSize(msgspec.Struct, frozen=True):
+    """How large a model is; `outcomes` counts (state, action, next state)."""
+
+    states: int
+    actions: int
+    observations: int
+    outcomes: int
+
+
+class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
+    """A POMDP with `discount`; states, actions and observations are numbered as their names stand here.
+
+    `rewards` (states, actions) are expected immediate rewards. Row `state * actions + action` of `outcomes`
+    holds the next states; `sensings` beside them names for each a row of `readings`, the distribution of
+    what is observed there. Outcomes of most models share few of these, and mostly the next state and the
+    action decide about it.
+    """
+
+    name: str
+    discount: float
+    states: tuple[str, ...]
+    actions: tuple[str, ...]
+    observations: tuple[str, ...]
+    rewards: Floats
+    outcomes: Ragged
+    sensings: Integers
+    readings: Ragged
+    starts: tuple[StartBelief, ...]
+
+    @property
+    def size(self) -> ModelSize:
+        return ModelSize(
+            len(self.states), len(self.actions), len(self.observations), len(self.outcomes.numbers)
+        )
+
+    def start_distribution(self) -> Floats:
+        """The probability of every state at the start, before the robot is told anything."""
+        start = np.zeros(len(self.states))
+        for belief in self.starts:
+            np.add.at(start, belief.states, belief.weight * belief.probabilities)
+        return start
+
+    def write_flat(self, path: Path) -> None:
+        """The file that the solver reads; `cpp/flat_model.hpp` describes it."""
+        starts = Ragged(
+            np.cumsum([0, *(len(start.states) for start in self.starts)]),
+            np.concatenate([start.states for start in self.starts]),
+            np.concatenate([start.probabilities for start in self.starts]),
+        )
+        counts = [*msgspec.structs.astuple(self.size), len(self.readings), len(self.readings.numbers)]
+        with path.open("wb") as file:
+            file.write(_MARK)
+            for array, kind in (
+                ([*counts, len(starts), len(starts.numbers)], "<u8"),
+                ([self.discount], "<f8"),
+                (self.rewards, "<f8"),
+                (self.outcomes.first, "<u8"),
+                (self.outcomes.numbers, "<u4"),
+                (self.sensings, "<u4"),
+                (self.outcomes.probabilities, "<f8"),
+                (self.readings.first, "<u8"),
+                (self.readings.numbers, "<u4"),
+                (self.readings.probabilities, "<f8"),
+                ([start.weight for start in self.starts], "<f8"),
+                (starts.first, "<u8"),
+                (starts.numbers, "<u4"),
+                (starts.probabilities, "<f8"),
+            ):
+                np.asarray(array).astype(kind).tofile(file)

@@ -1,0 +1,155 @@
+"""A solved policy as a file, and a mission that follows it.
+
+A `.policy` file is a line of JSON (`PolicyHeader`), and after it little-endian arrays without gaps: for every
+region, in the header's order, u32 states[states], u32 actions[vectors], f64 values[vectors][states].
+"""
+
+from __future__ import annotations
+
+import time
+from functools import cached_property
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from aos_protocol.errors import PlanningError
+from aos_protocol.messages import ActionValue
+from aos_solver.answers import ExportedBelief, Plan
+from aos_solver.engine import Engine
+from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionVectors
+from aos_solver.offline.explicit_model import Floats
+from aos_solver.search import Search
+
+__all__ = ["FORMAT", "Policy", "PolicyHeader", "PolicySearch"]
+
+FORMAT = "aos-policy-1"
+
+
+class _RegionSize(msgspec.Struct, frozen=True):
+    states: int
+    vectors: int
+
+
+class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
+    """What a policy is about.
+
+    `model_digest` is the compiled model's, or the problem file's. `states` are the engine's texts of states,
+    or the problem file's names. From the start the policy gives at least `lower`, and none gives more than
+    `upper`; both discounted.
+    """
+
+    format: str = FORMAT
+    model: str
+    model_digest: str
+    discount: float
+    lower: float
+    upper: float
+    actions: tuple[str, ...]
+    states: tuple[str, ...]
+    regions: tuple[_RegionSize, ...] = ()
+
+
+class Policy(msgspec.Struct, frozen=True, dict=True):
+    """A policy by alpha vectors."""
+
+    header: PolicyHeader
+    vectors: AlphaVectors
+
+    def save(self, path: Path) -> None:
+        """Writes the file; PlanningError AOS321 if it cannot be."""
+        parts = self.vectors.regions
+        sizes = tuple(_RegionSize(len(part.states), len(part.actions)) for part in parts)
+        try:
+            with path.open("wb") as file:
+                file.write(msgspec.json.encode(msgspec.structs.replace(self.header, regions=sizes)) + b"\n")
+                for part in parts:
+                    file.write(part.states.astype("<u4").tobytes())
+                    file.write(part.actions.astype("<u4").tobytes())
+                    file.write(part.values.astype("<f8").tobytes())
+        except OSError as error:
+            raise PlanningError(f"cannot write {path}: {error.strerror}", code="AOS321") from error
+
+    @classmethod
+    def load(cls, path: Path) -> Policy:
+        """Reads a file; PlanningError AOS321 if it is none."""
+        try:
+            line, _, data = path.read_bytes().partition(b"\n")
+            header = msgspec.json.decode(line, type=PolicyHeader)
+            if header.format != FORMAT:
+                raise ValueError(f"its format is {header.format}")
+            return cls(header, _vectors(header, data))
+        except OSError as error:
+            raise PlanningError(f"cannot read {path}: {error.strerror}", code="AOS321") from error
+        except (msgspec.MsgspecError, ValueError) as error:
+            raise PlanningError(
+                f"{path} is no policy of this version: {error}", code="AOS321", hint="Make it with aos solve"
+            ) from error
+
+    @cached_property
+    def _numbers(self) -> dict[str, int]:
+        return {text: number for number, text in enumerate(self.header.states)}
+
+    def check_model(self, digest: str) -> None:
+        """PlanningError AOS322 unless it was solved for the model with this digest."""
+        if digest != self.header.model_digest:
+            raise PlanningError(
+                f"the policy was solved for other documents of {self.header.model}",
+                code="AOS322",
+                hint="Solve it again with aos solve",
+            )
+
+    def choose(self, belief: ExportedBelief) -> Choice:
+        """The choice at an engine's belief; PlanningError AOS322 if no state of it is known."""
+        weights = np.zeros(len(self.header.states))
+        for weight, text in belief.particles:
+            number = self._numbers.get(text)
+            if number is not None:
+                weights[number] += weight
+        if not weights.any():
+            message = "the policy knows no state of the belief in which the mission goes on"
+            raise PlanningError(message, code="AOS322")
+        return self.vectors.choose(weights)
+
+
+def _vectors(header: PolicyHeader, data: bytes) -> AlphaVectors:
+    regions, place = [], 0
+
+    def take(kind: str, count: int) -> Floats:
+        nonlocal place
+        array = np.frombuffer(data, kind, count, place)
+        place += array.nbytes
+        return array
+
+    for size in header.regions:
+        states = take("<u4", size.states).astype(np.int64)
+        actions = take("<u4", size.vectors).astype(np.int64)
+        values = take("<f8", size.states * size.vectors).reshape(size.vectors, size.states)
+        regions.append(RegionVectors(states, actions, values))
+    if place != len(data):
+        raise ValueError("its length is wrong")
+    return AlphaVectors(len(header.actions), tuple(regions))
+
+
+class PolicySearch(Search, frozen=True, kw_only=True):
+    """Decides by a policy instead of searching; the budget is not used."""
+
+    policy: Policy
+
+    async def run(self, engine: Engine, step: int) -> Plan:
+        """The policy's action at the engine's belief; PlanningError AOS322 if the policy does not fit."""
+        begun_s = time.perf_counter()
+        self.policy.check_model(engine.model_digest)
+        choice = self.policy.choose(await engine.export_belief())
+        prediction = await engine.predict(choice.action)
+        actions = tuple(
+            ActionValue(name, float(value), int(plans), 0.0)
+            for name, value, plans in zip(
+                self.policy.header.actions, choice.values, choice.plans, strict=True
+            )
+        )
+        spent_s = time.perf_counter() - begun_s
+        horizon = engine.description.horizon
+        return Plan(
+            choice.action, 0, horizon, actions, prediction.predicted, spent_s, planner="policy"
+        )

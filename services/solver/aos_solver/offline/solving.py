@@ -1,0 +1,124 @@
+"""Runs the solver on a model: bounds over time, and the alpha vectors in the end."""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+
+from aos_protocol.errors import ModelError, PlanningError
+from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_solver.offline.alpha_vectors import AlphaVectors, read_alpha_vectors
+from aos_solver.offline.explicit_model import ExplicitModel
+from aos_solver.offline.solver_program import build_solver
+
+__all__ = ["Bounds", "Solution", "SolvingLimits", "solve"]
+
+_ADDRESS_SPACE_BYTES = 16 << 30
+_LINE_LIMIT_BYTES = 1 << 16
+
+
+class SolvingLimits(msgspec.Struct, frozen=True, kw_only=True):
+    """When to stop: bounds nearer than `precision`, `cpu_s` seconds of computing, so much memory."""
+
+    precision: float = 1e-3
+    cpu_s: float = 60.0
+    memory_bytes: int = 2 << 30
+
+
+class Bounds(msgspec.Struct, frozen=True):
+    """What is known after so many seconds of computing: the policy gives at least `lower` from the start,
+    and none gives more than `upper`; both discounted."""
+
+    seconds: float
+    lower: float
+    upper: float
+    vectors: int
+    beliefs: int
+    backups: int
+    ending: Literal["", "precision", "time", "memory", "stopped"]
+
+    @property
+    def gap(self) -> float:
+        return self.upper - self.lower
+
+
+class Solution(msgspec.Struct, frozen=True):
+    """The last bounds, all bounds in their order, and the policy."""
+
+    bounds: Bounds
+    history: tuple[Bounds, ...]
+    vectors: AlphaVectors
+
+
+async def solve(
+    model: ExplicitModel,
+    limits: SolvingLimits,
+    *,
+    cache_dir: Path,
+    on_progress: Callable[[Bounds], None] = lambda bounds: None,
+    stop: asyncio.Event | None = None,
+) -> Solution:
+    """Solves until a limit is reached or `stop` is set, and keeps the best so far.
+
+    PlanningError AOS320 for a discount that it cannot do, AOS302 if the mission is over at the start.
+    """
+    _check(model)
+    executable = await build_solver(cache_dir)
+    with tempfile.TemporaryDirectory(prefix="aos-solve-") as folder:
+        flat, found = Path(folder) / "model.flat", Path(folder) / "vectors"
+        await asyncio.to_thread(model.write_flat, flat)
+        numbers = [repr(limits.precision), repr(limits.cpu_s), str(limits.memory_bytes)]
+        command = [str(executable), str(flat), str(found), *numbers]
+        history = await _run(command, on_progress, stop or asyncio.Event())
+        vectors = read_alpha_vectors(found, len(model.actions))
+    return Solution(history[-1], tuple(history), vectors)
+
+
+def _check(model: ExplicitModel) -> None:
+    if not 0 <= model.discount < 1:
+        raise PlanningError(
+            f"{model.name} has the discount {model.discount:g}, and values without an end have no bounds",
+            code="AOS320",
+            hint="Solve it with a discount below 1, for example --discount 0.99",
+        )
+    if not model.starts:
+        raise PlanningError(f"{model.name} is over at the start", code="AOS302")
+
+
+async def _run(
+    command: list[str], on_progress: Callable[[Bounds], None], stop: asyncio.Event
+) -> list[Bounds]:
+    """All lines of the solver; it ends in order when its input is closed."""
+    child = await Child.start(
+        guarded(command, Limits(address_space_bytes=_ADDRESS_SPACE_BYTES)),
+        name="sarsop",
+        stdin=PIPE,
+        stdout=PIPE,
+        stderr=PIPE,
+        stream_limit_bytes=_LINE_LIMIT_BYTES,
+    )
+    history: list[Bounds] = []
+    stopping = asyncio.create_task(_close_when(stop, child))
+    try:
+        while line := await child.stdout.readline():
+            history.append(msgspec.json.decode(line, type=Bounds))
+            on_progress(history[-1])
+        problem = (await child.stderr.read()).decode(errors="replace").strip()
+        status = await child.wait()
+    finally:
+        stopping.cancel()
+        await child.stop()
+    if status != 0 or not history:
+        reason = problem or f"it ended with status {status}"
+        raise ModelError(f"the solver failed: {reason}", code="AOS213")
+    return history
+
+
+async def _close_when(stop: asyncio.Event, child: Child) -> None:
+    await stop.wait()
+    child.stdin.close()

@@ -1,0 +1,26 @@
+"""What model code prints goes on to our error output, up to a limit: no loop of a document fills a disk."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import BinaryIO
+
+__all__ = ["PRINT_LIMIT_BYTES", "pass_on"]
+
+PRINT_LIMIT_BYTES = 1_000_000
+"""For each engine child."""
+
+_CHUNK_BYTES = 65536
+
+
+async def pass_on(printed: asyncio.StreamReader, out: BinaryIO) -> None:
+    """Copies until the end. Past the limit it reads on, so that the model never waits, and says so once."""
+    left = PRINT_LIMIT_BYTES
+    while chunk := await printed.read(_CHUNK_BYTES):
+        if left <= 0:
+            continue
+        out.write(chunk[:left])
+        left -= len(chunk)
+        if left <= 0:
+            out.write(b"\naos: model code printed more than 1 MB; the rest is left out\n")
+        out.flush()

@@ -1,0 +1,87 @@
+"""Edits for pointers and references to the objects of a state.
+
+What `state.<Type>Objects` points at is const where its state is; documents write `tCup*` for it everywhere.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from aos_runtime.snippets import Cpp, Declaration, DeclarationKind, Extent, strip_comments
+
+__all__ = ["object_edits"]
+
+_POINTER = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*\*\s*$")
+_REFERENCE = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*&\s*$")
+_NO_OBJECT = frozenset({"", "0", "NULL", "nullptr", "{}", "{nullptr}"})
+_STATES = frozenset({"state", "state_", "state__"})
+_ALWAYS_WRITTEN = "state__"
+
+
+def object_edits(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, int, str]]:
+    """Replacements (start, end, text) by offsets.
+
+    - `tCup* cup = state.tCupObjects[0]` and a lambda's `tCup* cup` become `auto* cup`
+    - `tCup* best = NULL` becomes `aos::Pointer<tCup, decltype(state)> best`, of the copy that it is set from
+    - `vector<tCup*> cups` becomes `vector<aos::Pointer<tCup, decltype(state)>> cups` in the same way
+    - `tCup& cup = *state.tCupObjects[0]` becomes `auto& cup`
+    """
+    if not object_types:
+        return
+    for declaration in cpp.declarations:
+        before = cpp.code[: declaration.extent.start]
+        pointer, reference = _POINTER.search(before), _REFERENCE.search(before)
+        initial = declaration.initial
+        if pointer is not None and pointer[2] in object_types and not pointer[1]:
+            copy = _copy_set_from(cpp, declaration, pointer[2])
+            if not _waits_for_its_object(cpp, declaration):
+                yield pointer.start(2), pointer.end(2), "auto"
+            elif copy:
+                yield pointer.start(2), len(before.rstrip()), f"aos::Pointer<{pointer[2]}, decltype({copy})>"
+        elif reference is not None and reference[2] in object_types and not reference[1]:
+            is_object = initial is not None and bool(_copies_in(cpp, reference[2], initial))
+            yield from [(reference.start(2), reference.end(2), "auto")] if is_object else []
+    yield from _within_types(cpp, object_types)
+
+
+def _within_types(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int, int, str]]:
+    """Pointers among the arguments of a template or a function's type, and as what a lambda returns."""
+    code = strip_comments(cpp.code)
+    for name in sorted(object_types):
+        copies = _copies_in(cpp, name) - {_ALWAYS_WRITTEN}
+        if len(copies) != 1:
+            continue
+        pattern = rf"(?<!const )\b{name}\s*\*(?=\s*[,>)])|(?<=->){name}\s*\*|(?<=-> ){name}\s*\*"
+        for found in re.finditer(pattern, code):
+            if not any(literal.start <= found.start() < literal.end for literal in cpp.literals):
+                yield found.start(), found.end(), f"aos::Pointer<{name}, decltype({min(copies)})>"
+
+
+def _waits_for_its_object(cpp: Cpp, declaration: Declaration) -> bool:
+    """Whether a pointer starts without an object, and so without a type to take over."""
+    if declaration.kind is not DeclarationKind.VARIABLE:
+        return False
+    initial = declaration.initial
+    if initial is None:
+        return not cpp.code[declaration.extent.end :].lstrip().startswith(":")  # Else it is of a loop.
+    return cpp.code[initial.start : initial.end].strip() in _NO_OBJECT
+
+
+def _copy_set_from(cpp: Cpp, declaration: Declaration, type_name: str) -> str:
+    """The copy of the state whose objects a pointer is set to; empty where `tCup*` is right already."""
+    assigned = [m.assigned for m in cpp.mentions if m.path == (declaration.name,) and m.assigned is not None]
+    direct = {copy for extent in assigned for copy in _copies_in(cpp, type_name, extent)}
+    copies = direct or _copies_in(cpp, type_name)
+    return min(copies) if len(copies) == 1 and _ALWAYS_WRITTEN not in copies else ""
+
+
+def _copies_in(cpp: Cpp, type_name: str, extent: Extent | None = None) -> set[str]:
+    """The copies of the state whose objects are mentioned, in a part of the code or anywhere in it."""
+    return {
+        mention.path[0]
+        for mention in cpp.mentions
+        if mention.path[0] in _STATES
+        and mention.path[1:2] == (f"{type_name}Objects",)
+        and (extent is None or extent.start <= mention.extent.start < extent.end)
+    }

@@ -1,0 +1,248 @@
+"""A mission through the real middleware and a real engine: what its runs tell, and low-level values."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest_asyncio
+from models import built_text, engine_of
+from scripted_models import text_project
+
+from aos_middleware.settings import Settings
+from aos_protocol.documents import Project
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    Activate,
+    BeliefSummary,
+    DecisionRecord,
+    MappingQuery,
+    MappingState,
+    Message,
+    MissionState,
+    Outcome,
+    ProjectQuery,
+    ProjectRevision,
+    SkillCall,
+    SkillResult,
+)
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+from aos_runtime.clock import SystemClock
+from aos_solver.build import BuiltModel
+from aos_solver.endings import MissionLimits
+from aos_solver.hot_plug import RunningModel
+from aos_solver.mission import Mission
+from aos_solver.search import Search
+
+PATIENCE_S = 20.0
+
+STOCK = {
+    "stock.ef": """project: stock
+horizon: 3
+discount: 0.95
+
+define_type: Shelf
+variable: anyValue place of Pose
+
+action_parameter: Shelf left
+code:
+state.left.place = ___left;
+
+state_variable: int items
+
+state_variable: bool is_tidy
+
+reward_code:
+if (state.items > 3 && state.is_tidy) {
+    __reward = 10;
+    __isGoalState = true;
+}
+""",
+    "stock.lf": """project: stock
+
+define_type: Pose
+variable: float x
+
+constant: Pose ___left
+code:
+___left.x = 1.0
+""",
+    "count.sd": """project: stock
+parameter: Shelf shelf
+
+dynamic_model:
+state__.items = state.items + (AOS.Bernoulli(0.5) ? 4 : 1);
+__moduleResponse = counted;
+__reward = -1;
+state_given_observation:
+state___.is_tidy = state__.is_tidy || order > 0.5;
+""",
+    "count.am": """project: stock
+
+response: counted
+response_rule: True
+assign_variable: shelf.place
+value: Pose(x=seen_x)
+
+module_activation: skill
+path: /count
+parameter: x
+code:
+place.x
+
+local_variable: place
+action_parameter: shelf.place
+
+local_variable: items
+type: int
+from_ros_service_response: true
+code:
+items = __input.items
+
+local_variable: order
+type: float
+from_ros_service_response: true
+code:
+order = __input.order
+
+local_variable: seen_x
+from_ros_service_response: true
+code:
+seen_x = __input.x
+""",
+}
+
+RUNS: tuple[dict[str, Any], ...] = (
+    {"items": 2, "order": 0.1, "x": 1.25},
+    {"items": 2, "order": None, "x": 1.5},
+    {"items": 7, "order": 0.9, "x": 1.75},
+)
+"""What the robot finds, run by run; the second time it cannot tell the order."""
+
+
+class Robot:
+    """A middleware process, and an adapter that answers from `RUNS`; the ports of a mission."""
+
+    clock = SystemClock()
+
+    def __init__(self, bus: Bus, keys: Keys) -> None:
+        self._bus = bus
+        self._keys = keys
+        self.calls: list[dict[str, Any]] = []
+        self.outcomes: list[Outcome] = []
+        self.records: list[DecisionRecord] = []
+
+    async def run_skill(self, call: SkillCall, _: str) -> SkillResult:
+        self.calls.append(call.fields)
+        return SkillResult(call.id, RUNS[len(self.calls) - 1])
+
+    def journal(self, kind: str, payload: Message) -> None:
+        if isinstance(payload, Outcome):
+            self.outcomes.append(payload)
+
+    def publish_record(self, record: DecisionRecord) -> None:
+        if record.outcome is not None:
+            self.records.append(record)
+
+    def publish_state(self, state: MissionState) -> None:
+        """The mission keeps its own."""
+
+    async def activate(self, request: Activate) -> Outcome:
+        key = self._keys.activate(request.skill)
+        return await self._bus.ask(key, request, Outcome, timeout_s=PATIENCE_S)
+
+    async def newest_model(self, running: RunningModel) -> RunningModel:
+        return running
+
+    async def await_mappings(self) -> None:
+        async with asyncio.timeout(PATIENCE_S):
+            while True:
+                state = await self._bus.ask(
+                    self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=PATIENCE_S
+                )
+                if state.skills:
+                    return
+                await asyncio.sleep(0.02)
+
+
+async def start_middleware(bus: Bus, keys: Keys, endpoint: str, run_dir: Path) -> Child:
+    """A middleware process that can be asked."""
+    settings = Settings(
+        robot=keys.robot, service="middleware", endpoint=endpoint, run_dir=str(run_dir), project="stock"
+    )
+    path = run_dir / "middleware.json"
+    path.write_bytes(msgspec.json.encode(settings))
+    child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)])
+    async with asyncio.timeout(PATIENCE_S), bus.presence(keys.live("middleware")) as present:
+        async for _, is_alive in present:
+            if is_alive:
+                break
+    return child
+
+
+@pytest_asyncio.fixture
+async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[Robot]:
+    project: Project = text_project(STOCK)
+
+    async def answer(_: ProjectQuery, __: str) -> ProjectRevision:
+        return ProjectRevision(1, "digest", project)
+
+    robot = Robot(bus, keys)
+    await other.answer(keys.project, ProjectQuery, answer)
+    await other.answer(keys.call("/count"), SkillCall, robot.run_skill)
+    middleware = await start_middleware(bus, keys, endpoint, tmp_path)
+    try:
+        await robot.await_mappings()
+        yield robot
+    finally:
+        await middleware.stop(5.0)
+
+
+@pytest_asyncio.fixture
+async def stock(cache_dir: Path) -> BuiltModel:
+    return await built_text(STOCK, cache_dir)
+
+
+async def mission(built: BuiltModel, robot: Robot) -> MissionState:
+    limits = MissionLimits(step_limit=len(RUNS))
+    async with engine_of(built) as engine:
+        model = RunningModel(1, built, engine)
+        search = Search(simulations=200, seed=1)
+        return await Mission("m", 1, model, limits, search, robot, activation_timeout_s=10.0).run()
+
+
+def values(belief: BeliefSummary, variable: str) -> dict[str, float]:
+    return next(marginal.values for marginal in belief.marginals if marginal.variable == variable)
+
+
+async def test_the_belief_follows_what_the_robot_finds_until_the_goal(
+    robot: Robot, stock: BuiltModel
+) -> None:
+    state = await mission(stock, robot)
+    assert (state.ending, state.step) == ("goal", 3)
+    first, second, third = robot.records
+    assert values(first.belief, "items") == {"2": 1.0}, "the model alone holds 1 and 4 possible"
+    assert values(first.belief, "is_tidy") == {"false": 1.0}
+    assert values(second.belief, "items") == {"6": 0.5, "3": 0.5}
+    assert second.remark.endswith("do not correct the belief: order has no value")
+    assert (first.remark, third.remark) == ("", "")
+    assert third.belief.goal_probability == 1.0
+
+
+async def test_a_low_level_value_that_came_with_a_response_is_given_to_the_next_call(
+    robot: Robot, stock: BuiltModel
+) -> None:
+    await mission(stock, robot)
+    assert robot.calls == [{"x": 1.0}, {"x": 1.25}, {"x": 1.5}]
+
+
+async def test_the_journal_holds_what_corrected_the_belief(robot: Robot, stock: BuiltModel) -> None:
+    await mission(stock, robot)
+    first = robot.outcomes[0]
+    assert (first.local_variables["items"], first.local_variables["order"]) == ("2", "0.1")
+    assert first.assigned == {"left.place": {"x": 1.25}}

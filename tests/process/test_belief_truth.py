@@ -1,0 +1,225 @@
+"""Beliefs against Bayes' rule by hand: exact where steps can be enumerated, and how far off where they cannot."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+STATES, ACTIONS, RESPONSES = 5, 2, 3
+
+READING = """project: {project}
+
+response: yes
+response_rule: is_on
+response: no
+response_rule: True
+
+module_activation: skill
+path: /read
+{parameter}
+local_variable: is_on
+type: bool
+from_ros_service_response: true
+code:
+is_on = __input.is_on
+"""
+PARAMETER = """parameter: number
+code:
+chosen
+
+local_variable: chosen
+action_parameter: number
+"""
+
+
+def reading(project: str, *, has_parameter: bool = False) -> str:
+    """The mapping of a skill that answers yes or no."""
+    return READING.format(project=project, parameter=PARAMETER if has_parameter else "")
+
+
+def weights(dice: random.Random, count: int) -> list[float]:
+    """A distribution in which some outcomes are impossible."""
+    drawn = [dice.random() * (dice.random() > 0.3) for _ in range(count)]
+    drawn[dice.randrange(count)] += 0.5
+    return [weight / sum(drawn) for weight in drawn]
+
+
+def braces(values: list[float]) -> str:
+    return "{" + ", ".join(repr(value) for value in values) + "}"
+
+
+class RandomModel:
+    """A chain of hidden states with as many skills as it has actions, drawn from a seed."""
+
+    def __init__(self, seed: int) -> None:
+        dice = random.Random(seed)
+        self.start = weights(dice, STATES)
+        self.moves = [[weights(dice, STATES) for _ in range(STATES)] for _ in range(ACTIONS)]
+        self.sights = [[weights(dice, RESPONSES) for _ in range(STATES)] for _ in range(ACTIONS)]
+
+    def documents(self) -> dict[str, str]:
+        start = f"state.at = AOS.SampleDiscrete(vector<double>{braces(self.start)});"
+        files = {
+            "chain.ef": "project: chain\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: int at\n\n"
+            f"initial_belief:\n{start}\n"
+        }
+        rules = "\n".join(f"response: r{r}\nresponse_rule: seen == {r}" for r in range(RESPONSES))
+        for action in range(ACTIONS):
+            moves = ", ".join(braces(row) for row in self.moves[action])
+            sights = ", ".join(braces(row) for row in self.sights[action])
+            files[f"act{action}.sd"] = (
+                "project: chain\n\ndynamic_model:\n"
+                f"const vector<vector<double>> moves = {{{moves}}};\n"
+                f"const vector<vector<double>> sights = {{{sights}}};\n"
+                "state__.at = AOS.SampleDiscrete(moves[state.at]);\n"
+                "const int responses[] = {" + ", ".join(f"r{r}" for r in range(RESPONSES)) + "};\n"
+                "__moduleResponse = responses[AOS.SampleDiscrete(sights[state__.at])];\n"
+            )
+            files[f"act{action}.am"] = (
+                f"project: chain\n\n{rules}\n\nmodule_activation: skill\npath: /act{action}\n\n"
+                "local_variable: seen\ntype: int\nfrom_ros_service_response: true\ncode:\nseen = __input.seen\n"
+            )
+        return files
+
+    def updated(self, belief: list[float], action: int, response: int) -> tuple[list[float], float]:
+        """The posterior and the probability of the response."""
+        joint = [
+            sum(belief[before] * self.moves[action][before][after] for before in range(STATES))
+            * self.sights[action][after][response]
+            for after in range(STATES)
+        ]
+        total = sum(joint)
+        return [weight / total if total else 0.0 for weight in joint], total
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+async def test_a_random_chain_is_followed_as_bayes_rule_says(seed: int, cache_dir: Path) -> None:
+    model, dice = RandomModel(seed), random.Random(seed)
+    belief = model.start
+    async with engine_of(await built_text(model.documents(), cache_dir)) as engine:
+        for _ in range(20):
+            action = dice.randrange(ACTIONS)
+            odds = [model.updated(belief, action, response)[1] for response in range(RESPONSES)]
+            response = dice.choices(range(RESPONSES), odds)[0]
+            belief, probability = model.updated(belief, action, response)
+            update = await engine.update(f"act{action}", f"r{response}")
+            assert update.probability == pytest.approx(probability, abs=1e-9)
+            assert update.summary.is_exact
+            assert update.summary.error_bound == 0
+            found = update.summary.marginals[0].values
+            assert [found.get(str(state), 0.0) for state in range(STATES)] == pytest.approx(belief, abs=1e-9)
+
+
+LAMPS = 18
+MANY_STATES = {
+    "lamps.ef": f"""project: lamps
+horizon: 5
+discount: 0.95
+
+state_variable: bool lamps []
+code:
+state.lamps.assign({LAMPS}, false);
+
+initial_belief:
+for (int i = 0; i < {LAMPS}; i++) state.lamps[i] = AOS.Bernoulli(0.02 + 0.02 * i);
+""",
+    "read.sd": f"""project: lamps
+parameter: int number
+
+available_parameters_code:
+for (int i = 0; i < {LAMPS}; i++) __possibleParameters.push_back(std::make_tuple(i));
+
+dynamic_model:
+__moduleResponse = AOS.Bernoulli(state.lamps[number] ? 0.9 : 0.2) ? yes : no;
+""",
+    "read.am": reading("lamps", has_parameter=True),
+}
+"""2^18 states, more than a belief holds; each lamp is independent of the others."""
+
+
+async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound(cache_dir: Path) -> None:
+    async with engine_of(await built_text(MANY_STATES, cache_dir)) as engine:
+        first = await engine.summary()
+        update = await engine.update("read(number=9)", "yes")
+    assert not first.is_exact
+    assert 0 < first.error_bound < 0.1
+    assert first.effective_states < first.states <= 100_000
+    prior = [0.02 + 0.02 * lamp for lamp in range(LAMPS)]
+    assert update.probability == pytest.approx(0.9 * prior[9] + 0.2 * (1 - prior[9]), abs=first.error_bound)
+    posterior = [*prior]
+    posterior[9] = 0.9 * prior[9] / (0.9 * prior[9] + 0.2 * (1 - prior[9]))
+    for lamp, marginal in enumerate(update.summary.marginals):
+        assert marginal.values.get("true", 0.0) == pytest.approx(posterior[lamp], abs=update.summary.error_bound)
+    # The light states that are dropped make room for others like them, so the error is far below its bound.
+    assert update.summary.marginals[9].values["true"] == pytest.approx(posterior[9], abs=0.005)
+
+
+RARE = {
+    "rare.ef": """project: rare
+horizon: 5
+discount: 0.95
+
+state_variable: double level
+
+initial_belief:
+state.level = AOS.SampleUniform(0, 1);
+""",
+    "read.sd": """project: rare
+
+dynamic_model:
+state__.level = AOS.SampleUniform(0, 1);
+bool is_open = AOS.Bernoulli(0.02);
+__moduleResponse = is_open && AOS.Bernoulli(0.01 * state__.level) ? yes : no;
+""",
+    "read.am": reading("rare"),
+}
+"""A response of probability 1 in 10,000, decided by the last two draws after a continuous one."""
+
+
+async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for(cache_dir: Path) -> None:
+    async with engine_of(await built_text(RARE, cache_dir)) as engine:
+        update = await engine.update("read", "yes")
+    assert update.probability == pytest.approx(1e-4, rel=0.05)
+    assert update.summary.error_bound == 1
+    assert update.summary.effective_states > 1000
+
+
+CARDS = 40
+DEPLETING = {
+    "cards.ef": f"""project: cards
+horizon: 5
+discount: 0.95
+
+state_variable: bool cards []
+code:
+state.cards.assign({CARDS}, false);
+
+initial_belief:
+for (int i = 0; i < {CARDS}; i++) state.cards[i] = AOS.Bernoulli(0.5);
+""",
+    "turn.sd": f"""project: cards
+parameter: int number
+
+available_parameters_code:
+for (int i = 0; i < {CARDS}; i++) __possibleParameters.push_back(std::make_tuple(i));
+
+dynamic_model:
+__moduleResponse = state.cards[number] ? yes : no;
+""",
+    "turn.am": reading("cards", has_parameter=True),
+}
+"""2^40 states, of which each activation rules out half: 5,000 particles last for 12 of 40."""
+
+
+async def test_particles_outlive_more_observations_than_they_can_tell_apart(cache_dir: Path) -> None:
+    dice = random.Random(1)
+    hand = [dice.random() < 0.5 for _ in range(CARDS)]
+    async with engine_of(await built_text(DEPLETING, cache_dir)) as engine:
+        for card, is_on in enumerate(hand):
+            update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
+            assert not update.is_impossible, card
+    for card, marginal in enumerate(update.summary.marginals):
+        assert marginal.values.get("true" if hand[card] else "false", 0.0) > 0.9, card

@@ -1,0 +1,58 @@
+"""The benchmark bundles say what the literature says: beliefs and rewards along random walks."""
+
+from __future__ import annotations
+
+import math
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from models import built_bundle, engine_of
+from reference_problems import MODELS, expected_reward, initial_belief, observed
+
+from aos_registry.load import load_bundle
+
+WALKS = 6
+STEPS_OF_A_WALK = 15
+
+
+@pytest.mark.parametrize("problem", MODELS)
+async def test_rewards_observations_and_beliefs_are_the_literatures(
+    problem: str, bundles: Path, cache_dir: Path
+) -> None:
+    model = MODELS[problem]
+    draws = random.Random(f"walks of {problem}")
+    async with engine_of(await built_bundle(bundles / "bench" / problem, cache_dir)) as engine:
+        assert [action.name for action in engine.description.actions] == sorted(model.actions)
+        for walk in range(WALKS):
+            belief = initial_belief(model)
+            await engine.reset_belief()
+            await engine.reset_world(seed=walk)
+            for _ in range(STEPS_OF_A_WALK):
+                for value in (await engine.exact(horizon=1)).actions:
+                    assert value.q == pytest.approx(expected_reward(model, belief, value.action), abs=1e-9)
+                index = draws.randrange(len(model.actions))
+                action = engine.description.actions[index].name
+                step = await engine.step_world(index)
+                probability, belief = observed(model, belief, action, step.response)
+                update = await engine.update(action, step.response)
+                assert update.probability == pytest.approx(probability, abs=1e-9)
+                if not belief:
+                    assert step.ending == "goal"
+                    break
+                entropy = -sum(weight * math.log(weight) for weight in belief.values())
+                assert update.summary.entropy == pytest.approx(entropy, abs=1e-6)
+
+
+def test_the_rocksample_bundles_are_as_their_script_writes_them(bundles: Path) -> None:
+    script = bundles / "bench" / "write_rocksamples.py"
+    subprocess.run([sys.executable, script, "--check"], check=True, timeout=30)
+
+
+@pytest.mark.parametrize("problem", [*MODELS, "rocksample-11-11", "rocksample-15-15", "pocman"])
+def test_the_benchmark_bundles_have_no_mistakes(problem: str, bundles: Path) -> None:
+    loaded = load_bundle(bundles / "bench" / problem)
+    assert loaded.project is not None
+    assert not loaded.diagnostics

@@ -1,0 +1,86 @@
+"""`aos bench`: the baselines are of the same problems, and its report can be read."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from models import built_bundle, engine_of
+
+from aos_deploy.bench.baseline import PROBLEMS, Baselines
+from aos_deploy.bench.rows import figure, with_ratios
+from aos_solver.compiler import find_compiler
+
+AOS = Path(sys.executable).parent / "aos"
+
+
+def run_bench(cache_dir: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir)}
+    return subprocess.run(
+        [AOS, "bench", *arguments], capture_output=True, text=True, timeout=200, env=environment
+    )
+
+
+@pytest.fixture(scope="module")
+def report(cache_dir: Path) -> dict[str, Any]:
+    done = run_bench(
+        cache_dir, "tiger", "--quick", "--runs", "2", "--time", "0.01", "--planner", "pomcp", "--json"
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_a_report_says_where_and_how_it_was_measured(report: dict[str, Any]) -> None:
+    machine = report["machine"]
+    assert machine["processor"]
+    assert machine["date"].endswith("UTC")
+    assert machine["versions"]["aos"]
+    assert (machine["seed"], machine["budget_s"]) == (1, 0.01)
+
+
+def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any]) -> None:
+    keys = {"name", "problem", "metric", "value", "stderr", "unit", "against", "ratio"}
+    assert all(row.keys() == keys for row in report["rows"])
+    ours = {(row["metric"], row["against"]): row for row in report["rows"] if row["name"] == "aos"}
+    assert ours["steps", "by hand"]["ratio"] > 0
+    assert ours["simulations", "by hand"]["ratio"] > 0
+    assert ours["return, pomcp", ""]["unit"] == "2 runs"
+
+
+def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path) -> None:
+    done = run_bench(cache_dir, "lion")
+    assert done.returncode == 2
+    assert "lion is none of tiger, tag," in " ".join(done.stderr.split())
+
+
+async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path) -> None:
+    """With random actions, in millions of steps each."""
+    async with Baselines(await find_compiler()) as baselines:
+        for problem in PROBLEMS:
+            steps = (await baselines.measure(problem, 0.05, seed=1))[0]
+            async with engine_of(await built_bundle(bundles / "bench" / problem, cache_dir)) as engine:
+                walked = await engine.rate(0.2, seed=2)
+            assert walked.mean_reward == pytest.approx(steps.check, rel=0.02), problem
+
+
+def test_ratios_are_ours_over_theirs() -> None:
+    rows = [
+        figure("aos", "tiger", "steps", [90.0, 110.0], "1/s"),
+        figure("by hand", "tiger", "steps", [200.0], "1/s"),
+        figure("pomdp-py", "tiger", "steps", [2.0], "1/s"),
+        figure("aos", "tag", "steps", [50.0], "1/s"),
+    ]
+    compared = [(row.name, row.problem, row.against, row.ratio) for row in with_ratios(rows)]
+    assert compared == [
+        ("aos", "tiger", "by hand", 0.5),
+        ("aos", "tiger", "pomdp-py", 50.0),
+        ("by hand", "tiger", "", None),
+        ("pomdp-py", "tiger", "", None),
+        ("aos", "tag", "", None),
+    ]
+    assert rows[0].stderr == pytest.approx(10)

@@ -1,0 +1,113 @@
+"""DESPOT: reproducible, within its budget, as good as the truth on problems whose truth is known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal
+
+import pytest
+from models import built_bundle, built_text, engine_of
+
+from aos_solver.endings import MissionLimits
+from aos_solver.search import Search
+from aos_solver.simulation import simulate_mission
+
+COUNTER = {
+    "counter.ef": """project: counter
+horizon: 10
+discount: 0.95
+
+state_variable: double level
+
+initial_belief:
+state.level = AOS.SampleUniform(0, 1);
+""",
+    "bet.sd": """project: counter
+
+dynamic_model:
+__reward = state.level > 0.8 ? 10 : -10;
+__moduleResponse = done;
+""",
+    "wait.sd": """project: counter
+
+dynamic_model:
+__reward = -1;
+state__.level = AOS.SampleUniform(0, 1);
+__moduleResponse = done;
+""",
+    "stop.sd": """project: counter
+
+dynamic_model:
+__moduleResponse = done;
+""",
+} | {
+    f"{skill}.am": f"""project: counter
+
+response: done
+response_rule: True
+
+module_activation: skill
+path: /{skill}
+"""
+    for skill in ("bet", "wait", "stop")
+}
+"""A level that is drawn anew by waiting: to bet loses 6 on average, to wait 1, to stop nothing."""
+
+
+async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Path, cache_dir: Path) -> None:
+    built = await built_bundle(bundles / "bench" / "tag", cache_dir)
+    plans = []
+    for _ in range(2):
+        async with engine_of(built) as engine:
+            plans.append(await engine.plan(simulations=20_000, seed=3, planner="despot"))
+    assert plans[0].actions == plans[1].actions
+    assert plans[0].planner == "despot"
+
+
+async def test_the_tiger_is_listened_for_and_its_value_is_not_flattered(bundles: Path, cache_dir: Path) -> None:
+    async with engine_of(await built_bundle(bundles / "bench" / "tiger", cache_dir)) as engine:
+        first = await engine.plan(simulations=100_000, seed=1, planner="despot")
+        for _ in range(3):
+            await engine.update("listen", "tiger_left")
+        later = await engine.plan(simulations=100_000, seed=2, planner="despot")
+    assert first.best.action == "listen"
+    assert -20 < first.best.q < 19.4  # what always listening and what the best policy earn
+    assert later.best.action == "open(door=right_door)"
+
+
+async def test_an_opponent_that_flees_is_tagged(bundles: Path, cache_dir: Path) -> None:
+    async with engine_of(await built_bundle(bundles / "bench" / "tag", cache_dir)) as engine:
+        search = Search(simulations=20_000, seed=1, planner="despot")
+        limits = MissionLimits(goal_probability=0.999, step_limit=90)
+        run = await simulate_mission(engine, search, limits)
+    assert run.ending == "goal"
+    assert run.discounted_return > -16  # random actions end at some -50
+
+
+async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts(cache_dir: Path) -> None:
+    async with engine_of(await built_text(COUNTER, cache_dir)) as engine:
+        plan = await engine.plan(simulations=20_000, seed=1, planner="despot")
+        chosen = await engine.plan(simulations=2_000, seed=1, planner="auto")
+    assert plan.best.action == "stop"
+    assert chosen.planner == "pomcp"
+    assert "too many states" in chosen.why
+
+
+async def test_auto_takes_despot_where_bounds_can_be_had(bundles: Path, cache_dir: Path) -> None:
+    async with engine_of(await built_bundle(bundles / "bench" / "rocksample-7-8", cache_dir)) as engine:
+        plan = await engine.plan(simulations=5_000, seed=1, planner="auto")
+    assert plan.planner == "despot"
+    # 49 cells and 8 rocks; what the rover has learnt does not count.
+    assert f"{49 * 2**8} states" in plan.why
+
+
+@pytest.mark.parametrize("planner", ["despot", "auto"])
+async def test_a_belief_that_has_ended_needs_no_decision(
+    planner: Literal["despot", "auto"], bundles: Path, cache_dir: Path
+) -> None:
+    async with engine_of(await built_bundle(bundles / "bench" / "rocksample-7-8", cache_dir)) as engine:
+        for _ in range(7):
+            summary = (await engine.update("move(direction=east)", "moved")).summary
+        plan = await engine.plan(simulations=1_000, seed=1, planner=planner)
+    assert summary.goal_probability == 1
+    assert {action.q for action in plan.actions} == {0}

@@ -1,0 +1,85 @@
+"""What is said when an engine cannot go on: another state, a strange response, an unknown command."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from asyncio.subprocess import PIPE
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+from aos_protocol.errors import ModelError
+from aos_registry.load import load_files
+from aos_solver.build import BuiltModel
+from aos_solver.engine import Engine
+from aos_solver.hot_plug import ModelShelf, RunningModel
+from aos_solver.printed import PRINT_LIMIT_BYTES
+
+LAMP = {
+    "lamp.ef": """project: lamp
+horizon: 3
+state_variable: bool is_on
+reward_code:
+if (state.is_on) __reward = 1;
+""",
+    "press.sd": """project: lamp
+dynamic_model:
+state__.is_on = !state.is_on;
+__moduleResponse = clicked;
+""",
+    "press.am": """project: lamp
+response: clicked
+response_rule: True
+module_activation: skill
+path: /press
+""",
+}
+
+
+async def started(built: BuiltModel) -> Engine:
+    return await Engine.start(built, seed=1)
+
+
+async def revision() -> int:
+    return 1
+
+
+async def test_a_response_that_no_text_can_be_is_refused(cache_dir: Path) -> None:
+    async with engine_of(await built_text(LAMP, cache_dir)) as engine:
+        with pytest.raises(ModelError, match="tab or a line end") as caught:
+            await engine.update("press", "clicked\ttwice")
+    assert caught.value.code == "AOS310"
+
+
+async def test_documents_with_another_state_wait_for_another_mission(cache_dir: Path) -> None:
+    built = await built_text(LAMP, cache_dir)
+    shelf = ModelShelf(cache_dir, lambda remark: None, started, revision)
+    wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on")}
+    project = load_files({name: text.encode() for name, text in wider.items()}).project
+    assert project is not None
+    async with engine_of(built) as engine:
+        (refusal,) = await shelf.check(project, RunningModel(1, built, engine))
+    await shelf.close()
+    assert (refusal.code, refusal.span.file) == ("AOS112", "lamp.ef")
+
+
+async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:
+    built = await built_text(LAMP, cache_dir)
+    command = [str(built.executable), str(tmp_path / "blame"), "1", "widen"]
+    engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
+    answers, _ = await asyncio.wait_for(engine.communicate(b"sing\n"), timeout=60)
+    assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS213"
+
+
+async def test_a_model_that_prints_without_end_fills_no_log(
+    cache_dir: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    shouting = LAMP["press.sd"] + "printf(\"%s\\n\", string(4000, 'x').c_str());\n"
+    built = await built_text(LAMP | {"press.sd": shouting}, cache_dir)
+    async with engine_of(built) as engine:
+        await engine.plan(simulations=2000, seed=1)
+    printed = capfd.readouterr().err
+    assert "the rest is left out" in printed
+    assert PRINT_LIMIT_BYTES <= len(printed) < PRINT_LIMIT_BYTES + 10_000

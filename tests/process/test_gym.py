@@ -1,0 +1,135 @@
+"""Bundles as Gymnasium environments."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos[gym]'")
+
+import numpy as np
+from gymnasium.utils.env_checker import check_env
+
+from aos_deploy.gym import AosEnv, AosVectorEnv
+
+KETTLE = {
+    "kettle.ef": """project: kettle
+horizon: 5
+discount: 0.9
+state_variable: int degrees
+reward_code:
+if (state.degrees > 3) {
+    __reward = 10;
+    __isGoalState = true;
+}
+""",
+    "heat.sd": """project: kettle
+dynamic_model:
+if (AOS.Bernoulli(0.5)) state__.degrees++;
+__moduleResponse = state__.degrees > 1 ? warm : cold;
+__reward = -1;
+""",
+    "heat.am": """project: kettle
+response: cold
+response_rule: False
+response: warm
+response_rule: True
+module_activation: skill
+path: /heat
+""",
+}
+READING = {
+    "read.sd": """project: kettle
+dynamic_model:
+__moduleResponseStr = state.degrees > 1 ? "warm" : "cold";
+""",
+    "read.am": """project: kettle
+module_activation: skill
+path: /read
+local_variable: text
+type: string
+from_ros_service_response: true
+code:
+text = __input.text
+response_local_variable: text
+""",
+}
+
+
+@pytest.fixture
+def kettle(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    for name, text in KETTLE.items():
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def add_reading(folder: Path) -> Path:
+    for name, text in READING.items():
+        (folder / name).write_text(text)
+    return folder
+
+
+def test_gymnasiums_own_checks_pass(kettle: Path) -> None:
+    environment = AosEnv(kettle, max_episode_steps=20)
+    check_env(environment, skip_render_check=True)
+    environment.close()
+
+
+def test_an_episode_ends_at_the_goal_and_tells_it_in_words(kettle: Path) -> None:
+    environment = AosEnv(kettle)
+    observation, _ = environment.reset(seed=1)
+    assert observation == 0
+    total = steps = 0.0
+    is_over = False
+    while not is_over:
+        observation, reward, is_over, is_cut, info = environment.step(0)
+        total, steps = total + reward, steps + 1
+    assert total == 10 - steps
+    assert not is_cut
+    assert info == {"action": "heat", "response": "warm", "ending": "goal"}
+    assert environment.response_names[int(observation)] == "warm"
+    environment.close()
+
+
+def test_many_worlds_start_anew_when_they_are_over_and_repeat_with_their_seed(kettle: Path) -> None:
+    def story(seed: int) -> list[np.ndarray]:
+        first, _ = worlds.reset(seed=seed)
+        told = [first]
+        was_over = np.zeros(32, bool)
+        for _ in range(30):
+            observations, rewards, terminated, truncated, _ = worlds.step(worlds.action_space.sample())
+            assert (observations[was_over] == 0).all()
+            assert (rewards[was_over] == 0).all()
+            assert (terminated == (rewards == 9)).all()
+            was_over = terminated | truncated
+            told += [observations, rewards, terminated, truncated]
+        assert any(values.any() for values in told[3::4])
+        return told
+
+    worlds = AosVectorEnv(kettle, 32, max_episode_steps=6)
+    first, again, other = story(1), story(1), story(2)
+    assert all((left == right).all() for left, right in zip(first, again, strict=True))
+    assert any((left != right).any() for left, right in zip(first, other, strict=True))
+    worlds.close()
+
+
+def test_text_observations_are_bytes(kettle: Path) -> None:
+    environment = AosEnv(add_reading(kettle), max_episode_steps=20)
+    check_env(environment, skip_render_check=True)
+    environment.reset(seed=1)
+    observation, *_ = environment.step(environment.action_names.index("read"))
+    assert bytes(observation).rstrip(b"\0") == b"cold"
+    environment.close()
+
+
+def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> None:
+    command = [Path(sys.executable).parent / "aos", "gym", str(kettle), "--steps", "100", "--worlds", "10"]
+    text = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+    assert "actions       Discrete(1): heat" in text
+    assert "observations  Discrete(3): DefaultObservation, cold, warm" in text
+    program = text[text.index("from aos_deploy") :]
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)

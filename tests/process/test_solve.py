@@ -1,0 +1,294 @@
+"""Solving before the mission: bounds that are true, policies that keep them, and C that follows policies."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import subprocess
+from itertools import pairwise
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from models import built_bundle, built_text, engine_of
+
+from aos_protocol.errors import ModelError, PlanningError
+from aos_solver.compiler import find_compiler
+from aos_solver.endings import MissionLimits
+from aos_solver.offline.enumeration import Enumeration, enumerate_model
+from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
+from aos_solver.offline.graph_writers import c_header, graphviz
+from aos_solver.offline.policy import Policy, PolicyHeader, PolicySearch
+from aos_solver.offline.policy_graph import OVER, PolicyGraph, policy_graph
+from aos_solver.offline.problem_files import read_problem
+from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, solve
+from aos_solver.simulation import simulate_mission
+
+QUICK = SolvingLimits(precision=1e-3, cpu_s=1)
+
+
+@pytest.fixture
+def problems(root: Path) -> Path:
+    return root / "tests" / "data" / "problems"
+
+
+@pytest.fixture
+def published(root: Path) -> Path:
+    folder = root.parent / "shared" / "problems"
+    if not folder.is_dir():
+        pytest.skip("needs the published problem files in ../shared/problems, not part of this project")
+    return folder
+
+
+async def enumerated(bundle: Path, cache_dir: Path) -> Enumeration:
+    async with engine_of(await built_bundle(bundle, cache_dir)) as engine:
+        return await enumerate_model(engine)
+
+
+def saved(model: ExplicitModel, digest: str, states: tuple[str, ...], solution: Solution) -> Policy:
+    header = PolicyHeader(
+        model=model.name,
+        model_digest=digest,
+        discount=model.discount,
+        lower=solution.bounds.lower,
+        upper=solution.bounds.upper,
+        actions=model.actions,
+        states=states,
+    )
+    return Policy(header, solution.vectors)
+
+
+async def test_tiger_has_its_known_value(problems: Path, cache_dir: Path) -> None:
+    solution = await solve(read_problem(problems / "tiger.pomdp"), QUICK, cache_dir=cache_dir)
+    assert solution.bounds.ending == "precision"
+    assert solution.bounds.lower == pytest.approx(19.3714, abs=1e-3)
+    assert solution.bounds.lower <= solution.bounds.upper
+    assert solution.bounds.seconds < 0.5
+
+
+async def test_bounds_only_come_nearer(problems: Path, cache_dir: Path) -> None:
+    told: list[Bounds] = []
+    model = read_problem(problems / "rover.pomdpx")
+    solution = await solve(model, QUICK, cache_dir=cache_dir, on_progress=told.append)
+    assert tuple(told) == solution.history
+    assert all(a.lower <= b.lower and a.upper >= b.upper for a, b in pairwise(told))
+
+
+def random_model(seed: int) -> ExplicitModel:
+    """Two states, up to three actions and observations, anything else by chance."""
+    random = np.random.default_rng(seed)
+    actions, observations = (int(n) for n in random.integers(2, 4, 2))
+    rows = 2 * actions
+    return ExplicitModel(
+        name=f"random {seed}",
+        discount=float(random.uniform(0.5, 0.9)),
+        states=("a", "b"),
+        actions=tuple(f"do{n}" for n in range(actions)),
+        observations=tuple(f"see{n}" for n in range(observations)),
+        rewards=random.normal(size=(2, actions)).round(2),
+        outcomes=Ragged(
+            np.arange(rows + 1) * 2, np.tile([0, 1], rows), random.dirichlet([1, 1], rows).ravel()
+        ),
+        sensings=np.arange(2 * rows),
+        readings=Ragged(
+            np.arange(2 * rows + 1) * observations,
+            np.tile(np.arange(observations), 2 * rows),
+            random.dirichlet(np.ones(observations), 2 * rows).ravel(),
+        ),
+        starts=(StartBelief(1.0, np.array([0, 1]), np.array([0.3, 0.7])),),
+    )
+
+
+def value_on_a_grid(model: ExplicitModel, points: int = 801) -> float:
+    """The value of the start by value iteration over beliefs in two states, linear between the points."""
+    actions, observations = len(model.actions), len(model.observations)
+    transitions = model.outcomes.probabilities.reshape(2, actions, 2)
+    sensing = model.readings.probabilities.reshape(2, actions, 2, observations)
+    grid = np.linspace(0, 1, points)
+    beliefs = np.stack([1 - grid, grid], axis=1)
+    joint = transitions[..., None] * sensing
+    weights = np.einsum("ps,sato->paot", beliefs, joint)
+    chances = weights.sum(axis=-1)
+    following = np.divide(weights[..., 1], chances, out=np.zeros_like(chances), where=chances > 0)
+    values = np.zeros(points)
+    for _ in range(int(np.log(1e-7) / np.log(model.discount))):
+        later = (chances * np.interp(following, grid, values)).sum(axis=-1)
+        values = (beliefs @ model.rewards + model.discount * later).max(axis=1)
+    return float(np.interp(model.starts[0].probabilities[1], grid, values))
+
+
+@pytest.mark.parametrize("seed", range(5))
+async def test_random_models_have_the_value_that_value_iteration_finds(seed: int, cache_dir: Path) -> None:
+    """Observations here depend on the state that is left, too. A grid over-estimates a little."""
+    model = random_model(seed)
+    bounds = (await solve(model, QUICK, cache_dir=cache_dir)).bounds
+    value = value_on_a_grid(model)
+    assert bounds.gap < 0.05
+    assert bounds.lower - 1e-3 <= value <= bounds.upper + 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "cpu_s", "lower"),
+    [("Tiger", 0.05, 19.371), ("TagAvoid", 0.5, -6.106), ("RockSample_7_8", 1.5, 20.2)],
+)
+async def test_lower_bounds_are_no_worse_than_the_reference_program_s(
+    published: Path, cache_dir: Path, name: str, cpu_s: float, lower: float
+) -> None:
+    """In the same time of computing on a machine of the same class."""
+    model = read_problem(published / f"{name}.pomdpx")
+    solution = await solve(model, SolvingLimits(cpu_s=cpu_s), cache_dir=cache_dir)
+    assert solution.bounds.lower >= lower
+
+
+async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path, cache_dir: Path) -> None:
+    """The graph is evaluated exactly and by other code, so the bound is true."""
+    model = read_problem(published / "TagAvoid.pomdpx")
+    solution = await solve(model, SolvingLimits(cpu_s=0.5), cache_dir=cache_dir)
+    graph = policy_graph(model, solution.vectors, most_nodes=300)
+    assert solution.bounds.lower - 0.05 <= graph.value <= solution.bounds.upper
+
+
+async def test_a_bundle_is_enumerated_once_over_and_solved(root: Path, cache_dir: Path) -> None:
+    found = await enumerated(root / "tests" / "data" / "bundles" / "tiger", cache_dir)
+    assert found.model.size.states == 3
+    assert found.state_texts == tuple(dict.fromkeys(found.state_texts))
+    assert (found.model.rewards[2] == 0).all()
+    solution = await solve(found.model, QUICK, cache_dir=cache_dir)
+    assert solution.bounds.lower == pytest.approx(19.3714, abs=1e-3)
+
+
+async def test_a_policy_decides_online_and_returns_what_it_promises(
+    bundles: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    built = await built_bundle(bundles / "armadillo-finer", cache_dir)
+    async with engine_of(built) as engine:
+        found = await enumerate_model(engine)
+        solution = await solve(found.model, SolvingLimits(precision=1e-3, cpu_s=5), cache_dir=cache_dir)
+        saved(found.model, engine.model_digest, found.state_texts, solution).save(tmp_path / "a.policy")
+        policy = Policy.load(tmp_path / "a.policy")
+        limits = MissionLimits(goal_probability=1.0, step_limit=60, stop_below_value=None)
+        first = await PolicySearch(policy=policy, simulations=1, seed=1).run(engine, 1)
+        returns = []
+        for seed in range(100):
+            search = PolicySearch(policy=policy, simulations=1, seed=seed)
+            returns.append((await simulate_mission(engine, search, limits)).discounted_return)
+    error = float(np.std(returns) / len(returns) ** 0.5)
+    assert np.mean(returns) == pytest.approx(solution.bounds.lower, abs=4 * error)
+    assert first.simulations == 0
+    assert {value.action for value in first.actions} == set(found.model.actions)
+    assert sum(each.probability for each in first.predicted) == pytest.approx(1)
+
+
+async def test_a_policy_for_other_documents_is_refused(
+    root: Path, bundles: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    folder = root / "tests" / "data" / "bundles" / "tiger"
+    found = await enumerated(folder, cache_dir)
+    solution = await solve(found.model, QUICK, cache_dir=cache_dir)
+    policy = saved(found.model, "of yesterday", found.state_texts, solution)
+    async with engine_of(await built_bundle(folder, cache_dir)) as engine:
+        with pytest.raises(PlanningError, match="solved for other documents of tiger") as caught:
+            await PolicySearch(policy=policy, simulations=1, seed=1).run(engine, 1)
+    assert caught.value.code == "AOS322"
+
+
+def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "x.policy").write_text("{}\n")
+    with pytest.raises(PlanningError, match="is no policy of this version") as caught:
+        Policy.load(tmp_path / "x.policy")
+    assert caught.value.code == "AOS321"
+
+
+async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cache_dir: Path) -> None:
+    mapping = (
+        "project: gauge\n\nresponse: high\nresponse_rule: True\n\nmodule_activation: skill\npath: /read\n"
+    )
+    skill = "project: gauge\n\ndynamic_model:\n{step}\n__reward = -1;\n__moduleResponse = high;\n"
+    environment = "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: {kind} level\n"
+    for kind, step, reason in (
+        ("double", "state__.level += AOS.SampleNormal(0, 1);", "a draw is continuous"),
+        ("int", "state__.level += 1;", "more than 50 states"),
+    ):
+        files = {
+            "gauge.ef": environment.format(kind=kind),
+            "read.sd": skill.format(step=step),
+            "read.am": mapping,
+        }
+        async with engine_of(await built_text(files, cache_dir)) as engine:
+            with pytest.raises(ModelError, match=reason) as caught:
+                await enumerate_model(engine, most_states=50)
+        assert caught.value.code == "AOS220"
+
+
+async def test_a_discount_of_one_is_refused(problems: Path, cache_dir: Path) -> None:
+    model = msgspec.structs.replace(read_problem(problems / "tiger.pomdp"), discount=1.0)
+    with pytest.raises(PlanningError, match=r"--discount 0\.99") as caught:
+        await solve(model, QUICK, cache_dir=cache_dir)
+    assert caught.value.code == "AOS320"
+
+
+async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path, cache_dir: Path) -> None:
+    stop = asyncio.Event()
+    endless = SolvingLimits(precision=0, cpu_s=1000)
+    model = random_model(3)
+    solution = await solve(model, endless, cache_dir=cache_dir, stop=stop, on_progress=lambda _: stop.set())
+    assert solution.bounds.ending == "stopped"
+    assert solution.vectors.count > 0
+
+
+@pytest.fixture
+def tiger_graph(problems: Path, cache_dir: Path) -> PolicyGraph:
+    model = read_problem(problems / "tiger.pomdp")
+    return policy_graph(model, asyncio.run(solve(model, QUICK, cache_dir=cache_dir)).vectors)
+
+
+def test_the_graph_of_tiger_is_the_well_known_one(tiger_graph: PolicyGraph) -> None:
+    """Listen until one side was heard twice more often than the other."""
+    assert tiger_graph.is_whole
+    assert len(tiger_graph.nodes) == 5
+    assert tiger_graph.value == pytest.approx(19.3714, abs=2e-4)
+    text = graphviz(tiger_graph)
+    assert text.count("->") == 8
+    assert 'n0 [label="listen", penwidth=2]' in text
+
+
+WALK = """
+#include <stdio.h>
+#include "tiger.h"
+int main(void) {
+  uint16_t node = tiger_start[0];
+  int seen;
+  printf("%d\\n", tiger_node_action[node]);
+  while (node < TIGER_NODES && scanf("%d", &seen) == 1) {
+    node = tiger_after(node, (tiger_observation)seen);
+    printf("%d\\n", node < TIGER_NODES ? tiger_node_action[node] : -1);
+  }
+  return 0;
+}
+"""
+
+
+def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(
+    tiger_graph: PolicyGraph, tmp_path: Path
+) -> None:
+    header = c_header(tiger_graph, "Tiger")
+    assert re.findall(r"#include .*", header) == ["#include <stdint.h>"]
+    (tmp_path / "tiger.h").write_text(header)
+    (tmp_path / "walk.c").write_text(WALK)
+    compiler = asyncio.run(find_compiler())
+    options = ["-x", "c", "-std=c99", "-pedantic-errors", "-Wall", "-Werror"]
+    command = [*compiler.command, *options, "walk.c", "-o", "walk"]
+    subprocess.run(command, cwd=tmp_path, check=True, timeout=120)
+    seen = np.random.default_rng(1).integers(0, 2, 500).tolist()
+    expected, node = [tiger_graph.nodes[0].action], 0
+    for observation in seen:
+        node = tiger_graph.nodes[node].next.get(observation, OVER)
+        if node == OVER:
+            expected.append(-1)
+            break
+        expected.append(tiger_graph.nodes[node].action)
+    walked = subprocess.run(
+        [tmp_path / "walk"], input=" ".join(map(str, seen)), capture_output=True, text=True, check=True
+    )
+    assert [int(line) for line in walked.stdout.split()] == expected

@@ -1,0 +1,105 @@
+"""`aos solve` as a person calls it, and what the other commands and the deploy file do with its policy."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import typer
+from typer.testing import CliRunner, Result
+
+from aos_deploy.commands import plan, solve
+from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.program import programs_of_deployment
+from aos_protocol.errors import DeployError, DocumentError, PlanningError
+from aos_solver.offline.policy import Policy
+
+
+@pytest.fixture
+def app(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> typer.Typer:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    app = typer.Typer()
+    solve.register(app)
+    plan.register(app)
+    return app
+
+
+@pytest.fixture
+def tiger(root: Path) -> Path:
+    return root / "tests" / "data" / "problems" / "tiger.pomdp"
+
+
+@pytest.fixture
+def bundle(root: Path) -> Path:
+    return root / "tests" / "data" / "bundles" / "tiger"
+
+
+def run(app: typer.Typer, *arguments: str | Path) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def test_a_problem_file_is_solved_and_everything_is_written(
+    app: typer.Typer, tiger: Path, tmp_path: Path
+) -> None:
+    names = [tmp_path / name for name in ("t.pomdpx", "t.policy", "t.dot", "t.h")]
+    options = ["--export", "--out", "--graph", "--c-header"]
+    wanted = [part for pair in zip(options, names, strict=True) for part in pair]
+    result = run(app, "solve", tiger, "--json", *wanted)
+    assert result.exit_code == 0, result.output
+    report = json.loads(result.stdout)
+    assert report["lower"] == pytest.approx(19.371, abs=2e-3)
+    assert report["size"] == {"states": 2, "actions": 3, "observations": 2, "outcomes": 10}
+    assert report["graph_nodes"] == 5
+    assert [Path(path).name for path in report["written"]] == [name.name for name in names]
+    assert report["history"][-1]["ending"] == report["ending"] == "precision"
+    policy = Policy.load(tmp_path / "t.policy")
+    assert policy.header.actions == ("listen", "open-left", "open-right")
+    assert (tmp_path / "t.dot").read_text().startswith("digraph")
+    assert "t_start[1]" in (tmp_path / "t.h").read_text()
+
+
+def test_people_see_the_bounds_come_nearer(app: typer.Typer, tiger: Path) -> None:
+    result = run(app, "solve", tiger)
+    lines = result.stdout.splitlines()
+    assert lines[0].endswith("tiger.pomdp: 2 states, 3 actions, 2 observations, discount 0.95")
+    assert lines[1].split() == ["seconds", "at", "least", "at", "most", "gap", "vectors"]
+    assert lines[-1].startswith("the policy gives at least 19.371")
+
+
+def test_a_policy_of_a_bundle_plans_and_simulates(app: typer.Typer, bundle: Path, tmp_path: Path) -> None:
+    saved = tmp_path / "tiger.policy"
+    assert run(app, "solve", bundle, "--out", saved).exit_code == 0
+    decided = json.loads(run(app, "plan", bundle, "--policy", saved, "--json").stdout)
+    assert decided["action"] == "listen"
+    assert decided["value"] == pytest.approx(19.371, abs=2e-3)
+    options = ["--policy", saved, "--runs", "3", "--step-limit", "12", "--json"]
+    campaign = json.loads(run(app, "simulate", bundle, *options).stdout)
+    assert [each["steps"] for each in campaign["runs"]] == [12, 12, 12]
+    assert all(each["actions"][0] == "listen" for each in campaign["runs"])
+
+
+def test_mistakes_are_told_before_the_work_begins(app: typer.Typer, tiger: Path, tmp_path: Path) -> None:
+    result = run(app, "solve", tiger, "--export", tmp_path / "tiger.txt")
+    assert result.exit_code == 2
+    assert "needs to end in .pomdp or .pomdpx" in result.output
+    assert isinstance(run(app, "solve", tmp_path / "none.pomdp").exception, DocumentError)
+    refused = run(app, "solve", tiger, "--discount", "1").exception
+    assert isinstance(refused, PlanningError)
+    assert refused.code == "AOS320"
+
+
+def test_a_deploy_file_names_a_policy(tmp_path: Path) -> None:
+    (tmp_path / "rover").mkdir()
+    head = "aos: 1\nrobot: rover\nbundles: [rover]\n"
+    (tmp_path / "a.policy").write_text("")
+    (tmp_path / "rover.yaml").write_text(f"{head}solver: {{policy: a.policy}}\n")
+    deployment = read_deploy_file(tmp_path / "rover.yaml")
+    solver = programs_of_deployment(deployment)[-1]
+    assert solver.settings["policy"] == str(tmp_path / "a.policy")
+    (tmp_path / "rover.yaml").write_text(f"{head}solver: {{policy: b.policy}}\n")
+    with pytest.raises(DeployError) as caught:
+        read_deploy_file(tmp_path / "rover.yaml")
+    (finding,) = caught.value.diagnostics
+    assert (finding.code, finding.span.line, finding.span.column) == ("AOS101", 4, 18)
+    assert "there is no policy file" in finding.message

@@ -1,0 +1,75 @@
+"""Every code of the table of errors is provoked, here or by a test that names it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from test_reading_rules import REFUSED, WARNED, WHOLE_FILES, Rule, bundle_of, found_by
+
+from aos_deploy.run_directory import RunDirectory
+from aos_protocol.codec import open_envelope
+from aos_protocol.errors import CODES, BusError, DeployError, PlanningError
+from aos_protocol.messages import Envelope
+from aos_registry.load import load_files
+from aos_solver.offline.explicit_model import ExplicitModel, Ragged
+from aos_solver.offline.solving import SolvingLimits, solve
+
+MORE_RULES = [
+    Rule("go.sd", "__reward = -1;", "__reward = -1;\n«door.room = Hall;", "AOS128"),
+    Rule("room.ef", "state_variable: Room", "state_variable: int «spare\nstate_variable: Room", "AOS133"),
+    Rule("go.am", "response: arrived", "response: «lost\nresponse_rule: not ok\nresponse: arrived", "AOS117"),
+    Rule("go.am", "response_rule: ok", "response_rule: True\nresponse: lost\nresponse_rule: «ok", "AOS118"),
+    Rule("go glue.json", '"FromROSServiceResponse": true', '«"RosParameter": "/ok"', "AOS124"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("rule", MORE_RULES, ids=lambda rule: rule.code)
+def test_a_mistake_of_this_kind_is_told_at_its_place(rule: Rule) -> None:
+    files, place = bundle_of(rule)
+    loaded = load_files(files)
+    assert (rule.code, place) in [(each.code, each.span) for each in loaded.diagnostics], found_by(loaded)
+
+
+def test_a_bundle_beyond_the_limits_is_refused() -> None:
+    loaded = load_files({"folder/go.sd": b"project: p\n"})
+    assert "AOS120" in {each.code for each in loaded.diagnostics}
+
+
+def test_a_message_of_another_protocol_is_refused() -> None:
+    payload = msgspec.msgpack.encode(Envelope("9.0", 1, "somebody", msgspec.Raw(b"\x80")))
+    with pytest.raises(BusError, match=r"speaks protocol 9\.0") as caught:
+        open_envelope(payload)
+    assert caught.value.code == "AOS603"
+
+
+async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path: Path) -> None:
+    nothing = Ragged(np.zeros(2, np.int64), np.zeros(0, np.int64), np.zeros(0))
+    over = ExplicitModel(
+        name="over", discount=0.9, states=("end",), actions=("wait",), observations=("none",),
+        rewards=np.zeros((1, 1)), outcomes=nothing, sensings=np.zeros(0, np.int64), readings=nothing,
+        starts=(),
+    )  # fmt: skip
+    with pytest.raises(PlanningError, match="over at the start") as caught:
+        await solve(over, SolvingLimits(), cache_dir=tmp_path)
+    assert caught.value.code == "AOS302"
+
+
+def test_runs_that_cannot_be_written_are_told(tmp_path: Path) -> None:
+    (tmp_path / "runs").write_text("a file where a folder should be")
+    with pytest.raises(DeployError, match="no run directory") as caught:
+        RunDirectory.create(tmp_path / "runs", "robot", now_ns=0)
+    assert caught.value.code == "AOS805"
+
+
+def test_no_code_of_the_table_is_left_without_a_provocation(root: Path) -> None:
+    provoked = {rule.code for rule in (*WARNED, *REFUSED, *MORE_RULES)}
+    provoked |= {whole.code for whole in WHOLE_FILES} | {"AOS120", "AOS302", "AOS603", "AOS805"}
+    this_file = Path(__file__)
+    for path in (*root.glob("tests/**/*.py"), root / "tests/data/bad/mistakes.toml"):
+        if path != this_file:
+            provoked |= set(re.findall(r"\bAOS\d{3}\b", path.read_text(encoding="utf-8")))
+    assert sorted(CODES.keys() - provoked) == []

@@ -1,0 +1,195 @@
+"""Problem files of other planners: read, refused at the right place, and written so that they read back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+
+from aos_protocol.errors import DocumentError, ModelError, PlanningError
+from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged
+from aos_solver.offline.problem_files import read_problem
+from aos_solver.offline.problem_writers import write_problem
+from aos_solver.offline.sensing_by_state import with_sensing_by_state
+
+
+@pytest.fixture
+def problems(root: Path) -> Path:
+    return root / "tests" / "data" / "problems"
+
+
+def joint(model: ExplicitModel) -> Floats:
+    """P(next state, observation | state, action) as a dense array [state, action, next, observation]."""
+    size = model.size
+    dense = np.zeros((size.states, size.actions, size.states, size.observations))
+    for row in range(len(model.outcomes)):
+        state, action = divmod(row, size.actions)
+        begin = model.outcomes.first[row]
+        for offset, (after, probability) in enumerate(zip(*model.outcomes.row(row), strict=True)):
+            for seen, chance in zip(*model.readings.row(model.sensings[begin + offset]), strict=True):
+                dense[state, action, after, seen] += probability * chance
+    return dense
+
+
+def test_a_pomdp_file_with_wildcards_matrices_and_numbers_is_read(problems: Path) -> None:
+    model = read_problem(problems / "tiger.pomdp")
+    assert model.states == ("left", "right")
+    assert model.discount == 0.95
+    np.testing.assert_allclose(model.rewards, [[-1, -100, 10], [-1, 10, -100]])
+    np.testing.assert_allclose(joint(model)[0, 0], [[0.85, 0.15], [0, 0]])
+    np.testing.assert_allclose(joint(model)[1, 2], np.full((2, 2), 0.25))
+    np.testing.assert_allclose(model.start_distribution(), [0.5, 0.5])
+
+
+def test_costs_excluded_starts_resets_and_rewards_by_observation_are_read(problems: Path) -> None:
+    model = read_problem(problems / "costs.pomdp")
+    np.testing.assert_allclose(model.start_distribution(), [0.5, 0.5, 0])
+    # From s0 `go` reaches s1 in 3 of 4 cases, and from s1 always s2, where it is light for sure.
+    np.testing.assert_allclose(model.rewards, [[-1, -1.5], [-1, -6], [-8, 0]])
+    np.testing.assert_allclose(joint(model)[2, 1].sum(axis=1), [0.5, 0.5, 0])
+    np.testing.assert_allclose(joint(model)[1, 1, 2], [0, 1])
+
+
+def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path) -> None:
+    model = read_problem(problems / "rover.pomdpx")
+    assert model.states == ("home,s0", "home,s1", "rock,s0", "rock,s1", "away,s0", "away,s1")
+    assert model.actions == ("look", "move", "take")
+    assert "rock,bright" in model.observations
+    # The rover sees where it is: one start for each place.
+    assert [start.weight for start in model.starts] == [0.5, 0.5]
+    np.testing.assert_allclose(model.start_distribution(), [0.25, 0.25, 0.2, 0.3, 0, 0])
+    seen = {name: number for number, name in enumerate(model.observations)}
+    outcome = joint(model)
+    assert outcome[3, 0, 3, seen["rock,bright"]] == pytest.approx(0.8)
+    assert outcome[0, 1, 2].sum() == pytest.approx(0.8)
+    assert outcome[0, 1, 0, seen["home,dull"]] == pytest.approx(0.1)
+    # The reward for getting to the rock counts as often as that happens.
+    np.testing.assert_allclose(model.rewards[:, 1], [0.8, 0.8, 0, 0, 0, 0])
+    np.testing.assert_allclose(model.rewards[2:4, 2], [-10, 10])
+
+
+@pytest.mark.parametrize("name", ["tiger.pomdp", "costs.pomdp", "rover.pomdpx"])
+def test_a_model_reads_back_as_it_was_written(problems: Path, tmp_path: Path, name: str) -> None:
+    model = read_problem(problems / name)
+    endings = (".pomdpx",) if len(model.starts) > 1 else (".pomdp", ".pomdpx")
+    for ending in endings:
+        write_problem(model, tmp_path / f"again{ending}")
+        again = read_problem(tmp_path / f"again{ending}")
+        if len(model.starts) == 1:
+            reached = [again.states.index(state.replace(",", "_")) for state in model.states]
+            np.testing.assert_allclose(again.rewards[reached], model.rewards)
+            same = joint(again)[np.ix_(reached, range(model.size.actions), reached)]
+            np.testing.assert_allclose(same.sum(axis=-1), joint(model).sum(axis=-1), atol=1e-12)
+        assert again.discount == model.discount
+        assert sorted(start.weight for start in again.starts) == [start.weight for start in model.starts]
+
+
+def test_what_only_one_format_can_say_is_refused_by_the_other(problems: Path, tmp_path: Path) -> None:
+    model = read_problem(problems / "rover.pomdpx")
+    with pytest.raises(PlanningError, match=r"told at the start .* which \.pomdp cannot say") as caught:
+        write_problem(model, tmp_path / "rover.pomdp")
+    assert caught.value.code == "AOS320"
+
+
+def test_an_observation_of_the_step_itself_splits_the_state_that_follows() -> None:
+    """What is seen tells which of two states was left; problem files know only the state that is entered."""
+    ragged = Ragged(np.array([0, 1, 2]), np.array([0, 0]), np.array([1.0, 1.0]))
+    model = ExplicitModel(
+        name="trace",
+        discount=0.5,
+        states=("here", "there"),
+        actions=("go",),
+        observations=("from-here", "from-there"),
+        rewards=np.array([[1.0], [2.0]]),
+        outcomes=ragged,
+        sensings=np.array([0, 1]),
+        readings=Ragged(np.array([0, 1, 2]), np.array([0, 1]), np.array([1.0, 1.0])),
+        starts=(),
+    )
+    split = with_sensing_by_state(model)
+    assert split.model.states == ("here", "here", "there")
+    np.testing.assert_array_equal(split.model.outcomes.numbers, [0, 0, 1])
+    np.testing.assert_array_equal(split.rows[0, :2], [0, 1])
+    np.testing.assert_allclose(split.model.rewards[:, 0], [1, 1, 2])
+
+
+def replaced(old: str, new: str) -> Callable[[str], str]:
+    def change(text: str) -> str:
+        assert old in text
+        return text.replace(old, new, 1)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "finding"),
+    [
+        ("tiger.pomdp", replaced("R: 1 : left", "R: 1 : lft"), "21:8 AOS110 there is no state lft"),
+        (
+            "tiger.pomdp",
+            replaced("0.85 0.15", "0.85 0.3"),
+            "15:1 AOS122 the probabilities of `O:",
+        ),
+        ("tiger.pomdp", replaced("0.85 0.15", "0.85 1.5"), "16:6 AOS122 1.5 is no probability"),
+        ("tiger.pomdp", replaced("0.15 0.85", "0.15"), "15:1 AOS106 3 numbers where 2 rows of 2 are needed"),
+        ("tiger.pomdp", replaced("0.5\n", "half\n"), "9:14 AOS106 half is not a finite number"),
+        ("tiger.pomdp", replaced("discount: 0.95", "discount: 2"), "2:11 AOS106 the discount needs to be"),
+        ("tiger.pomdp", replaced("discount: 0.95\n", ""), "1:0 AOS105 there is no `discount:`"),
+        ("tiger.pomdp", replaced("left right", "left left"), "4:9 AOS103 left is there twice"),
+        ("tiger.pomdp", replaced("# A tiger", "A tiger"), "1:1 AOS102 A is no keyword"),
+        ("tiger.pomdp", replaced("T: * : *", "T: * : * : * "), "9:1 AOS106 `T:` has 4 fields"),
+        (
+            "rover.pomdpx",
+            replaced("look rock - -", "look rok - -"),
+            "66:29 AOS110 there is no value of",
+        ),
+        ("rover.pomdpx", replaced("0.9 0.1 0.2 0.8", "0.9 0.1 0.2"), "66:48 AOS106 3 numbers where"),
+        ("rover.pomdpx", replaced("<Parent>do place_0</Parent>", "<Parent>do plac</Parent>"), "32:34 AOS110"),
+        ("rover.pomdpx", replaced("</Discount>", "</Discont>"), "5:16 AOS104 this is not well-formed XML"),
+        ("rover.pomdpx", replaced("fullyObs", "fullyObs='a' fullyObs"), "7:66 AOS104"),
+        ("rover.pomdpx", replaced("<Discount>0.9</Discount>", ""), "3:1 AOS105 there is no Discount"),
+        ("rover.pomdpx", replaced('type="DD"', 'type="XY"'), "33:5 AOS106 XY is no type of Parameter"),
+        ("rover.pomdpx", replaced('idref="slip"', 'idref="slid"'), "39:32 AOS110 there is no SubDAGTemplate"),
+        ("rover.pomdpx", replaced("<Instance>- -<", "<Instance>- - -<"), "58:34 AOS106 the Instance has 3"),
+    ],
+)
+def test_a_mistake_is_told_at_its_place(
+    problems: Path, tmp_path: Path, name: str, change: Callable[[str], str], finding: str
+) -> None:
+    broken = tmp_path / name
+    broken.write_text(change((problems / name).read_text()))
+    with pytest.raises(DocumentError) as caught:
+        read_problem(broken)
+    first = caught.value.diagnostics[0]
+    told = f"{first.span.line}:{first.span.column} {first.code} {first.message}"
+    assert told.startswith(finding), told
+
+
+def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(
+    problems: Path, tmp_path: Path
+) -> None:
+    broken = tmp_path / "rover.pomdpx"
+    text = (problems / "rover.pomdpx").read_text()
+    broken.write_text(text.replace("<Terminal>0.8</Terminal>", "<Terminal>0.7</Terminal>"))
+    with pytest.raises(DocumentError, match=r":31: the probabilities of place_1 sum to 0.9 for place_0=home"):
+        read_problem(broken)
+
+
+def test_too_many_states_are_told(problems: Path) -> None:
+    with pytest.raises(ModelError, match="more than 3 states") as caught:
+        read_problem(problems / "rover.pomdpx", most_states=3)
+    assert caught.value.code == "AOS220"
+
+
+def test_the_published_problems_have_their_known_sizes(root: Path) -> None:
+    folder = root.parent / "shared" / "problems"
+    if not folder.is_dir():
+        pytest.skip("needs the published problem files in ../shared/problems, not part of this project")
+    sizes = {name: read_problem(folder / f"{name}.pomdpx").size for name in ("Tiger", "TagAvoid", "Hallway2")}
+    assert msgspec.structs.astuple(sizes["Tiger"])[:3] == (2, 3, 2)
+    # 29 cells for the robot, 29 and "tagged" for the other; what is seen is both places.
+    assert msgspec.structs.astuple(sizes["TagAvoid"])[:3] == (870, 5, 58)
+    assert sizes["Hallway2"].actions == 5

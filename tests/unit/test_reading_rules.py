@@ -1,0 +1,321 @@
+"""What documents may look like: what is accepted, with which warning, and what is refused where.
+
+One rule a line, over the two bundles `rooms` in tests/data, which have no findings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from aos_protocol.diagnostics import Severity, Span
+from aos_registry.load import LoadedBundle, load_bundle, load_files
+
+BUNDLES = Path(__file__).parents[1] / "data" / "bundles"
+JSON = {path.name: path.read_text() for path in (BUNDLES / "rooms-json").iterdir()}
+SDL = {path.name: path.read_text() for path in (BUNDLES / "rooms-sdl").iterdir()}
+MARK = "«"
+
+
+class Rule(NamedTuple):
+    """In `file` the first `find` becomes `put`; the finding of this severity and code is due at the mark."""
+
+    file: str
+    find: str
+    put: str
+    code: str = ""
+    title: str = ""
+
+
+ACCEPTED = [
+    # JSON as people write it.
+    Rule("room.json", '"Horizon": 5,', '"Horizon": 5.0,'),
+    Rule("room.json", '"Discount": 0.9', '"Discount": 1'),
+    Rule("room.json", '"Reward": 5.0', '"Reward": 5'),
+    Rule("room.json", '"Reward": 5.0', '"Reward": -0.25e1'),
+    Rule("go.json", "-2\n", "-2.5\n"),
+    Rule("go.json", ', "Version": 1', ""),
+    Rule("go.json", '"Version": 1', '"Version": null'),
+    Rule("room.json", '"Name": "environment", ', ""),
+    Rule("room.json", '"Default": "eHall"}', '"Default": "eHall;"}', title="a semicolon behind a default"),
+    Rule("room.json", "state.at == eLab", "state.at == eLab; "),
+    Rule("room.json", '"state.door.room = eLab;"', '["state.door.room =", "eLab;"]', title="code as lines"),
+    Rule("go.json", '{"IterateNextStateVars": []}',
+         '{"AssignmentName": "nothing", "AssignmentCode": "// later"}'),
+    Rule("go.json", '{"IterateNextStateVars": []}',
+         '{"TempVar": {"VarName": "", "Type": "", "EnumValues": []}}'),
+    Rule("go.json", '{"IterateNextStateVars": []}', '{"AssignmentCode": null, "TempVar": null}'),
+    Rule("go.json", "__reward = -1;", "__reward = -1; if (!state.closed[1]) return;"),
+    Rule("go.json", "AOS.SampleDiscrete", "AOS. SampleDiscrete", title="a blank behind AOS."),
+    Rule("go.json", "{0.9, 0.1}", "{1}", title="fewer weights than values"),
+    Rule("go.json", "end == eWell ? eDone",
+         "end == tEnd + 1 ? eDone", title="a temporary enum's name is a number"),
+    Rule("go glue.json", '"VariableType": "bool", ', ""),
+    Rule("go glue.json", '"ok = __input.success"', '["ok = False", "ok = __input.success"]'),
+    Rule("go glue.json", '"ok"}', '["ok", "or not ok"]}', title="a rule as lines"),
+    Rule("go glue.json", '"GlueFramework": "ROS",\n', ""),
+    # The paper's words.
+    Rule("room.json", '"PlpMain"', '"GsdlMain"'),
+    Rule("go.json", '"PlpMain": {"Project": "two rooms", "Name": "go", "Type": "PLP"',
+         '"GsdlMain": {"Project": "two rooms", "Name": "go", "Type": "GSDL"'),
+    Rule("go glue.json", '"Type": "Glue"', '"Type": "AM"'),
+    # SDL.
+    Rule("room.ef", "discount: 0.9\n", ""),
+    Rule("room.ef", "discount: 0.9", "discount: 1"),
+    Rule("room.ef", "project: two rooms", "project:\ttwo rooms \t\t"),
+    Rule("room.ef", "horizon: 5", "horizon : 5   // decisions"),
+    Rule("room.ef", "Hall, Lab", "Hall, // the first\n  // and\n  Lab"),
+    Rule("room.ef", "steps []", "steps[]"),
+    Rule("room.ef", "int steps []", "int[] steps"),
+    Rule("room.ef", "int steps []", "vector<int> steps"),
+    Rule("room.ef", "is_open true", "is_open true 1", title="a scale for the learning planner"),
+    Rule("room.ef", "is_open true", "is_open true ml_ignore"),
+    Rule("room.ef", "state_variable: Room at\n", "state_variable: Room at\nml_max_value: 2\n"),
+    Rule("go.sd", "precondition:\n", "precondition: "),
+    Rule("go.sd", "__reward = -1;\n", "__reward = -1;\n\t"),
+    Rule("go.sd", "violate_penalty: -2", "\tviolate_penalty: -2.5"),
+    Rule("go.am", "response: arrived\n", "response: arrived\n\n"),
+    Rule("go.am", "response_rule: ok", "response_rule: ok and\n  # as it says\n  True"),
+    Rule("go.am", "ok = __input.success\n", "# a comment\n\tok = __input.success\n\t"),
+]  # fmt: skip
+
+WARNED = [
+    Rule("room.json", '"Discount": 0.9}', '"Discount": 0.9«,}', "AOS127"),
+    Rule("room.json", "false};\"}\n", "false};\"}«,\n", "AOS127"),
+    Rule("room.json", '"SpecialStates"', '«// what counts\n"SpecialStates"', "AOS127"),
+    Rule("room.json", '"SpecialStates"', '«/* what\ncounts */"SpecialStates"', "AOS127"),
+    Rule("room.json", '"Discount": 0.9', '"Discount": 0.9, «"Max_concurrent_actions": 3', "AOS102"),
+    Rule("room.json", '"IsArray": true', '"IsArray": "«true"', "AOS127"),
+    Rule("room.json", '"Type": "bool"', '"Type": "«Bool"', "AOS127"),
+    Rule("room.json", '"Default": "eHall"},', '"Default": «0},', "AOS127"),
+    Rule("room.json", "= {true, false};", "= {true, false}«", "AOS127"),
+    Rule("go.json", '"Type": "tDoor"}', '"Type": "tDoor", "«s": 1}', "AOS102"),
+    Rule("go.json", '"IterateNextStateVars"', '"«IterateNextVars"', "AOS102"),
+    Rule("go.json", "{0.9, 0.1});", "{0.9, 0.1})«", "AOS127"),
+    Rule("go.json", "oDoor.room; }", "oDoor.room« }", "AOS127"),
+    Rule("go.json", '"DynamicModel"', '«"RequiredResources": [], "DynamicModel"', "AOS102"),
+    Rule("go glue.json", '""}', "«true}", "AOS127"),
+    Rule("go glue.json", '"ModuleResponse": {', '"ModuleResponse": {«"EnumResponse": [], ', "AOS102"),
+    Rule("room.ef", "horizon: 5", "«Horizon: 5", "AOS127"),
+    Rule("room.ef", "is_open true", "is_open «= true", "AOS127"),
+    Rule("room.ef", "initial_belief:", "«initial_belief:\n;\ninitial_belief:", "AOS125"),
+    Rule("go.sd", "__moduleResponse = ", "int arrived = 1;\n__moduleResponse = «", "AOS126"),
+    Rule("go.sd", "-2\n", "-2«;\n", "AOS127"),
+    Rule("go.sd", "dynamic_model:\n", "«dynamic_model:\n__reward = 1;\ndynamic_model:\n", "AOS125"),
+    Rule("go.sd", "dynamic_model:\n", "«project: two rooms\ndynamic_model:\n", "AOS125"),
+    Rule("go.sd", "parameter: Door door\n", "«Parameter: Door door\n", "AOS127"),
+    Rule("go.am", "srv: Go", "srv: Go\nimports: «from go.srv import Go", "AOS127"),
+    Rule("go.am", "type: bool", "type: «Bool", "AOS127"),
+]  # fmt: skip
+
+REFUSED = [
+    Rule("room.json", '"Discount": 0.9', '"Discount": 0.9, «"Horizon": 6', "AOS103"),
+    Rule("room.json", '"Discount": 0.9}', '"Discount": 0.9', "AOS104"),
+    Rule("room.json", '"Horizon": 5', '"Horizon": «5.5', "AOS106"),
+    Rule("room.json", '"Discount": 0.9', '"Discount": «1.1', "AOS106"),
+    Rule("room.json", '"IsGoalState": true', '"IsGoalState": «[]', "AOS106"),
+    Rule("room.json", '"Type": "enum"', '"Type": "«list"', "AOS106"),
+    Rule("room.json", '"Type": "bool"', '"Type": "«boole"', "AOS110"),
+    Rule("room.json", '"Default": "eHall"},\n        {',
+         '"Default": "eHall", «"DefaultCode": "x"},\n        {', "AOS106"),
+    Rule("room.json", '"Type": "anyValue"', '"Type": "int"', "AOS106"),
+    Rule("room.json", '{"StateCondition',
+         '{"StateFunctionCode": [{"AssignmentCode": "x"}], «"StateCondition', "AOS106"),
+    Rule("room.json", '"state.closed[0]', '"«state__.closed[0]', "AOS123"),
+    Rule("room.json", '"Type": "Environment"', '"Type": "«Enviroment"', "AOS106"),
+    Rule("go.json", '"Project": "two rooms"', '"Project": "«three rooms"', "AOS113"),
+    Rule("go.json", '"Type": "PLP"', '"Kind": "PLP"', "AOS105"),
+    Rule("go.json", '"PlpMain"', '"«PlpMian"', "AOS102"),
+    Rule("go.json", "-2\n", '«"-2"\n', "AOS106"),
+    Rule("go.json", '"Type": "tDoor"}', '"Type": "«tDore"}', "AOS110"),
+    Rule("go.json", '"Type": "tDoor"}', '"Type": "tRoom"}', "AOS119"),
+    Rule("go.json", "!state.closed", "!«state__.closed", "AOS123"),
+    Rule("go.json", "!state.closed", "!«state_.closed", "AOS123"),
+    Rule("go.json", '"EnumValues": ["eWell", "eBadly"]', '"EnumValues": []', "AOS105"),
+    Rule("go.json", '"IterateNextStateVars": []',
+         '"IterateNextStateVars": [{"Type": "«tDor", "ItemName": "d"}]', "AOS110"),
+    Rule("go.json", "{0.9, 0.1}", "«{0.9, -0.1}", "AOS122"),
+    Rule("go.json", "{0.9, 0.1}", "«{0, 0}", "AOS122"),
+    Rule("go.json", "? eDone : eLost", "? eDone : «eGone", "AOS116"),
+    Rule("go.json", '"eWell", "eBadly"]', '"eWell", "eDone"]', "AOS126", title="a hidden response"),
+    Rule("go.json", "{ state__.at", "{{ state__.at", "AOS108"),
+    Rule("go.json", "if (end", "«#include <ctime>\\nif (end", "AOS108"),
+    Rule("go.json", '"DynamicModel"', '"DynamicModle"', "AOS105"),
+    # Each construct used wrongly.
+    Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.«SampleUnform(0, 1) < 0.5", "AOS110"),
+    Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.Bernoulli(«1.5)", "AOS122"),
+    Rule("room.json", '"IsArray": true,', '"Parameters": ["tRom"],', "AOS110", title="keys of no enum"),
+    Rule("room.json", '"IsArray": true,', '"Parameters": ["«(0,3)"],', "AOS106"),
+    Rule("room.json", "state.at == eLab", "«state_.at == eLab", "AOS123"),
+    Rule("room.json", '"ExtrinsicChangesDynamicModel": []',
+         '"ExtrinsicChangesDynamicModel": [{"AssignmentCode": "if (go->«oDor.room) return;"}]', "AOS110"),
+    Rule("room.json", '"ExtrinsicChangesDynamicModel": []',
+         '"ExtrinsicChangesDynamicModel": [{"AssignmentCode": "«state__.at = eLab;"}]', "AOS123"),
+    Rule("room.json", '"ExtrinsicChangesDynamicModel": []',
+         '"HeuristicStateValue": [{"AssignmentCode": "«state.at = eLab;"}]', "AOS123"),
+    Rule("go.json", '"DynamicModel"',
+         '"ModuleExecutionTimeDynamicModel": [{"AssignmentCode": "«state.at = eLab;"}], "DynamicModel"',
+         "AOS123"),
+    Rule("go.json", '{"IterateNextStateVars": []}', '{"TempVar": {"VarName": "«n", "Type": "it"}}', "AOS110"),
+    Rule("go.json", "{0.9, 0.1}", "«{0.5, 0.3, 0.2}", "AOS122"),
+    Rule("go.json", "AOS.SampleDiscrete(tEnd", "AOS.SampleDiscrete(«tEdn", "AOS110"),
+    Rule("go.json", "__meetPrecondition =", "«__meetPreconditions =", "AOS110"),
+    Rule("go glue.json", '{"ResponseRules"', '{"FromStringLocalVariable": "«txt", "ResponseRules"', "AOS110"),
+    Rule("room.ef", "horizon: 5", "horizon: 5\none_state_model: «perhaps", "AOS106"),
+    Rule("room.ef", "initial_belief:", "heuristic_code:\n«state.at = Lab;\ninitial_belief:", "AOS123"),
+    Rule("go.sd", "precondition:\n__meet", "precondition:\n«door.room = Lab;\n__meet", "AOS128"),
+    Rule("go.sd", "parameter: Door door", "parameter: Door «door-2", "AOS126"),
+    Rule("go glue.json", '"Response": "eLost"', '"Response": "«e Lost"', "AOS126"),
+    Rule("go glue.json", '"Name": "go"', '"Name": "come"', "AOS114"),
+    Rule("go glue.json", '"oDoor.pose"', '"«oDoor.where"', "AOS110"),
+    Rule("go glue.json", "ok = __input.success", "ok = «(__input.success", "AOS121"),
+    Rule("go glue.json", '"ok"}', '["ok", "«) or (ok"]}', "AOS121"),
+    Rule("room.ef", "project: two rooms\n", "", "AOS105"),
+    Rule("room.ef", "horizon: 5\n", "", "AOS105"),
+    Rule("room.ef", "horizon: 5", "horizon: «five", "AOS106"),
+    Rule("room.ef", "horizon: 5", "«horizont: 5", "AOS102"),
+    Rule("room.ef", "enum_members: Hall, Lab", "enum_members: Hall\n«Lab", "AOS104"),
+    Rule("room.ef", "Hall, Lab", "Hall, «Hall", "AOS126"),
+    Rule("room.ef", "state_variable: Room at", "state_variable: «Roon at", "AOS110"),
+    Rule("room.ef", "is_open true", "is_open[2]", "AOS104"),
+    Rule("room.ef", "initial_belief:", "«violate_penalty: -3\ninitial_belief:", "AOS102"),
+    Rule("go.sd", "project: two rooms", "project: «two", "AOS113"),
+    Rule("go.sd", "precondition:\n__meet", "precondition:\n«state__.at = Hall;\n__meet", "AOS123"),
+    Rule("go.am", "srv: Go\n", "", "AOS105"),
+    Rule("go.am", "response_rule: ok\n", "", "AOS105"),
+    Rule("go.am", "ok = __input", "    ok = 1\n  ok = __input", "AOS121"),
+    Rule("go.am", "from_ros_service_response: true", "from_ros_service_response: «maybe", "AOS106"),
+]  # fmt: skip
+
+
+def bundle_of(rule: Rule) -> tuple[dict[str, bytes], Span]:
+    """The changed bundle and the place of the mark; where there is none, the start of the changed file."""
+    files = JSON if rule.file in JSON else SDL
+    assert rule.find in files[rule.file], rule
+    text = files[rule.file].replace(rule.find, rule.put, 1)
+    before, mark, after = text.partition(MARK)
+    place = Span(rule.file)
+    if mark:
+        place = Span(rule.file, before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1)
+    changed = {name: each.encode() for name, each in files.items()} | {rule.file: (before + after).encode()}
+    return changed, place
+
+
+def named(rule: Rule) -> str:
+    return rule.title or f"{rule.code} {rule.put}".strip().replace("\n", " ")
+
+
+def found_by(loaded: LoadedBundle) -> list[str]:
+    return [f"{each.span} {each.code} {each.message}" for each in loaded.diagnostics]
+
+
+@pytest.mark.parametrize("files", [JSON, SDL], ids=["json", "sdl"])
+def test_the_bundles_of_the_rules_have_no_findings(files: Mapping[str, str]) -> None:
+    assert found_by(load_files({name: text.encode() for name, text in files.items()})) == []
+
+
+@pytest.mark.parametrize("rule", ACCEPTED, ids=named)
+def test_this_is_accepted_without_a_word(rule: Rule) -> None:
+    loaded = load_files(bundle_of(rule)[0])
+    assert found_by(loaded) == []
+    assert loaded.project is not None
+
+
+@pytest.mark.parametrize("rule", WARNED, ids=named)
+def test_this_is_accepted_with_one_warning_at_its_place(rule: Rule) -> None:
+    files, place = bundle_of(rule)
+    loaded = load_files(files)
+    assert loaded.project is not None, found_by(loaded)
+    told = [(each.severity, each.code, each.span) for each in loaded.diagnostics]
+    assert told == [(Severity.WARNING, rule.code, place)], found_by(loaded)
+
+
+@pytest.mark.parametrize("rule", REFUSED, ids=named)
+def test_this_is_refused_at_its_place(rule: Rule) -> None:
+    files, place = bundle_of(rule)
+    loaded = load_files(files)
+    assert loaded.project is None
+    errors = [each for each in loaded.diagnostics if each.is_error and each.code == rule.code]
+    assert errors, found_by(loaded)
+    if MARK in rule.put:
+        assert place in [each.span for each in errors], found_by(loaded)
+
+
+# --- whole files ---------------------------------------------------------------------------------------
+
+
+class Whole(NamedTuple):
+    """`change` gives the files that are other or new (None: gone); then this is found, and nothing else."""
+
+    title: str
+    files: Mapping[str, str]
+    change: Callable[[dict[str, bytes]], Mapping[str, bytes | None]]
+    severity: str = ""
+    code: str = ""
+
+
+WHOLE_FILES = [
+    Whole("carriage returns", SDL, lambda f: {n: d.replace(b"\n", b"\r\n") for n, d in f.items()}),
+    Whole("carriage returns alone", JSON, lambda f: {n: d.replace(b"\n", b"\r") for n, d in f.items()}),
+    Whole("a mark of the byte order", JSON, lambda f: {"go.json": b"\xef\xbb\xbf" + f["go.json"]},
+          "warning", "AOS127"),
+    Whole("a byte order mark", SDL, lambda f: {"go.sd": b"\xef\xbb\xbf" + f["go.sd"]}, "warning", "AOS127"),
+    Whole("no newline at the end", SDL, lambda f: {"go.am": f["go.am"].rstrip()}),
+    Whole("tabs for blanks", JSON, lambda f: {"go.json": f["go.json"].replace(b"    ", b"\t")}),
+    Whole("blanks in a file's name", JSON, lambda f: {"my room.json": f["room.json"], "room.json": None}),
+    Whole("letters of other scripts", JSON, lambda f: {
+        "go.json": f["go.json"].replace(b"if (", "/* ж */ if (".encode())}),
+    Whole("a second environment", JSON, lambda f: {"z.json": f["room.json"]}, "error", "AOS111"),
+    Whole("a second environment of another name", JSON,
+          lambda f: {"z.json": f["room.json"].replace(b'"environment"', b'"world"')}, "error", "AOS111"),
+    Whole("a second skill document", JSON, lambda f: {"z.json": f["go.json"]}, "error", "AOS111"),
+    Whole("a second one in SDL", JSON, lambda f: {"go.am": SDL["go.am"].encode()}, "error", "AOS111"),
+    Whole("no mapping", SDL, lambda f: {"go.am": None}, "error", "AOS114"),
+    Whole("no skill document", SDL, lambda f: {"go.sd": None}, "error", "AOS114"),
+    Whole("no environment", SDL, lambda f: {"room.ef": None}, "error", "AOS115"),
+    Whole("an empty file", SDL, lambda f: {"go.am": b" \n"}, "error", "AOS104"),
+    Whole("UTF-16", SDL, lambda f: {"go.am": f["go.am"].decode().encode("utf-16")}, "error", "AOS101"),
+    Whole("Latin-1", SDL, lambda f: {"go.am": f["go.am"] + b"# caf\xe9\n"}, "error", "AOS101"),
+    Whole("a NUL", SDL, lambda f: {"go.am": f["go.am"] + b"\0"}, "error", "AOS101"),
+    Whole("other JSON", JSON, lambda f: {"calls.json": b'{"info": {"name": "c"}}'}, "warning", "AOS107"),
+    Whole("a file of another kind", JSON, lambda f: {"notes.txt": b"notes"}, "remark", "AOS107"),
+    Whole("the result of a run", JSON, lambda f: {
+        "run1.json": b'{"ExecutionOutcome": [{"at": "ISODate("2022")"}]}'},
+          "error", "AOS107"),
+    Whole("no ModuleResponse", JSON, lambda f: {
+        "go glue.json": f["go glue.json"].replace(b'"ModuleResponse"', b'"Comment"'),
+        "go.json": f["go.json"].replace(b"__moduleResponse = end == eWell ? eDone : eLost; ", b"")},
+          "warning", "AOS133"),
+    Whole("a skill's name that is none", SDL, lambda f: {
+        "go there.sd": f["go.sd"], "go there.am": f["go.am"], "go.sd": None, "go.am": None},
+          "error", "AOS126"),
+]  # fmt: skip
+
+
+def test_a_link_may_stay_in_its_bundle_and_not_lead_out_of_it(tmp_path: Path) -> None:
+    for name, text in SDL.items():
+        (tmp_path / "bundle" / name).parent.mkdir(exist_ok=True)
+        (tmp_path / "bundle" / name).write_text(text)
+    (tmp_path / "bundle" / "go.am").rename(tmp_path / "bundle" / ".go")
+    (tmp_path / "bundle" / "go.am").symlink_to(".go")
+    assert found_by(load_bundle(tmp_path / "bundle")) == []
+    (tmp_path / "secret.txt").write_text("project: another")
+    (tmp_path / "bundle" / "go.am").unlink()
+    (tmp_path / "bundle" / "go.am").symlink_to(tmp_path / "secret.txt")
+    loaded = load_bundle(tmp_path / "bundle")
+    assert loaded.project is None
+    (refusal,) = loaded.diagnostics
+    assert (refusal.code, refusal.span, refusal.excerpt) == ("AOS120", Span("go.am"), "")
+
+
+@pytest.mark.parametrize("case", WHOLE_FILES, ids=lambda case: case.title)
+def test_whole_files_follow_the_rules(case: Whole) -> None:
+    before = {name: text.encode() for name, text in case.files.items()}
+    after = {name: data for name, data in {**before, **case.change(before)}.items() if data is not None}
+    loaded = load_files(after)
+    told = {(each.severity.value, each.code) for each in loaded.diagnostics}
+    assert (loaded.project is None) == (case.severity == "error"), found_by(loaded)
+    assert told == ({(case.severity, case.code)} if case.severity else set()), found_by(loaded)
