@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from models import built_bundle, built_text, engine_of
+from processes import descendants, until_ended
 
 from aos_protocol.errors import ModelError
 from aos_solver.endings import MissionLimits
@@ -173,7 +174,9 @@ async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_d
         before = (await engine.update("pick", "pick_succeeded")).summary
         assert engine.pid is not None
         for _ in range(3):
+            children = descendants(engine.pid)
             os.kill(engine.pid, signal.SIGKILL)
+            await until_ended(children)
             assert await engine.summary() == before
 
 

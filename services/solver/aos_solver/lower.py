@@ -90,7 +90,7 @@ class _Lowering:
         print_state = code.section(LOOKING, environment.print_state)
         skills = tuple(self._skill(skill) for skill in project.skills)
         names = frozenset(self._pieces.identifiers)
-        headers = headers_for(names | {"ostringstream"} if print_state is not None else names)
+        headers = headers_for(names)
         constants = project.low_level.constants if project.low_level is not None else ()
         value_types = sorted(self._changes.value_types)
         return Program(
