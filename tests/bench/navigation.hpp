@@ -32,12 +32,13 @@ struct Navigation {
   }
 
   static Outcome step(State& state, int action, Random& random) {
+    // One draw in two halves: whether it is pushed away, and whether it misses its way.
+    const std::uint64_t bits = random.bits();
     const bool is_elsewhere = state.at != action;
-    const std::uint8_t left_from = random.flag(threshold(0.05)) ? static_cast<std::uint8_t>(lost) : state.at;
-    const bool arrives = is_elsewhere && !random.flag(threshold(0.1));
+    const int left_from = static_cast<std::uint32_t>(bits) < threshold(0.05) ? static_cast<int>(lost) : state.at;
+    const bool arrives = is_elsewhere & (bits >> 32 >= threshold(0.1));
     Outcome outcome;
-    outcome.reward = !arrives ? -10 : left_from == lost ? -5 : cost[left_from][action];
-    if (!is_elsewhere) outcome.reward -= 10;
+    outcome.reward = (arrives ? cost[left_from][action] : -10.0f) + (is_elsewhere ? 0.0f : -10.0f);
     state.at = arrives ? static_cast<std::uint8_t>(action) : static_cast<std::uint8_t>(lost);
     state.visited |= static_cast<std::uint8_t>(arrives << action);
     outcome.observation = arrives || random.flag(threshold(0.2));
@@ -64,8 +65,10 @@ struct Navigation {
   static constexpr std::array<double, 3> x{-1.0, 0.0, 1.0};
   static constexpr std::array<double, 3> y{0.66, 0.64, 0.61};
 
-  static std::array<std::array<float, 3>, 3> costs() {
-    std::array<std::array<float, 3>, 3> all{};
+  // From each place, and from wherever it is when it is lost.
+  static std::array<std::array<float, 3>, 4> costs() {
+    std::array<std::array<float, 3>, 4> all{};
+    all[lost].fill(-5);
     for (int from = 0; from < 3; ++from) {
       for (int to = 0; to < 3; ++to) {
         all[from][to] = static_cast<float>(-100 * std::hypot(x[from] - x[to], y[from] - y[to]));
@@ -73,7 +76,7 @@ struct Navigation {
     }
     return all;
   }
-  inline static const std::array<std::array<float, 3>, 3> cost = costs();
+  inline static const std::array<std::array<float, 3>, 4> cost = costs();
 };
 
 }  // namespace bench

@@ -1,4 +1,4 @@
-"""Beliefs against Bayes' rule by hand: exact where steps can be enumerated, and how far off where they cannot."""
+"""Beliefs against Bayes' rule by hand: exact where steps can be enumerated, and how far off elsewhere."""
 
 from __future__ import annotations
 
@@ -80,7 +80,8 @@ class RandomModel:
             )
             files[f"act{action}.am"] = (
                 f"project: chain\n\n{rules}\n\nmodule_activation: skill\npath: /act{action}\n\n"
-                "local_variable: seen\ntype: int\nfrom_ros_service_response: true\ncode:\nseen = __input.seen\n"
+                "local_variable: seen\ntype: int\nfrom_ros_service_response: true\n"
+                "code:\nseen = __input.seen\n"
             )
         return files
 
@@ -152,7 +153,9 @@ async def test_the_error_of_a_belief_with_too_many_states_is_within_its_bound(ca
     posterior = [*prior]
     posterior[9] = 0.9 * prior[9] / (0.9 * prior[9] + 0.2 * (1 - prior[9]))
     for lamp, marginal in enumerate(update.summary.marginals):
-        assert marginal.values.get("true", 0.0) == pytest.approx(posterior[lamp], abs=update.summary.error_bound)
+        assert marginal.values.get("true", 0.0) == pytest.approx(
+            posterior[lamp], abs=update.summary.error_bound
+        )
     # The light states that are dropped make room for others like them, so the error is far below its bound.
     assert update.summary.marginals[9].values["true"] == pytest.approx(posterior[9], abs=0.005)
 

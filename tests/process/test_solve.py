@@ -23,6 +23,7 @@ from aos_solver.offline.policy import Policy, PolicyHeader, PolicySearch
 from aos_solver.offline.policy_graph import OVER, PolicyGraph, policy_graph
 from aos_solver.offline.problem_files import read_problem
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, solve
+from aos_solver.offline.stopping import with_stopping
 from aos_solver.simulation import simulate_mission
 
 QUICK = SolvingLimits(precision=1e-3, cpu_s=1)
@@ -226,6 +227,17 @@ async def test_a_discount_of_one_is_refused(problems: Path, cache_dir: Path) -> 
     with pytest.raises(PlanningError, match=r"--discount 0\.99") as caught:
         await solve(model, QUICK, cache_dir=cache_dir)
     assert caught.value.code == "AOS320"
+
+
+@pytest.mark.parametrize(("value", "actions"), [(19.0, {0, 1, 2}), (19.5, {3})])
+async def test_a_mission_is_ended_where_that_is_worth_more_than_going_on(
+    problems: Path, cache_dir: Path, value: float, actions: set[int]
+) -> None:
+    model = with_stopping(read_problem(problems / "tiger.pomdp"), value)
+    solution = await solve(model, QUICK, cache_dir=cache_dir)
+    graph = policy_graph(model, solution.vectors)
+    assert {node.action for node in graph.nodes} == actions
+    assert graph.value == pytest.approx(max(value, 19.3714), abs=1e-3)
 
 
 async def test_whoever_stops_it_keeps_the_best_so_far(problems: Path, cache_dir: Path) -> None:

@@ -27,6 +27,7 @@ code:
 state.row = {1, 2};
 state_variable: int total
 """
+ALL = ["lamp", "count", "row", "total"]
 ACT = "project: test\ndynamic_model:\n"
 
 
@@ -56,7 +57,9 @@ def particle_of(act: str, home: str = "") -> list[str]:
         ("auto set = [&](int& x) { x = 1; }; set(state__.total);", ["total"]),
         ("auto held = std::ref(state__.total); held.get() = 1;", ["total"]),
         ("int read = max(int(state__.count), 2) + std::pow(state__.total, 2);", []),
-        ("auto& all = state__; all.total = 1;", ["lamp", "count", "row", "total"]),
+        ("auto& all = state__; all.total = 1;", ALL),
+        ("auto set = [](auto& all, int x) { all.total = x; }; set(state__, 1);", ["total"]),
+        ("auto set = [](auto& all) { auto& it = all; it.total = 1; }; set(state__);", ALL),
         ("int read = state__.count + state.total;", []),
     ],
 )

@@ -10,7 +10,7 @@ from aos_solver.engine import Engine, Planner
 from aos_solver.search import Search
 from aos_solver.simulation import simulate_mission
 
-__all__ = ["SIMULATIONS", "discounted_returns", "sampling_rate", "search_rate"]
+__all__ = ["SIMULATIONS", "discounted_returns", "sampling_rate", "search_rate", "threaded_search_rate"]
 
 SIMULATIONS = 65_536
 """Of one search from a fresh root, here and in the baselines."""
@@ -38,6 +38,16 @@ async def search_rate(engine: Engine, repetitions: int, seed: int) -> list[float
     return rates[1:]
 
 
+async def threaded_search_rate(engine: Engine, threads: int, repetitions: int, seed: int) -> list[float]:
+    """The same with several threads at once, per second of real time."""
+    rates = []
+    for turn in range(repetitions + 1):
+        await engine.reset_belief()
+        plan = await engine.plan(simulations=SIMULATIONS, seed=seed + turn, planner="pomcp", threads=threads)
+        rates.append(plan.simulations / plan.seconds)
+    return rates[1:]
+
+
 async def discounted_returns(
     engine: Engine,
     problem: Problem,
@@ -47,10 +57,10 @@ async def discounted_returns(
     on_run: Callable[[], None],
 ) -> list[float]:
     """Of one mission for each seed, planned with so much processor time for each step."""
-    await engine.count_processor_time(True)
     limits = MissionLimits(goal_probability=_NEVER, step_limit=problem.steps, stop_below_value=None)
     returns = []
     for seed in seeds:
+        await engine.count_processor_time(True)  # in each, since a fault ends the child
         search = Search(simulations=0, seed=seed, time_s=budget_s, planner=planner)
         returns.append((await simulate_mission(engine, search, limits)).discounted_return)
         on_run()

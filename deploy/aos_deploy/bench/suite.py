@@ -14,6 +14,7 @@ from aos_deploy.bench.measure import (
     discounted_returns,
     sampling_rate,
     search_rate,
+    threaded_search_rate,
 )
 from aos_deploy.bench.problems import Problem
 from aos_deploy.bench.rows import OURS, Report, Row, Skipped, figure, this_machine, with_ratios
@@ -98,6 +99,7 @@ class Suite:
                 self._rows.append(figure(OURS, problem.name, "steps", rates, "1/s"))
             if "simulations" in effort.metrics and problem.is_searched:
                 await self._search_rate(engine, problem, "simulations")
+                await self._two_threads(engine, problem)
         if "simulations" in effort.metrics and (plain := without_policies(project)) is not project:
             async with self._engine(plain) as engine:
                 await self._search_rate(engine, problem, baseline.WITHOUT_KNOWLEDGE)
@@ -108,6 +110,13 @@ class Suite:
     async def _search_rate(self, engine: Engine, problem: Problem, metric: str) -> None:
         rates = await search_rate(engine, self._effort.repetitions, self._effort.seed)
         self._rows.append(figure(OURS, problem.name, metric, rates, "1/s"))
+
+    async def _two_threads(self, engine: Engine, problem: Problem) -> None:
+        """In real time, and so of use only where two cores are idle."""
+        for threads, name in ((2, OURS), (1, "one thread")):
+            rates = await threaded_search_rate(engine, threads, self._effort.repetitions, self._effort.seed)
+            row = figure(name, problem.name, "simulations, two threads", rates, "1/s")
+            self._rows.append(row)
 
     async def _returns(self, problem: Problem, planner: Planner, project: Project, runs: int) -> Row:
         """Missions with the seeds from `seed` on, dealt out to the jobs."""
@@ -157,7 +166,7 @@ class Suite:
     @asynccontextmanager
     async def _engine(self, project: Project) -> AsyncIterator[Engine]:
         built = await build_project(project, self._cache_dir, lambda remark: None)
-        engine = await Engine.start(built, seed=self._effort.seed)
+        engine = await Engine.start(built, seed=self._effort.seed, keeps_belief=False)
         try:
             yield engine
         finally:
@@ -168,8 +177,8 @@ class Suite:
         """A fault within becomes a remark of the report."""
         try:
             yield
-        except AosError as error:
-            self._skip(name, str(error))
+        except* AosError as faults:
+            self._skip(name, str(faults.exceptions[0]))
 
     def _skip(self, name: str, reason: str) -> None:
         self._skipped.append(Skipped(name, reason))

@@ -89,14 +89,12 @@ def _rate(environment: AosVectorEnv, steps: int, seed: int) -> float:
     environment.reset(seed=seed)
     environment.action_space.seed(seed)
     actions = environment.action_space.sample()
+    rounds = -(-steps // environment.num_envs)
+    start_s = time.monotonic()
     with Progress(console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("steps", total=steps)
-        start_s, done = time.monotonic(), 0
-        while done < steps:
+        for _ in progress.track(range(rounds), description="steps", update_period=0.2):
             environment.step(actions)
-            done += environment.num_envs
-            progress.update(task, completed=done)
-        return done / (time.monotonic() - start_s)
+    return rounds * environment.num_envs / (time.monotonic() - start_s)
 
 
 def _print(spaces: Spaces, bundle: Path) -> None:

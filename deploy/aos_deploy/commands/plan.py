@@ -39,6 +39,7 @@ Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations gi
 PlannerName = Annotated[
     Planner, typer.Option("--planner", help="How to search; with auto the model's size decides")
 ]
+Threads = Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 
 
@@ -50,7 +51,7 @@ def register(app: typer.Typer) -> None:
 
 
 class Decision(msgspec.Struct):
-    """What `aos plan --json` prints; the best action first."""
+    """What `aos plan --json` prints; the action worth most comes first."""
 
     action: str
     value: float
@@ -67,6 +68,7 @@ def plan(
     horizon: Horizon = None,
     seed: Seed = 1,
     planner: PlannerName = "pomcp",
+    threads: Threads = 1,
     policy: PolicyFile = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
     as_json: AsJson = False,
@@ -89,9 +91,11 @@ def plan(
             seed=search.seed_of(1),
             horizon=horizon,
             planner=planner,
+            threads=threads,
         )
         decision = _decision(list(found.actions), found.simulations)
-        return msgspec.structs.replace(decision, planner=found.planner, why=found.why)
+        chosen = {"action": found.best.action, "value": found.best.q}
+        return msgspec.structs.replace(decision, planner=found.planner, why=found.why, **chosen)
 
     decision = _with_engine(bundle, seed, decide)
     if as_json:
@@ -120,6 +124,7 @@ def simulate(
     time_s: Time = None,
     horizon: Horizon = None,
     planner: PlannerName = "pomcp",
+    threads: Threads = 1,
     policy: PolicyFile = None,
     goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
     step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
@@ -142,7 +147,12 @@ def simulate(
     async def run_all(engine: Engine) -> list[SimulatedRun]:
         done: list[SimulatedRun] = []
         search = Search(
-            simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner
+            simulations=simulations,
+            seed=seed,
+            time_s=time_s,
+            horizon=horizon,
+            planner=planner,
+            threads=threads,
         )
         if policy is not None:
             search = _by_policy(search, policy)

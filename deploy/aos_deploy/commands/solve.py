@@ -30,6 +30,7 @@ from aos_solver.offline.problem_files import PROBLEM_ENDINGS, read_problem
 from aos_solver.offline.problem_writers import WRITERS, write_problem
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits
 from aos_solver.offline.solving import solve as solve_model
+from aos_solver.offline.stopping import with_stopping
 
 __all__ = ["register"]
 
@@ -79,6 +80,10 @@ def solve(
     discount: Annotated[
         float | None, typer.Option(min=0, max=1, help="Instead of the documents' own discount")
     ] = None,
+    stop_value: Annotated[
+        float | None,
+        typer.Option(help="To end the mission is worth so much, at any time"),
+    ] = None,
     states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MOST_STATES,
     out: Annotated[Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate")] = None,
     export: Annotated[
@@ -88,7 +93,7 @@ def solve(
     header: Annotated[
         Path | None, typer.Option("--c-header", help="Write the policy as C that needs nothing else")
     ] = None,
-    nodes: Annotated[int, typer.Option(min=1, max=60_000, help="Size of the drawing and of the C")] = 200,
+    nodes: Annotated[int, typer.Option(min=1, max=50_000, help="Size of the drawing and of the C")] = 200,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
     """Work out a policy before the mission, with proven bounds of what it gives.
@@ -101,6 +106,8 @@ def solve(
         found = _problem(target, states, discount)
     else:
         found = asyncio.run(_enumerated(target, states, discount))
+    if stop_value is not None:
+        found = msgspec.structs.replace(found, model=with_stopping(found.model, stop_value))
     limits = SolvingLimits(precision=precision, cpu_s=time_s)
     written: list[str] = []
     for path in export or []:
@@ -110,7 +117,7 @@ def solve(
         _print_size(found.model)
     solution = asyncio.run(_solve(found.model, limits, _ignore if as_json else _print_bounds))
     if out is not None:
-        _policy(found, solution).save(out)
+        _policy(found, solution, stop_value).save(out)
         written.append(str(out))
     drawn = policy_graph(found.model, solution.vectors, most_nodes=nodes) if graph or header else None
     if drawn is not None:
@@ -169,13 +176,14 @@ async def _solve(
         loop.remove_signal_handler(signal.SIGINT)
 
 
-def _policy(target: _Target, solution: Solution) -> Policy:
+def _policy(target: _Target, solution: Solution, stop_value: float | None) -> Policy:
     header = PolicyHeader(
         model=target.model.name,
         model_digest=target.digest,
         discount=target.model.discount,
         lower=solution.bounds.lower,
         upper=solution.bounds.upper,
+        stop_value=stop_value,
         actions=target.model.actions,
         states=target.states,
     )

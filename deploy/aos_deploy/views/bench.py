@@ -58,8 +58,14 @@ def _rows(report: Report) -> Iterator[list[str]]:
     for row in report.rows:
         if row.name != OURS:
             continue
-        cells = [row.problem, f"{row.metric}, {row.unit}", _short(row.value), _short(row.stderr)]
+        cells = [row.problem, _what(row), _short(row.value), _short(row.stderr)]
         yield cells + _comparison(row)
+
+
+def _what(row: Row) -> str:
+    """`simulations/s, uniform`; `return, pomcp, 200 runs`."""
+    metric, comma, kind = row.metric.partition(", ")
+    return f"{metric}/s{comma}{kind}" if row.unit == "1/s" else f"{row.metric}, {row.unit}"
 
 
 def _comparison(row: Row) -> list[str]:

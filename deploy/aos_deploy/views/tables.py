@@ -18,7 +18,7 @@ BAR_WIDTH = 30
 
 
 def print_values(values: list[ActionValue], simulations: int, title: str = "exact") -> None:
-    """The actions, best first, with a bar from the worst value to the best; `title` where none were searched."""
+    """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations."""
     tried = [value.q for value in values if value.n or not simulations]
     lowest, highest = min(tried), max(tried)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)

@@ -51,7 +51,7 @@ class EngineDescription(msgspec.Struct, frozen=True):
 class Plan(msgspec.Struct, frozen=True):
     """A decision: the index of the best action, and what the search found about each, in their order.
 
-    `planner` is the one that made it, and `why` it was that one.
+    `planner` is the one that made it, and `why` it was that one. `known_simulations` were in the tree before.
     """
 
     index: int
@@ -61,6 +61,7 @@ class Plan(msgspec.Struct, frozen=True):
     predicted: tuple[PredictedObservation, ...]
     seconds: float
     cpu_seconds: float = 0.0
+    known_simulations: int = 0
     planner: str = ""
     why: str = ""
 

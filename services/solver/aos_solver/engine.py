@@ -94,15 +94,25 @@ class Engine:
         self._asking = asyncio.Lock()
         self._printed: asyncio.Task[None] | None = None
         self._blame: int | None = None
-        self._counts_processor_time = False
+        self._keeps_belief = True
         self.description: EngineDescription
 
     @classmethod
     async def start(
-        cls, built: BuiltModel, *, seed: int, impossible_observation: ImpossiblePolicy = "widen"
+        cls,
+        built: BuiltModel,
+        *,
+        seed: int,
+        impossible_observation: ImpossiblePolicy = "widen",
+        keeps_belief: bool = True,
     ) -> Self:
-        """Starts the child on the initial belief; ModelError if the model cannot even begin."""
+        """Starts the child on the initial belief; ModelError if the model cannot even begin.
+
+        A child that is started again gets the belief, which is fetched after each change; or, without
+        `keeps_belief`, the initial one.
+        """
         engine = cls(built, seed, impossible_observation)
+        engine._keeps_belief = keeps_belief
         try:
             await engine._start_child()
         except BaseException:
@@ -141,18 +151,26 @@ class Engine:
         time_s: float | None = None,
         horizon: int | None = None,
         planner: Planner = "pomcp",
+        threads: int = 1,
     ) -> Plan:
         """Searches from the current belief within the budget; `horizon` None takes the document's.
 
-        With the planner `auto` the model's size decides, and the plan says why.
+        With the planner `auto` the model's size decides, and the plan says why. POMCP can use
+        several threads.
         """
         deadline_s = PLANNING_DEADLINE_S if time_s is None else time_s + ANSWER_DEADLINE_S
-        command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}\t{planner}"
+        command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}\t{planner}\t{threads}"
         return await self._ask(command, Plan, deadline_s=deadline_s)
 
+    async def think(self, index: int, *, seed: int, time_s: float, threads: int = 1) -> None:
+        """Begins to search below an action that is carried out now, so that the next plan starts with it.
+
+        Returns at once. It goes on for `time_s`, or until something else is asked.
+        """
+        await self._ask(f"think\t0\t{time_s}\t{seed}\t{index}\t{threads}", _Done)
+
     async def count_processor_time(self, counts: bool) -> None:
-        """Whether budgets in seconds are of processor time: for measurements on a machine with other work."""
-        self._counts_processor_time = counts
+        """Whether this child's budgets in seconds are of processor time, for measurements."""
         await self._ask(f"count_processor_time\t{int(counts)}", _Done)
 
     async def exact(self, horizon: int | None = None) -> ExactValues:
@@ -231,10 +249,7 @@ class Engine:
         return await self._ask("\t".join(("reset_worlds", *map(str, seeds))), Worlds)
 
     async def step_worlds(self, indices: bytes) -> WorldSteps:
-        """Runs one action in each world; -1 starts a world anew, with the next numbers of its seed.
-
-        `indices` are the bytes of an int32 for each world.
-        """
+        """Runs an action in each world, by the bytes of an int32 for each; -1 starts a world anew."""
         return await self._ask(f"step_worlds\t{b64encode(indices).decode()}", WorldSteps)
 
     async def rate(self, seconds: float, seed: int) -> SampleCount:
@@ -258,7 +273,8 @@ class Engine:
 
     async def _change_belief(self, command: str, kind: type[A]) -> A:
         answer = await self._ask(command, kind)
-        self._belief = await self.export_belief()
+        if self._keeps_belief:
+            self._belief = await self.export_belief()
         return answer
 
     async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
@@ -293,8 +309,6 @@ class Engine:
     async def _restart_child(self) -> None:
         await self._drop_child()
         await self._start_child()
-        if self._counts_processor_time:
-            await self._exchange("count_processor_time\t1", _Done, ANSWER_DEADLINE_S)
         if self._belief is not None:
             await self._exchange(_import_command(self._belief), BeliefSummary, ANSWER_DEADLINE_S)
 
@@ -370,7 +384,7 @@ class Engine:
 
 
 def _running_piece(blame: int) -> int:
-    """The piece of document code that ran when the child ended; of several threads, the first that ran one."""
+    """The piece of document code that ran when the child ended; of several threads, the first one's."""
     lines = struct.iter_unpack("=I60x", os.pread(blame, 4096, 0))
     return next((piece for (piece,) in lines if piece != 0), 0)
 

@@ -1,6 +1,6 @@
-"""Which copies of the state a step makes: where no code reads an older copy of a variable after it has changed a
-newer one, the two are one object.
+"""Which copies of the state a step makes.
 
+Where no code reads an older copy of a variable after it has changed a newer one, the two are one object.
 Where the text leaves a doubt, the copy is made: it costs time, and leaving it out would change the model.
 """
 
@@ -14,13 +14,14 @@ import msgspec
 from aos_protocol.documents import Assignment, Environment, SkillModel
 from aos_runtime.snippets import Access, Cpp, Extent, Mention, strip_comments
 from aos_solver.lower_code import snippets_of
+from aos_solver.lower_writes import LAMBDA
 
 __all__ = ["Copies", "copies_of"]
 
 _WHOLE_STATE = "*"
 _READING_METHODS = frozenset({"at", "back", "contains", "count", "empty", "front", "length", "size"})
-_REPEATED_OR_LATER = re.compile(r"\b(?:for|while|do|goto)\b|\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
-"""Loops, jumps and lambdas: the order of the text is not that of the run."""
+_REPEATED = re.compile(r"\b(?:for|while|do|goto)\b")
+"""Where, as in lambdas, the order of the text is not that of the run."""
 
 
 class Copies(msgspec.Struct, frozen=True):
@@ -31,7 +32,9 @@ class Copies(msgspec.Struct, frozen=True):
 
 
 class _Use(msgspec.Struct, frozen=True):
-    """A mention of a state variable in the snippet of number `snippet`. What a write assigns is read before it."""
+    """A mention of a state variable in the snippet of that number. What a write assigns is read before it; a
+    handle may be read at any time.
+    """
 
     variable: str
     snippet: int
@@ -41,10 +44,11 @@ class _Use(msgspec.Struct, frozen=True):
 
 
 class _Uses(msgspec.Struct, frozen=True):
+    """All uses in a section. The text of `unordered` snippets is not in the order of the run."""
+
     reads: list[_Use]
     writes: list[_Use]
     unordered: frozenset[int]
-    """The snippets whose text is not in the order of the run."""
 
 
 def copies_of(model: SkillModel, environment: Environment) -> Copies:
@@ -89,13 +93,16 @@ def _is_before(read: _Use, write: _Use, unordered: frozenset[int]) -> bool:
 def _uses(section: tuple[Assignment, ...], older: tuple[str, ...], newer: str) -> _Uses:
     reads, writes, unordered = [], [], set()
     for number, (_, cpp) in enumerate(snippets_of(section)):
-        if _REPEATED_OR_LATER.search(strip_comments(cpp.code)):
+        code = strip_comments(cpp.code)
+        has_lambda = LAMBDA.search(code) is not None
+        if has_lambda or _REPEATED.search(code):
             unordered.add(number)
         bound = list(_bound(cpp))
         for mention in cpp.mentions:
             variable = _variable(mention)
             if mention.path[0] in older:
-                is_handle = any(_covers(extent, mention.extent) for extent in bound) or _makes_handle(mention)
+                is_bound = any(_covers(extent, mention.extent) for extent in bound)
+                is_handle = has_lambda or is_bound or _makes_handle(mention)
                 reads.append(_Use(variable, number, mention.extent, is_handle=is_handle))
             elif mention.path[0] == newer and not _only_reads(mention, cpp):
                 writes.append(_Use(variable, number, mention.extent, mention.assigned))
@@ -124,7 +131,7 @@ def _only_reads(mention: Mention, cpp: Cpp) -> bool:
     """Whether nothing can change through this mention of a copy that may be changed."""
     arguments = (argument for call in cpp.calls for argument in call.arguments)
     is_passed_on = any(_covers(argument, mention.extent) for argument in arguments)
-    return mention.access is Access.READ and len(mention.path) > 1 and not is_passed_on
+    return mention.access is Access.READ and _variable(mention) != _WHOLE_STATE and not is_passed_on
 
 
 def _covers(outer: Extent | None, inner: Extent) -> bool:

@@ -6,16 +6,28 @@ pass: constants are constant to the compiler.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from aos_protocol.documents import Assignment, Environment, Project
 from aos_protocol.local_types import told_variables
-from aos_runtime.snippets import Access, Cpp, Mention, read_cpp, read_cpp_expression
+from aos_runtime.snippets import (
+    Access,
+    Cpp,
+    DeclarationKind,
+    Extent,
+    Mention,
+    read_cpp,
+    read_cpp_expression,
+)
 from aos_solver.lower_code import Phase, environment_sections, skill_sections, snippets_of
 
-__all__ = ["Changes", "changes_of", "drawing_defaults"]
+__all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]
 
 _ALL_COPIES = frozenset({"state", "state_", "state__", "state___"})
+LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
+"""Where a lambda begins."""
+
 _CHANGING = (Access.WRITE, Access.UPDATE, Access.BIND)
 _READING_FUNCTIONS = frozenset({
     "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",
@@ -39,8 +51,12 @@ class Changes:
     def read(self, cpp: Cpp, copies: frozenset[str]) -> None:
         """Takes in a snippet that may change these copies of the state."""
         passed_on = list(_passed_to_functions(cpp))
+        changed_by_lambda = _changed_by_lambdas(cpp, passed_on)
         for mention in cpp.mentions:
             if mention.path[0] not in _ALL_COPIES:
+                continue
+            if mention.extent.start in changed_by_lambda and mention.path[0] in copies:
+                self.variables |= self._names & changed_by_lambda[mention.extent.start]
                 continue
             if len(mention.path) > 1:
                 self._read_list(mention.path[1])
@@ -119,6 +135,57 @@ def _passed_to_functions(cpp: Cpp) -> Iterator[range]:
         is_function = len(call.name) == 1 or call.name[:1] == ("std",)
         if is_function and call.name[-1] not in _READING_FUNCTIONS:
             yield from (range(argument.start, argument.end) for argument in call.arguments)
+
+
+def _changed_by_lambdas(cpp: Cpp, passed_on: list[range]) -> dict[int, set[str]]:
+    """The members that a lambda of the code changes, for each place where it is given the whole state."""
+    lambdas = {
+        declaration.name: declaration.initial
+        for declaration in cpp.declarations
+        if declaration.initial is not None and cpp.code[declaration.initial.start] == "["
+    }
+    found = {}
+    for call in cpp.calls:
+        body = lambdas.get(call.name[0]) if len(call.name) == 1 else None
+        parameters = [] if body is None else _parameters(cpp, body)
+        for argument, parameter in zip(call.arguments, parameters, strict=False):
+            changed = _changed_members(cpp, body, parameter, passed_on)
+            if changed is not None:
+                found[argument.start] = changed
+    return {
+        mention.extent.start: found[mention.extent.start]
+        for mention in cpp.mentions
+        if len(mention.path) == 1 and mention.extent.start in found
+    }
+
+
+def _parameters(cpp: Cpp, body: Extent) -> list[str]:
+    """The names of a lambda's parameters; none where another lambda within has parameters, too."""
+    text = cpp.code[body.start : body.end]
+    if len(LAMBDA.findall(text)) != 1:
+        return []
+    return [
+        declaration.name
+        for declaration in cpp.declarations
+        if declaration.kind is DeclarationKind.PARAMETER
+        and declaration.extent.start in range(body.start, body.end)
+    ]
+
+
+def _changed_members(
+    cpp: Cpp, body: Extent | None, parameter: str, passed_on: list[range]
+) -> set[str] | None:
+    """The members of the parameter that the lambda changes; None where it uses the parameter as a whole."""
+    if body is None:
+        return None
+    uses = [
+        mention
+        for mention in cpp.mentions
+        if mention.path[0] == parameter and mention.extent.start in range(body.start, body.end)
+    ]
+    if any(len(mention.path) == 1 for mention in uses):
+        return None
+    return {m.path[1] for m in uses if m.access in _CHANGING or _is_in(m, passed_on)}
 
 
 def _is_in(mention: Mention, ranges: list[range]) -> bool:

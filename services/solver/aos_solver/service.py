@@ -80,6 +80,8 @@ class _Solver:
             seed=settings.seed,
             horizon=settings.horizon,
             planner=settings.planner,
+            threads=settings.threads,
+            thinks_while_acting=settings.think_while_acting,
         )
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()

@@ -381,6 +381,7 @@ if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
 #line 382 "model.cpp"
   }
 
+  static constexpr bool has_special_states = true;
   static double special_states(State& next, auto& random) {
     double reward = 0;
     reward += aos::special_state(next, 0u, [&](auto&... result) {

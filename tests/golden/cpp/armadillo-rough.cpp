@@ -378,6 +378,7 @@ if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
 #line 379 "model.cpp"
   }
 
+  static constexpr bool has_special_states = true;
   static double special_states(State& next, auto& random) {
     double reward = 0;
     reward += aos::special_state(next, 0u, [&](auto&... result) {

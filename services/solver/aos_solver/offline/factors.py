@@ -25,12 +25,17 @@ Outcomes = tuple[Integers, Integers, Floats]
 """Rows, values and probabilities of what a distribution gives for several rows of parents."""
 
 
-class Variable(msgspec.Struct, frozen=True):
+class Variable(msgspec.Struct, frozen=True, dict=True):
     """What a variable can be: a state before or after the step, an action, an observation."""
 
     name: str
     values: tuple[str, ...]
     line: int = 0
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """The number of each value."""
+        return {value: number for number, value in enumerate(self.values)}
 
 
 class Entry(msgspec.Struct, frozen=True):

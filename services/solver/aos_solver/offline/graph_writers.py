@@ -12,6 +12,8 @@ from aos_solver.offline.symbols import symbols
 
 __all__ = ["c_header", "graphviz", "write_text"]
 
+_MOST_NUMBERED = 0xFFFE
+
 
 def write_text(path: Path, text: str) -> None:
     """Writes a file; PlanningError AOS101 where the disk refuses."""
@@ -52,7 +54,16 @@ def _quoted(text: str) -> str:
 
 
 def c_header(graph: PolicyGraph, name: str) -> str:
-    """A header in C99; all its names begin with `name`, which needs no heap, no library and no start-up."""
+    """A header in C99, all names of which begin with `name`; it needs no heap, no library and no start-up.
+
+    PlanningError AOS320 if nodes or observations are more than 16 bits can number.
+    """
+    if max(len(graph.nodes), len(graph.model.observations)) >= _MOST_NUMBERED:
+        raise PlanningError(
+            f"{graph.model.name} has too many observations or nodes for 16 bits",
+            code="AOS320",
+            hint="Ask for fewer --nodes, or use the .policy file",
+        )
     return "\n".join(_header_lines(graph, symbols([name.lower()])[0])) + "\n"
 
 

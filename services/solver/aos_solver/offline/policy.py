@@ -36,7 +36,7 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
 
     `model_digest` is the compiled model's, or the problem file's. `states` are the engine's texts of states,
     or the problem file's names. From the start the policy gives at least `lower`, and none gives more than
-    `upper`; both discounted.
+    `upper`; both discounted. With a `stop_value` the last action is to end the mission, which is worth that.
     """
 
     format: str = FORMAT
@@ -45,6 +45,7 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     discount: float
     lower: float
     upper: float
+    stop_value: float | None = None
     actions: tuple[str, ...]
     states: tuple[str, ...]
     regions: tuple[_RegionSize, ...] = ()
@@ -136,20 +137,25 @@ class PolicySearch(Search, frozen=True, kw_only=True):
 
     policy: Policy
 
+    async def think(self, engine: Engine, step: int, index: int) -> None:
+        """Nothing: a policy is ready made."""
+
     async def run(self, engine: Engine, step: int) -> Plan:
-        """The policy's action at the engine's belief; PlanningError AOS322 if the policy does not fit."""
+        """The policy's action at the engine's belief; PlanningError AOS322 if the policy does not fit.
+
+        Where the policy would stop it is the best of the other actions, whose value is then below that of
+        stopping: whether the mission ends is for the mission's limits to say.
+        """
         begun_s = time.perf_counter()
         self.policy.check_model(engine.model_digest)
         choice = self.policy.choose(await engine.export_belief())
-        prediction = await engine.predict(choice.action)
+        names = [action.name for action in engine.description.actions]
+        best = int(np.argmax(choice.values[: len(names)]))
+        prediction = await engine.predict(best)
         actions = tuple(
             ActionValue(name, float(value), int(plans), 0.0)
-            for name, value, plans in zip(
-                self.policy.header.actions, choice.values, choice.plans, strict=True
-            )
+            for name, value, plans in zip(names, choice.values, choice.plans, strict=False)
         )
         spent_s = time.perf_counter() - begun_s
         horizon = engine.description.horizon
-        return Plan(
-            choice.action, 0, horizon, actions, prediction.predicted, spent_s, planner="policy"
-        )
+        return Plan(best, 0, horizon, actions, prediction.predicted, spent_s, planner="policy")

@@ -7,6 +7,7 @@ graph gives is computed exactly, so that nothing is lost unseen.
 
 from __future__ import annotations
 
+import hashlib
 import heapq
 from collections.abc import Iterator
 
@@ -25,6 +26,8 @@ _NEGLIGIBLE = 1e-9
 _ROUNDING_DIGITS = 9
 _MOST_SWEEPS = 20_000
 _SETTLED = 1e-8
+_FORGOTTEN = np.zeros(0)
+"""The belief of a node that is finished; there may be thousands over many states."""
 
 
 class GraphNode(msgspec.Struct, frozen=True):
@@ -89,6 +92,7 @@ class _Building:
                 if probability > _NEGLIGIBLE:
                     reach = node.reach * probability * self.model.discount
                     node.next[observation] = self._node(weights / probability, reach)
+            node.belief = _FORGOTTEN
 
     def _start(self, weight: float, states: Integers, probabilities: Floats) -> int:
         belief = np.zeros(len(self.model.states))
@@ -96,7 +100,8 @@ class _Building:
         return self._node(belief, weight)
 
     def _node(self, belief: Floats, reach: float) -> int:
-        key = np.round(belief, _ROUNDING_DIGITS).tobytes()
+        rounded = np.round(belief, _ROUNDING_DIGITS).tobytes()
+        key = hashlib.blake2b(rounded, digest_size=16).digest()
         if key in self._known:
             return self._known[key]
         plan, action = self._plan(belief)

@@ -64,8 +64,9 @@ def _choice(word: Word, variable: Variable, findings: ProblemFindings) -> int:
         return ANY
     if word.text == "-":
         return EACH
-    if word.text in variable.values:
-        return variable.values.index(word.text)
+    number = variable.numbers.get(word.text)
+    if number is not None:
+        return number
     findings.unknown(f"value of {variable.name} called", word, variable.values)
     return ANY
 

@@ -21,7 +21,7 @@ class TooManyFindingsError(Exception):
     """There is no point in reading on."""
 
 
-class Word(msgspec.Struct, frozen=True):
+class Word(msgspec.Struct, frozen=True, gc=False):
     """A word of the file and its place; lines and columns count from 1."""
 
     text: str

@@ -1,5 +1,5 @@
-// What a state is worth to somebody who sees it, for models of up to some hundred thousand states: the upper bound of
-// DESPOT, and the actions that its default policy prefers.
+// What a state is worth to somebody who sees it, for models of up to some hundred thousand states: what planners count
+// values from, an upper bound of them, and the actions that DESPOT's default policy prefers.
 //
 // Values are of the underlying MDP by value iteration, for each number of decisions to go until they no longer change,
 // or only for the most where there is no room.
@@ -29,7 +29,7 @@ class SeenValues {
   // Prepares values for up to `horizon` decisions. Returns whether the model is small enough; the limits are in states
   // and outcomes, not in time, so that decisions can be repeated. Does little for a belief whose states are known.
   bool prepare(const Belief<Model>& belief, int horizon) {
-    if (is_too_large_) return false;
+    if (is_too_large_ || Model::action_count() == 0) return false;
     const std::size_t known = states_.size();
     try {
       states_.reach_from(belief);
@@ -62,6 +62,21 @@ class SeenValues {
   // With `horizon` decisions to go.
   double value(std::uint32_t number, int horizon) const {
     return number == RelevantStates<Model>::none ? highest_ : layer(horizon)[number];
+  }
+
+  // What an action costs somebody who sees the state, against the best one: how much less it is worth, so never above 0.
+  double advantage(std::uint32_t number, int action, int horizon) const {
+    if (number == RelevantStates<Model>::none) return 0;
+    const std::size_t pair = number * actions() + static_cast<std::size_t>(action);
+    const std::vector<double>& later = layer(horizon - 1);
+    double continuation = 0;
+    const std::size_t first = pair == 0 ? 0 : states_.branch_ends()[pair - 1];
+    for (std::size_t branch = first; branch < states_.branch_ends()[pair]; ++branch) {
+      const auto [next, probability] = states_.branches()[branch];
+      continuation += probability * later[next];
+    }
+    const double worth = states_.rewards()[pair] + Model::discount * continuation;
+    return std::min(worth - layer(horizon)[number], 0.0);
   }
 
   // Adds what each action is worth with many decisions to go.

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
@@ -21,6 +23,7 @@
 #include <vector>
 
 #include "aos/blame.hpp"
+#include "aos/budget.hpp"
 #include "aos/commands.hpp"
 #include "aos/fault.hpp"
 
@@ -63,6 +66,13 @@ inline PlannerKind planner_of(const std::vector<std::string_view>& fields, std::
   return *kind;
 }
 
+// Simulations, seconds and, at another place, threads.
+inline Budget budget_of(const std::vector<std::string_view>& fields, std::size_t index, std::size_t threads_index) {
+  const int threads = number_of<int>(fields, threads_index);
+  return {number_of<std::uint64_t>(fields, index), number_of<double>(fields, index + 1),
+          std::clamp(threads, 1, most_search_threads)};
+}
+
 template <class Model>
 void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, JsonWriter& json) {
   const std::string_view command = fields[0];
@@ -72,7 +82,10 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "describe") return engine.describe(json);
   if (command == "reset_belief") return engine.reset_belief(json);
   if (command == "summary") return engine.summary(json);
-  if (command == "plan") return engine.plan(json, {large(1), real(2)}, large(3), whole(4), planner_of(fields, 5));
+  if (command == "plan") {
+    return engine.plan(json, budget_of(fields, 1, 6), large(3), whole(4), planner_of(fields, 5));
+  }
+  if (command == "think") return engine.think(json, budget_of(fields, 1, 5), large(3), whole(4));
   if (command == "count_processor_time") return engine.count_processor_time(json, whole(1) != 0);
   if (command == "exact") return engine.exact(json, whole(1), large(2), real(3));
   if (command == "reach") return engine.reach(json, real(1));
@@ -129,6 +142,12 @@ inline void share_blame(const char* path) {
   ::close(file);
 }
 
+// Whether a command waits. It is asked after an answer, when nothing of the next command was read yet.
+inline bool has_input() {
+  pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+  return ::poll(&input, 1, 0) > 0;
+}
+
 inline void say(std::FILE* out, const JsonWriter& json) {
   std::fwrite(json.text().data(), 1, json.text().size(), out);
   std::fputc('\n', out);
@@ -172,6 +191,7 @@ int run_child(int argc, char** argv) {
     json.clear();
     detail::guarded(json, [&] { detail::answer(*engine, detail::fields_of(text), json); });
     detail::say(out, json);
+    engine->go_on_thinking(detail::has_input);
   }
   std::free(line);
   return 0;

@@ -79,15 +79,12 @@ class Engine {
     if (horizon != planned_horizon_) search_.forget();
     planned_horizon_ = horizon;
     Sampler random{seed};
+    const std::uint64_t known = search_.known_simulations();
     const std::uint64_t simulations = search_.search(planner, belief_, budget, horizon, random);
     const auto estimates = search_.estimates(belief_);
-    int best = 0;
-    for (int action = 1; action < Model::action_count(); ++action) {
-      const auto& candidate = estimates[static_cast<std::size_t>(action)];
-      const auto& leader = estimates[static_cast<std::size_t>(best)];
-      if (candidate.n > 0 && (leader.n == 0 || candidate.q > leader.q)) best = action;
-    }
+    const int best = search_.choice(estimates);
     json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
+    json.member("known_simulations", known);
     json.member("planner", search_.name()).member("why", search_.why());
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
@@ -99,6 +96,26 @@ class Engine {
     write_predicted(json, best);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     json.member("seconds", spent.count()).member("cpu_seconds", seconds_since(processor_start)).end_object();
+  }
+
+  // Begins to think about what may come after an action that is carried out now; `go_on_thinking` does it.
+  void think(JsonWriter& json, Budget budget, std::uint64_t seed, int action) {
+    thought_ = {.action = checked(action), .budget = budget, .seed = seed};
+    json.begin_object().end_object();
+  }
+
+  // Until the budget is used up or `is_over()`. A fault is left to the next search that meets it.
+  template <class IsOver>
+  void go_on_thinking(IsOver&& is_over) {
+    if (!thought_ || planned_horizon_ == 0) return;
+    const Thought thought = *std::exchange(thought_, std::nullopt);
+    Sampler random{thought.seed};
+    try {
+      search_.think_about(thought.action, belief_, thought.budget, planned_horizon_, random, is_over);
+    } catch (...) {
+      search_.forget();
+      blame::at(0);
+    }
   }
 
   // Budgets in seconds are of processor time from now on, or of real time again.
@@ -247,6 +264,12 @@ class Engine {
   }
 
  private:
+  struct Thought {
+    int action;
+    Budget budget;
+    std::uint64_t seed;
+  };
+
   // Why an observation did not correct the belief; no code where it did.
   struct Uncorrected {
     std::string code;
@@ -335,6 +358,7 @@ class Engine {
   Belief<Model> belief_;
   Planner<Model> search_;
   int planned_horizon_ = 0;
+  std::optional<Thought> thought_;
   State hidden_;
   Sampler world_random_{0};
   Worlds<Model> worlds_;

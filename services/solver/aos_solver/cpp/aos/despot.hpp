@@ -22,8 +22,8 @@
 
 #include "aos/arena.hpp"
 #include "aos/belief.hpp"
+#include "aos/budget.hpp"
 #include "aos/clock.hpp"
-#include "aos/pomcp.hpp"
 #include "aos/random.hpp"
 #include "aos/scenarios.hpp"
 #include "aos/step.hpp"
@@ -36,6 +36,7 @@ inline constexpr double share_of_first_look = 0.2;  // of the budget, for all ac
 inline constexpr double gap_share = 0.95;           // of the root's gap, that a node's share of it may keep
 inline constexpr double penalty_in_deviations = 1;
 inline constexpr std::size_t most_scenario_bytes = std::size_t{512} << 20;
+inline constexpr std::size_t most_node_bytes = std::size_t{128} << 20;
 
 template <class Model>
 class Despot {
@@ -43,20 +44,16 @@ class Despot {
   using State = typename Model::State;
 
   Despot()
-      : nodes_(most_scenario_bytes / 16 / sizeof(Node)),
-        actions_(most_scenario_bytes / 8 / sizeof(ActionNode)),
+      : nodes_(most_node_bytes / sizeof(Node)),
+        actions_(most_node_bytes / sizeof(ActionNode)),
         scenarios_(most_scenario_bytes / sizeof(Scenario<Model>)) {}
-
-  // Derives bounds from the model; returns whether it is small enough. The search does it, too. It takes up to some seconds
-  // for the first decision, which no budget counts, and next to nothing later.
-  bool prepare(const Belief<Model>& belief, int horizon) { return has_values_ = evaluation_.prepare(belief, horizon); }
-  std::size_t known_states() const { return evaluation_.known_states(); }
 
   // Runs the search and returns how many simulations it took: a simulation is a step of a scenario with the evaluation of
   // what it leads to.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
     using Seconds = std::chrono::duration<double>;
-    prepare(belief, horizon);
+    // Up to some seconds for the first decision, which no budget counts, and next to nothing later.
+    evaluation_.prepare(belief, horizon);
     budget_ = budget;
     latest_ = budget.seconds > 0
                   ? PlanningClock::now() + std::chrono::duration_cast<PlanningClock::duration>(Seconds{budget.seconds})
@@ -67,7 +64,7 @@ class Despot {
     actions_.clear();
     scenarios_.clear();
     deviations_.clear();
-    if (!plant(belief, random)) return 0;
+    if (action_count() == 0 || !plant(belief, random)) return 0;
     while (may_go_on() && explore()) {
     }
     return simulations_;
@@ -81,7 +78,7 @@ class Despot {
     const double running = belief.probability_of(Ending::running);
     for (std::size_t a = 0; a < deviations_.size(); ++a) {
       const ActionNode& action = actions_[nodes_[0].first_action + a];
-      result[a] = {running * action.lower, action.trials, running * deviations_[a]};
+      result[a] = {running * (origin_ + action.lower), action.trials, running * deviations_[a]};
     }
     return result;
   }
@@ -131,6 +128,8 @@ class Despot {
     const PlanningClock::duration spent = PlanningClock::now() - start;
     draw_scenarios(belief, affordable_scenarios(spent), running, random);
     if (outcomes_.empty()) return false;
+    origin_ = 0;
+    for (const Observed<Model>& outcome : outcomes_) origin_ += evaluation_.origin(outcome.scenario.seen) / scenario_count_;
     const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, 0);
     penalty_ = penalty_in_deviations * evaluation_.deviation() / static_cast<double>(scenario_count_);
     add_node(0, outcomes_.size(), 0, no_node, bounds);
@@ -159,7 +158,9 @@ class Despot {
       const double seconds = std::chrono::duration<double>(spent).count() / fewest_scenarios;
       share = share_of_first_look * budget_.seconds / (seconds * action_count() * most_evaluated);
     }
-    return std::max(fewest_scenarios, static_cast<std::size_t>(std::min(share, 1.0) * most_scenarios));
+    const auto affordable = static_cast<std::size_t>(std::min(share, 1.0) * most_scenarios);
+    const std::size_t room = std::min(most_node_bytes / sizeof(Node), most_scenario_bytes / sizeof(Scenario<Model>));
+    return std::clamp(room / (2 * action_count()), std::size_t{1}, std::max(affordable, fewest_scenarios));
   }
 
   // --- the tree --------------------------------------------------------------------------------------
@@ -212,8 +213,9 @@ class Despot {
       Observed<Model> outcome{scenarios_[i], default_observation};
       Sampler draws = evaluation_.draws(outcome.scenario.number, depth);
       const Step step = Model::step(outcome.scenario.state, a, draws);
-      reward += step.reward;
-      squares += step.reward * step.reward;
+      const double earned = evaluation_.earned(scenarios_[i].seen, a, depth, step.reward);
+      reward += earned;
+      squares += earned * earned;
       ++simulations_;
       outcome.observation = step.observation;
       if (Model::ending(outcome.scenario.state) != Ending::running || depth + 1 == horizon_) continue;
@@ -328,12 +330,12 @@ class Despot {
   }
 
   Evaluation evaluation_;
-  bool has_values_ = false;
   Budget budget_;
   PlanningClock::time_point latest_;
   int horizon_ = 0;
   std::uint64_t simulations_ = 0;
   std::size_t scenario_count_ = 0;
+  double origin_ = 0;  // what values are counted from
   double penalty_ = 0;
   Arena<Node> nodes_;
   Arena<ActionNode> actions_;

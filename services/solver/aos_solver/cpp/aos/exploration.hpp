@@ -34,7 +34,8 @@ class Exploration {
   // expected rewards and numbers of outcomes, by action; and the outcomes. Throws NotEnumerable.
   template <class ResponseText>
   void go_on(JsonWriter& json, double seconds, ResponseText&& response_text) {
-    const auto latest = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{seconds});
+    const std::chrono::duration<double> allowed{seconds};
+    const auto latest = Clock::now() + std::chrono::duration_cast<Clock::duration>(allowed);
     rewards_.clear();
     counts_.clear();
     outcomes_.clear();
@@ -115,7 +116,9 @@ class Exploration {
     json.begin_object().member("explored", explored_).key("states").begin_array();
     for (; told_states_ < states_.size(); ++told_states_) json.value(Model::save_state(*states_[told_states_]));
     json.end_array().key("observations").begin_array();
-    for (; told_observations_ < observations_.size(); ++told_observations_) json.value(observations_[told_observations_]);
+    for (; told_observations_ < observations_.size(); ++told_observations_) {
+      json.value(observations_[told_observations_]);
+    }
     json.end_array().key("rewards").begin_array();
     for (const double reward : rewards_) json.value(reward);
     json.end_array().key("counts").begin_array();

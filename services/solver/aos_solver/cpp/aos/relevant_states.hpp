@@ -23,8 +23,11 @@
 namespace aos {
 
 inline constexpr std::size_t most_relevant_states = 400'000;
+inline constexpr std::size_t most_relevant_bytes = std::size_t{32} << 20;  // of states
 inline constexpr std::size_t most_relevant_branches = 8'000'000;
+inline constexpr std::size_t most_relevant_paths = 10'000'000;  // of all steps that are enumerated
 inline constexpr std::size_t tried_states = 2000;
+inline constexpr std::size_t first_tried_states = 16;
 inline constexpr int walked_states = 2000;
 inline constexpr std::size_t most_examples = 4;
 
@@ -37,9 +40,11 @@ class RelevantStates {
     float probability;
   };
   static constexpr std::uint32_t none = 0xffffffffu;
+  static constexpr std::size_t most_states = std::min(most_relevant_states, most_relevant_bytes / sizeof(State));
 
   // Adds what can be reached from a belief. Throws NotEnumerable where that is too much.
   void reach_from(const Belief<Model>& belief) {
+    paths_ = 0;
     if (states_.empty()) ignore_everything(belief);
     while (true) {
       for (const auto& particle : belief.particles()) number_of(particle.state);
@@ -128,7 +133,7 @@ class RelevantStates {
     const Key key = key_of(state);
     std::uint32_t& number = numbers_[slot_of(key)];
     if (number == none) {
-      if (states_.size() == most_relevant_states) throw NotEnumerable{"too many states"};
+      if (states_.size() == most_states) throw NotEnumerable{"too many states"};
       number = static_cast<std::uint32_t>(states_.size());
       states_.push_back(state);
       keys_.push_back(key);
@@ -147,13 +152,15 @@ class RelevantStates {
   bool explore() {
     Enumerator draws;
     for (std::size_t number = rewards_.size() / actions(); number < states_.size(); ++number) {
-      if (number == tried_states && tell_apart()) return false;
+      // Early, too, since what is known to matter need not be tried again.
+      if ((number == first_tried_states || number == tried_states) && tell_apart()) return false;
       if (number < tried_states || number % tried_states == 0) try_variables(states_[number]);
       for (std::size_t action = 0; action < actions(); ++action) {
         double reward = 0;
         const std::size_t first = branches_.size();
         if (Model::ending(states_[number]) == Ending::running) {
           draws.for_each_path([&](Enumerator& path) {
+            count_path();
             State next = states_[number];
             const Step step = Model::step(next, static_cast<int>(action), path);
             reward += path.probability() * step.reward;
@@ -165,6 +172,10 @@ class RelevantStates {
       }
     }
     return !tell_apart();
+  }
+
+  void count_path() {
+    if (++paths_ > most_relevant_paths) throw NotEnumerable{"too many outcomes"};
   }
 
   void add_branch(std::size_t first, std::uint32_t next, double probability) {
@@ -186,6 +197,7 @@ class RelevantStates {
       double reward = 0;
       double leads_to = 0;
       comparing_.for_each_path([&](Enumerator& path) {
+        count_path();
         State next = state;
         const Step step = Model::step(next, static_cast<int>(action), path);
         reward += path.probability() * step.reward;
@@ -230,6 +242,7 @@ class RelevantStates {
 
   std::vector<Variable> variables_;
   Key mask_{};
+  std::size_t paths_ = 0;
   Enumerator comparing_;
   std::vector<State> states_;
   std::vector<Key> keys_;

@@ -70,29 +70,38 @@ struct ScenarioBounds {
 
 // Evaluates scenarios: what a default policy earns, and what nobody can exceed.
 //
-// Where the model is small enough (bounds.hpp), the bound is what somebody would earn who sees the state, and a policy
-// takes the action that is best on average over what it would be worth to such a one in each scenario of a group, and
-// goes on by what is observed. Scenarios whose observation only few others share stay together: a policy that went by
-// those few would know what nobody can know. The other policy is that of the rollouts; where there are no values of seen
-// states, the most that a few of them earn stands for the bound, though it is none. Where there are both, a history has
-// the better one for its default policy. Of many scenarios with the same history some stand for all.
+// Where the model is small enough (bounds.hpp), all is counted from what a scenario's state is worth to somebody who sees
+// it: a step costs what its action is worth less than the best one for that state. On average over all luck that adds up to
+// the same, but most of the luck is left out, and 0 is what nobody can exceed. There a policy takes the action that is best
+// on average over the scenarios of a group, by what it would be worth to somebody who sees them, and goes on by what
+// is observed. Scenarios whose observation only few others share stay together: a policy that went by those few would know
+// what nobody can know.
+//
+// The other policy is that of the rollouts; where there are no values of seen states, the most that a few of them earn
+// stands for the bound, though it is none. Where there are both, a history has the better one for its default policy. Of
+// many scenarios with the same history some stand for all.
 template <class Model>
 class ScenarioEvaluation {
  public:
   using State = typename Model::State;
-  // Returns whether the model is small enough for values of seen states.
-  bool prepare(const Belief<Model>& belief, int horizon) {
+  // Derives values from the model where it is small enough.
+  void prepare(const Belief<Model>& belief, int horizon) {
     horizon_ = horizon;
     has_values_ = values_.prepare(belief, horizon);
-    return has_values_;
   }
-  std::size_t known_states() const { return values_.states(); }
   std::uint32_t seen(const State& state) const { return has_values_ ? values_.number_of(state) : 0; }
   // The same for the state that an action has led to from one with the number `before`.
   std::uint32_t seen_next(std::uint32_t before, int action, const State& state) const {
     if (!has_values_) return 0;
     const std::uint32_t next = values_.certain_next(before, action);
     return next != RelevantStates<Model>::none ? next : values_.number_of(state);
+  }
+
+  // What is counted from: what a state is worth to somebody who sees it, or nothing.
+  double origin(std::uint32_t seen) const { return has_values_ ? values_.value(seen, horizon_) : 0; }
+  // What a step earns by this count.
+  double earned(std::uint32_t seen_before, int action, int depth, double reward) const {
+    return has_values_ ? values_.advantage(seen_before, action, horizon_ - depth) : reward;
   }
 
   // New luck for all scenarios.
@@ -121,7 +130,7 @@ class ScenarioEvaluation {
       best_ = !has_values_ || (has_rollouts() && by_rollouts.mean() > by_average.mean()) ? by_rollouts : by_average;
       for (std::size_t i = first; i < last; ++i) {
         bounds_[i].lower = best_.mean();
-        bounds_[i].upper = has_values_ ? values_.value(scenarios[i].scenario.seen, horizon_ - depth) : best_.mean_of_most();
+        bounds_[i].upper = has_values_ ? 0 : best_.mean_of_most();
       }
     });
     return bounds_;
@@ -171,7 +180,8 @@ class ScenarioEvaluation {
       sum += found;
       most = std::max(most, found);
     }
-    earnings.add(sum / count, most);
+    const double origin = has_values_ ? values_.value(scenario.seen, horizon_ - depth) : 0;
+    earnings.add(sum / count - origin, most);
   }
 
   // The followers from `first` to `last` part by what they have observed last.
@@ -199,7 +209,7 @@ class ScenarioEvaluation {
       State& state = follower.scenario.state;
       Sampler random = draws(follower.scenario.number, depth);
       const Step step = Model::step(state, action, random);
-      earned_[follower.index] += discount * step.reward;
+      earned_[follower.index] += discount * earned(follower.scenario.seen, action, depth, step.reward);
       follower.observation = step.observation;
       if (Model::ending(state) == Ending::running) {
         follower.scenario.seen = seen_next(follower.scenario.seen, action, state);

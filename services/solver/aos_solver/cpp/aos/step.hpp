@@ -1,6 +1,8 @@
 // What one simulated step gives, and observations as numbers.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -40,7 +42,10 @@ inline Observation text_observation(std::string_view text) {
   }
   auto number = static_cast<Observation>(hash | (std::uint64_t{1} << 63));
   if (number == default_observation) --number;
-  detail::observed_texts().try_emplace(number, text);
+  // Most texts come again soon.
+  thread_local std::array<Observation, 256> recent{};
+  Observation& last = recent[static_cast<std::size_t>(number) % recent.size()];
+  if (last != number) detail::observed_texts().try_emplace(last = number, text);
   return number;
 }
 

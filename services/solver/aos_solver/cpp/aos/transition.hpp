@@ -48,6 +48,7 @@ struct SkillDefaults {
 struct EnvironmentDefaults {
   static constexpr bool is_one_state = false;
   static constexpr bool has_extrinsic_changes = false;
+  static constexpr bool has_special_states = false;
   static void initial_belief(auto&, auto&) {}
   static void extrinsic_changes(auto&, auto&, double&, int, const auto&, auto&) {}
   static double special_states(auto&, auto&) { return 0; }
@@ -114,13 +115,20 @@ Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, a
 
   std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
   Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
-  check_reward(effect.reward);
-  const double special_reward = Environment::special_states(next, random);
-  const double penalty = meets_precondition ? 0 : Skill::violation_penalty;
-
   Step step;
-  step.reward = penalty + extrinsic_reward + effect.reward + special_reward;
+  step.reward = effect.reward;
+  // Only what there is to add, since adding nothing takes time as well.
+  const double penalty = meets_precondition ? 0 : Skill::violation_penalty;
+  if constexpr (Environment::has_extrinsic_changes) {
+    step.reward = penalty + extrinsic_reward + effect.reward;
+  } else if constexpr (Skill::violation_penalty != 0) {
+    step.reward = penalty + effect.reward;
+  }
   check_reward(step.reward);
+  if constexpr (Environment::has_special_states) {
+    step.reward += Environment::special_states(next, random);
+    check_reward(step.reward);
+  }
   step.observation = observation_of<Skill>(effect);
   return step;
 }

@@ -32,7 +32,11 @@ class Walks {
     int first = 0;
     for (int action = 0; action < static_cast<int>(ends_.size()); ++action) {
       const int end = ends_[static_cast<std::size_t>(action)];
-      const auto state_at = [&](int place) -> State& { return walks_[order_[place]].state; };
+      const auto state_at = [&](int place) -> State& {
+        State& state = walks_[order_[place]].state;
+        if (Model::ending(state) != Ending::running) __builtin_unreachable();
+        return state;
+      };
       if (first < end) rewards += Model::step_all(action, first, end, state_at, random_);
       first = end;
     }

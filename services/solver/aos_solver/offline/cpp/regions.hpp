@@ -53,9 +53,9 @@ struct Region {
 class Regions {
  public:
   explicit Regions(const FlatModel& model)
-      : model_(model), is_worthless_(worthless_states()), parent_(model.states), region_of(model.states, nowhere),
-        local_of(model.states, nowhere) {
+      : region_of(model.states, nowhere), local_of(model.states, nowhere), model_(model), parent_(model.states) {
     std::iota(parent_.begin(), parent_.end(), 0u);
+    is_worthless_ = worthless_states();
     find_reached();
     for (const Start& start : model.starts) unite_start(start);
     while (unite_successors()) {}
@@ -63,18 +63,9 @@ class Regions {
     for (Region& region : all) add_moves(region);
   }
 
-  bool is_worthless(std::size_t state) const { return is_worthless_[state]; }
-
- private:
-  const FlatModel& model_;
-  std::vector<bool> is_worthless_;
-  std::vector<bool> is_reached_;
-  std::vector<std::uint32_t> parent_;
-
- public:
   std::vector<Region> all;
   std::vector<std::uint32_t> region_of;  // of a state; nowhere if it is worthless or never reached
-  std::vector<std::uint32_t> local_of;
+  std::vector<std::uint32_t> local_of;   // a state's number in its region
 
  private:
   // The largest set of states without rewards that no action leaves.
@@ -82,7 +73,8 @@ class Regions {
     std::vector<bool> worthless(model_.states);
     for (std::size_t state = 0; state < model_.states; ++state) {
       const auto first = model_.rewards.begin() + static_cast<std::ptrdiff_t>(model_.row(state, 0));
-      worthless[state] = std::all_of(first, first + static_cast<std::ptrdiff_t>(model_.actions), [](double r) { return r == 0; });
+      const auto last = first + static_cast<std::ptrdiff_t>(model_.actions);
+      worthless[state] = std::all_of(first, last, [](double reward) { return reward == 0; });
     }
     for (bool has_changed = true; has_changed;) {
       has_changed = false;
@@ -212,6 +204,11 @@ class Regions {
       move.sights[sight->second].landings.push_back({target, local_of[outcome.next], reading->probability});
     }
   }
+
+  const FlatModel& model_;
+  std::vector<std::uint32_t> parent_;  // of a state in the forest of what is united
+  std::vector<bool> is_worthless_;
+  std::vector<bool> is_reached_;
 };
 
 }  // namespace aos::offline

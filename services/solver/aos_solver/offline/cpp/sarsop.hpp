@@ -51,7 +51,9 @@ class Sarsop {
   void prune() {
     vectors_added_ = 0;
     std::vector<std::vector<bool>> is_best(regions_.all.size());
-    for (std::uint32_t region = 0; region < regions_.all.size(); ++region) is_best[region].resize(graph_.lower(region).size());
+    for (std::uint32_t region = 0; region < is_best.size(); ++region) {
+      is_best[region].resize(graph_.lower(region).size());
+    }
     std::vector<bool> is_reached(graph_.size());
     std::vector<std::uint32_t> waiting;
     const auto reach = [&](std::uint32_t number) {

@@ -1,0 +1,104 @@
+"""Models at the edges of what documents can say: each is planned, or refused with the reason."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+from aos_protocol.errors import ModelError
+
+MAPPING = """project: odd
+
+{responses}
+
+module_activation: skill
+path: /act
+
+local_variable: text
+type: string
+from_ros_service_response: true
+code:
+text = __input.text
+"""
+
+DONE = "response: done\nresponse_rule: True"
+
+CROWDED = {
+    "odd.ef": "project: odd\nhorizon: 5\ndiscount: 0.9\n\n"
+    + "".join(f"state_variable: int count_{number}\n\n" for number in range(100))
+    + "state_variable: int cells []\ncode:\nstate.cells.assign(1000, 0);\n\n"
+    "initial_belief:\nstate.cells[AOS.Bernoulli(0.5) ? 7 : 8] = 1;\n",
+    "dig.sd": """project: odd
+parameter: int cell
+
+available_parameters_code:
+for (int cell = 0; cell < 1000; cell++) __possibleParameters.push_back(std::make_tuple(cell));
+
+dynamic_model:
+__reward = state.cells[cell] == 1 ? 10 : -1;
+state__.cells[cell] = 0;
+state__.count_99 += 1;
+__moduleResponse = done;
+""",
+    "dig.am": MAPPING.format(responses=DONE),
+}
+"""1,000 actions, 100 variables, an array of 1,000 cells."""
+
+SINGLE = {
+    "odd.ef": """project: odd
+horizon: 5
+discount: 0.9
+
+state_variable: int tosses
+
+state_variable: bool is_hot
+
+initial_belief:
+state.is_hot = AOS.Bernoulli(0.3);
+""",
+    "toss.sd": """project: odd
+
+dynamic_model:
+state__.tosses = 0;
+while (AOS.Bernoulli(0.5)) state__.tosses++;
+__reward = state__.tosses;
+__moduleResponseStr = state.is_hot ? "it is hot" : "it is cold";
+""",
+    "toss.am": MAPPING.format(responses="").replace("\n\n\n", "\n") + "response_local_variable: text\n",
+}
+"""One action, texts as observations, and a loop that only chance ends."""
+
+NOTHING = {
+    "odd.ef": CROWDED["odd.ef"],
+    "dig.sd": CROWDED["dig.sd"].replace("cell < 1000", "cell < 0"),
+    "dig.am": CROWDED["dig.am"],
+}
+"""No action at all."""
+
+
+async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir: Path) -> None:
+    async with engine_of(await built_text(CROWDED, cache_dir)) as engine:
+        assert len(engine.description.actions) == 1000
+        plan = await engine.plan(simulations=20_000, seed=1, threads=2)
+        assert plan.index in (7, 8)
+        after = await engine.update(plan.best.action, "done")
+    assert after.probability == pytest.approx(1)
+
+
+async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache_dir: Path) -> None:
+    async with engine_of(await built_text(SINGLE, cache_dir)) as engine:
+        plan = await engine.plan(simulations=5_000, seed=1)
+        assert plan.best.q == pytest.approx(1 + 0.9 + 0.81 + 0.729 + 0.6561, abs=0.3)
+        assert {seen.response for seen in plan.predicted} == {"it is hot", "it is cold"}
+        update = await engine.update("toss", "it is hot")
+    marginals = {marginal.variable: marginal.values for marginal in update.summary.marginals}
+    assert marginals["is_hot"] == {"true": pytest.approx(1)}
+
+
+async def test_a_model_without_an_action_is_refused(cache_dir: Path) -> None:
+    with pytest.raises(ModelError) as error:
+        async with engine_of(await built_text(NOTHING, cache_dir)):
+            pass
+    assert error.value.code == "AOS119"

@@ -1,0 +1,221 @@
+"""The search against known values: the tiger's optimum, and small random POMDPs solved independently."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import msgspec
+import numpy as np
+import pytest
+from models import built_bundle, built_text, engine_of
+
+from aos_solver.answers import Plan
+from aos_solver.build import BuiltModel
+from aos_solver.engine import Engine
+
+WORLDS = 5
+STATES = 3
+ACTIONS = 2
+HORIZON = 4
+DISCOUNT = 0.9
+
+SKILL = """project: chance
+parameter: int choice
+
+available_parameters_code:
+for (int choice = 0; choice < 2; choice++) __possibleParameters.push_back(std::make_tuple(choice));
+
+dynamic_model:
+int row = (state.world * 2 + choice) * 3 + state.place;
+__reward = state.rewards[row];
+std::vector<double> odds = {state.moves[3 * row], state.moves[3 * row + 1], state.moves[3 * row + 2]};
+state__.place = AOS.SampleDiscrete(odds);
+__moduleResponse = AOS.Bernoulli(state.alarms[row - state.place + state__.place]) ? alarm : quiet;
+"""
+
+MAPPING = """project: chance
+
+response: alarm
+response_rule: heard == 'alarm'
+response: quiet
+response_rule: True
+
+module_activation: skill
+path: /act
+
+local_variable: heard
+type: string
+from_ros_service_response: true
+code:
+heard = __input.sound
+"""
+
+
+class Chance:
+    """Random POMDPs, one for each value of the variable `world`: three places, two actions, two responses."""
+
+    def __init__(self, seed: int) -> None:
+        random = np.random.default_rng(seed)
+        self.moves = random.dirichlet(np.ones(STATES), size=(WORLDS, ACTIONS, STATES))
+        self.alarms = random.random((WORLDS, ACTIONS, STATES))
+        self.rewards = random.normal(size=(WORLDS, ACTIONS, STATES))
+
+    def documents(self) -> dict[str, str]:
+        """As SDL; the numbers are written without loss."""
+        tables = "\n".join(
+            f"state_variable: double {name} []\ncode:\nstate.{name} = {{{', '.join(map(repr, values))}}};\n"
+            for name, values in (
+                ("moves", self.moves.ravel().tolist()),
+                ("alarms", self.alarms.ravel().tolist()),
+                ("rewards", self.rewards.ravel().tolist()),
+            )
+        )
+        environment = f"""project: chance
+horizon: {HORIZON}
+discount: {DISCOUNT}
+
+state_variable: int world
+
+state_variable: int place
+
+{tables}
+initial_belief:
+state.world = AOS.SampleDiscrete(std::vector<double>({WORLDS}, 1.0 / {WORLDS}));
+state.place = AOS.SampleDiscrete(std::vector<double>({STATES}, 1.0 / {STATES}));
+"""
+        return {"chance.ef": environment, "act.sd": SKILL, "act.am": MAPPING}
+
+    def posterior(
+        self, world: int, belief: np.ndarray, action: int, is_alarm: bool
+    ) -> tuple[np.ndarray, float]:
+        """Bayes' rule, and the probability of what was observed."""
+        alarms = self.alarms[world, action]
+        joint = (belief @ self.moves[world, action]) * (alarms if is_alarm else 1 - alarms)
+        return joint / joint.sum(), float(joint.sum())
+
+    def values(self, world: int, belief: np.ndarray, horizon: int) -> list[float]:
+        """Of both actions with so many decisions to go, by going through all that may be observed."""
+        found = []
+        for action in range(ACTIONS):
+            value = float(belief @ self.rewards[world, action])
+            for is_alarm in (False, True) if horizon > 1 else ():
+                after, probability = self.posterior(world, belief, action, is_alarm)
+                value += DISCOUNT * probability * max(self.values(world, after, horizon - 1))
+            found.append(value)
+        return found
+
+
+CHANCE = Chance(seed=20261121)
+
+
+@pytest.fixture
+async def chance(cache_dir: Path) -> AsyncIterator[Engine]:
+    """An engine that may be in any of the random worlds."""
+    async with engine_of(await built_text(CHANCE.documents(), cache_dir)) as engine:
+        yield engine
+
+
+async def _enter(engine: Engine, world: int) -> None:
+    """The belief that this is the world, and that the robot may be anywhere in it."""
+    await engine.reset_belief()
+    everything = await engine.export_belief()
+    per_world = len(everything.particles) // WORLDS
+    particles = everything.particles[world * per_world : (world + 1) * per_world]
+    summary = await engine.import_belief(msgspec.structs.replace(everything, particles=particles))
+    assert {m.variable: m.values for m in summary.marginals}["world"] == {str(world): pytest.approx(1)}
+
+
+@pytest.mark.parametrize("world", range(WORLDS))
+async def test_random_worlds_have_the_values_that_an_independent_program_gives(
+    world: int, chance: Engine
+) -> None:
+    await _enter(chance, world)
+    truth = CHANCE.values(world, np.full(STATES, 1 / STATES), HORIZON)
+    exact = [value.q for value in (await chance.exact()).actions]
+    assert exact == pytest.approx(truth, abs=1e-9)
+    plan = await chance.plan(simulations=200_000, seed=1)
+    assert plan.best.q == pytest.approx(max(truth), abs=0.03)
+    assert max(truth) - truth[plan.index] < 0.03
+
+
+@pytest.mark.parametrize("world", range(WORLDS))
+async def test_beliefs_in_random_worlds_follow_bayes_rule(world: int, chance: Engine) -> None:
+    await _enter(chance, world)
+    belief = np.full(STATES, 1 / STATES)
+    names = [action.name for action in chance.description.actions]
+    for action, is_alarm in ((0, True), (1, False), (1, True), (0, False)):
+        belief, probability = CHANCE.posterior(world, belief, action, is_alarm)
+        update = await chance.update(names[action], "alarm" if is_alarm else "quiet")
+        assert update.probability == pytest.approx(probability, abs=1e-12)
+        places = {m.variable: m.values for m in update.summary.marginals}["place"]
+        assert [places[str(place)] for place in range(STATES)] == pytest.approx(belief.tolist(), abs=1e-12)
+
+
+@pytest.fixture
+async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
+    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
+
+
+async def test_the_tiger_is_listened_for_while_it_was_heard_on_both_sides(tiger: BuiltModel) -> None:
+    async with engine_of(tiger) as engine:
+        decisions = []
+        for heard in ("tiger_left", "tiger_right", "tiger_left"):
+            decisions.append((await engine.plan(simulations=50_000, seed=3)).best.action)
+            await engine.update("listen", heard)
+        decisions.append((await engine.plan(simulations=50_000, seed=3)).best.action)
+    assert decisions == ["listen"] * 4
+
+
+async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel) -> None:
+    async with engine_of(tiger) as engine:
+        exact = {value.action: value.q for value in (await engine.exact(4)).actions}
+        plan = await engine.plan(simulations=200_000, seed=2, horizon=4)
+    assert plan.best.q == pytest.approx(max(exact.values()), abs=0.3)
+    assert exact[plan.best.action] == max(exact.values())
+
+
+async def test_threads_that_share_a_budget_repeat_to_the_bit(tiger: BuiltModel) -> None:
+    async def decide() -> Plan:
+        async with engine_of(tiger) as engine:
+            await engine.plan(simulations=5_001, seed=4, threads=3)
+            await engine.update("listen", "tiger_left")
+            return await engine.plan(simulations=5_001, seed=5, threads=3)
+
+    first, again = await decide(), await decide()
+    assert first.actions == again.actions
+    assert first.simulations == 5_001
+    assert first.known_simulations == again.known_simulations > 0
+
+
+async def test_threads_decide_as_one_thread_does(chance: Engine) -> None:
+    await _enter(chance, 0)
+    alone = await chance.plan(simulations=100_000, seed=1)
+    await _enter(chance, 0)
+    together = await chance.plan(simulations=100_000, seed=1, threads=2)
+    assert together.index == alone.index
+    assert together.best.q == pytest.approx(alone.best.q, abs=0.03)
+
+
+async def test_thinking_while_acting_leaves_a_warm_start_and_stops_when_it_is_asked(
+    tiger: BuiltModel,
+) -> None:
+    async with engine_of(tiger) as engine:
+        await engine.plan(simulations=100, seed=1)
+        await engine.update("listen", "tiger_left")
+        idle = await engine.plan(simulations=100, seed=2)
+        await engine.think(idle.index, seed=3, time_s=0.2)
+        predicted = await engine.predict(idle.index)  # What is asked now ends the thinking...
+        await engine.think(idle.index, seed=3, time_s=60)
+        await engine.update(idle.best.action, predicted.predicted[0].response)  # ...and so does this.
+        warm = await engine.plan(simulations=100, seed=4)
+    assert warm.known_simulations > idle.known_simulations
+
+
+async def test_a_belief_that_has_ended_costs_no_simulations(bundles: Path, cache_dir: Path) -> None:
+    async with engine_of(await built_bundle(bundles / "bench" / "tag", cache_dir)) as engine:
+        particles = await engine.export_belief()
+        await engine.update("tag", "tagged")
+        ended = await engine.plan(simulations=1000, seed=1, threads=2)
+    assert particles.is_exact
+    assert all(value.q == 0 for value in ended.actions)

@@ -1,0 +1,87 @@
+"""Which copies of the state a step keeps: those that are read after a newer one is written."""
+
+from __future__ import annotations
+
+import pytest
+from scripted_models import mapping_text, text_project
+
+from aos_solver.lower_copies import Copies, copies_of
+
+HOME = """project: test
+horizon: 3
+discount: 0.9
+define_type: Cup
+variable: bool full false
+state_variable: Cup cup
+state_variable: int level
+state_variable: int other
+state_variable: int row []
+code:
+state.row = {1, 2};
+"""
+
+
+def copies(act: str, extrinsic: str = "") -> Copies:
+    project = text_project(
+        {
+            "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
+            "act.sd": f"project: test\ndynamic_model:\n{act}\n",
+            "act.am": mapping_text("done"),
+        }
+    )
+    return copies_of(project.skills[0].model, project.environment)
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        "state__.level = state.level + 1;",
+        "state__.level += state_.level; state__.other = state.other;",
+        "int before = state.level; state__.level = 2; __reward = before;",
+        "if (state.level > 1) state__.level = 0; else state__.other = 1;",
+        "state__.row[state.row[0]] = state.row[1];",
+        "state__.level = 1; __reward = state.other + state__.level;",
+        "state__.level = state__.other = state.level + state.other;",
+        "for (int i = 0; i < 2; i++) state__.row[i] = state.level;",
+        "__reward = state.level;",
+    ],
+)
+def test_one_object_does_where_all_is_read_before_it_is_written(act: str) -> None:
+    assert copies(act) == Copies(keeps_state=False, keeps_state_=False)
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        "state__.level = 1; __reward = state.level;",
+        "state__.level++; __reward = state_.level;",
+        "state__.other = (state__.level = 1) + state.level;",
+        "for (int i = 0; i < 2; i++) state__.row[i] = state.row[1 - i];",
+        "const auto& row = state.row; state__.row[0] = 5; __reward = row[0];",
+        "const int* level = &state.level; state__.level = 5; __reward = *level;",
+        "auto it = state.row.begin(); state__.row[0] = 5; __reward = *it;",
+        "auto level = [&] { return state.level; }; state__.level = 5; __reward = level();",
+        "auto& next = state__; next.level = 1; __reward = state.level;",
+        "auto raise = [](auto& all) { all.level = 1; }; raise(state__); __reward = state.level;",
+        "std::swap(state__.level, state__.other); __reward = state.other;",
+        "for (Cup* cup : state__.CupObjects) cup->full = true;\n__reward = state.cup.full;",
+        "state__.row.clear(); __reward = state.row.size();",
+        "state__ = state; state__.level = state.level;",
+    ],
+)
+def test_the_old_state_is_kept_where_it_may_be_read_afterwards(act: str) -> None:
+    assert copies(act).keeps_state
+
+
+@pytest.mark.parametrize(
+    ("act", "extrinsic", "kept"),
+    [
+        ("state__.level = state_.level;", "state_.level = state.level;", (False, False)),
+        ("__reward = state.level;", "state_.level = 1;", (True, False)),
+        ("state__.level = 1; __reward = state_.level;", "state_.other = 1;", (False, True)),
+        ("state__.level = 1; __reward = state.level;", "state_.other = 1;", (True, False)),
+        ("", "state_.level = 1; __reward = state.level;", (True, False)),
+    ],
+)
+def test_extrinsic_changes_come_between_two_copies(act: str, extrinsic: str, kept: tuple[bool, bool]) -> None:
+    assert copies(act or "__reward = 1;", extrinsic) == Copies(*kept)
