@@ -101,7 +101,8 @@ def plan(
     if as_json:
         print_json(decision)
     else:
-        print_values(decision.actions, decision.simulations, "exact" if policy is None else "by the policy")
+        title = "exact" if exact else "0 simulations" if policy is None else "by the policy"
+        print_values(decision.actions, decision.simulations, title)
 
 
 def _decision(values: list[ActionValue], simulations: int) -> Decision:

@@ -17,7 +17,7 @@ __all__ = ["print_runs", "print_states", "print_values"]
 BAR_WIDTH = 30
 
 
-def print_values(values: list[ActionValue], simulations: int, title: str = "exact") -> None:
+def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
     """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations."""
     tried = [value.q for value in values if value.n or not simulations]
     lowest, highest = min(tried), max(tried)
