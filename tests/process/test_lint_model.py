@@ -149,3 +149,13 @@ def test_where_the_search_does_not_see_all_it_remarks_only(
     severity, place, hint = found["AOS132"]
     assert (severity, place) == ("remark", "hall.ef:10")
     assert hint.startswith("Looked at 1")
+
+
+def test_an_initial_belief_that_cannot_be_enumerated_is_no_reason_for_remarks(
+    app: typer.Typer, hall: Callable[..., Path]
+) -> None:
+    folder = hall("state__.place = state.place;", goal="-1", door="-1")
+    environment = folder / "hall.ef"
+    drawn = "state.place = AOS.SampleNormal(0, 1) > 0;"
+    environment.write_text(environment.read_text().replace("state.place = 0;", drawn))
+    assert linted(app, folder) == {}
