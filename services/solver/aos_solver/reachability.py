@@ -20,8 +20,8 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
     """Looks at the states that the actions can lead to from the initial belief, for a few seconds at most.
 
     What is missing is a warning where all states were looked at, and a remark with the search's extent where
-    there are more; nothing is said where the initial belief cannot be enumerated. A fault of model code on the
-    way is a warning at its place.
+    there are more; nothing is said where the initial belief cannot be enumerated. A fault of model code on
+    the way is a warning at its place.
     """
     try:
         engine = await Engine.start(built, seed=1)
