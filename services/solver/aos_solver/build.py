@@ -17,10 +17,10 @@ from typing import Any
 import msgspec
 
 from aos_protocol.errors import ModelError
-from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.build_cache import BuildCache, digest_of
 from aos_solver.compiler import Compiler, find_compiler
 from aos_solver.compiler_messages import read_messages, without_line_directives
+from aos_solver.compiler_run import LIMIT_HINT, internal_error, run_compiler
 from aos_solver.emit import MODEL_FILE, EmittedModel
 
 __all__ = ["SOURCES", "BuiltModel", "build", "build_engine"]
@@ -37,11 +37,7 @@ _SUPPORT = "aos/model_support.hpp"
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
 _EXECUTABLE = "model"
-_ADDRESS_SPACE_BYTES = 4 << 30
-_FILE_BYTES = 512 << 20
-_OUTPUT_LIMIT_BYTES = 4 << 20
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
-_LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 
 
 class BuiltModel(msgspec.Struct, frozen=True):
@@ -102,10 +98,11 @@ async def build_engine(
         if state_bytes == STATE_BYTES[0] and (command := compiler.precompilation(_SUPPORT, str(SOURCES))):
             (staging / _SUPPORT).parent.mkdir()
             commands.append(command)
-        runs = [_run(compiler, command, staging, compiler.deadline_s, "the engine") for command in commands]
+        deadline_s = compiler.deadline_s
+        runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
         for output, status in await _together(runs):
             if status != 0:
-                raise _internal_error("the engine", output, status, SOURCES / "engine.cpp")
+                raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
 
     return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make) / _OBJECT
 
@@ -181,11 +178,11 @@ class _Build:
         linking = self._compiler.linking([str(model), str(engine)], _EXECUTABLE)
         output, status = await self._run(linking, staging)
         if status != 0:
-            raise _internal_error(self._emitted.project, output, status, self._kept_source())
+            raise internal_error(self._emitted.project, output, status, self._kept_source())
         model.unlink()
 
     async def _run(self, command: list[str], staging: Path) -> tuple[str, int]:
-        return await _run(self._compiler, command, staging, self._deadline_s, self._emitted.project)
+        return await run_compiler(self._compiler, command, staging, self._deadline_s, self._emitted.project)
 
     def _failure(self, output: str, status: int) -> ModelError:
         project = self._emitted.project
@@ -198,8 +195,8 @@ class _Build:
             )
         if status < 0 or status > 128 or "memory exhausted" in output or "out of memory" in output:
             message = f"the compiler ran out of time or memory on {project}"
-            return ModelError(message, code="AOS202", hint=_LIMIT_HINT)
-        return _internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
+            return ModelError(message, code="AOS202", hint=LIMIT_HINT)
+        return internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
 
     def _kept_source(self) -> Path:
         """The emitted file at a place where it can be looked at."""
@@ -215,31 +212,6 @@ def _circumstances(compiler: Compiler) -> list[str]:
     return [compiler.version, *compiler.compilation("", "", ""), *texts]
 
 
-async def _run(
-    compiler: Compiler, command: list[str], directory: Path, deadline_s: float, what: str
-) -> tuple[str, int]:
-    """What the command says and its status; AOS202 if it does not end in time."""
-    memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
-    # The deadline is of the wall clock; this is for what outlives even the guard's end. Zig has threads.
-    limits = Limits(address_space_bytes=memory, cpu_s=int(deadline_s * 4) + 1, file_bytes=_FILE_BYTES)
-    child = await Child.start(
-        guarded(command, limits),
-        cwd=directory,
-        env={"LC_ALL": "C"},
-        stdout=PIPE,
-        stderr=asyncio.subprocess.STDOUT,
-    )
-    try:
-        async with asyncio.timeout(deadline_s):
-            output = await _read(child)
-            return output, await child.wait()
-    except TimeoutError as error:
-        message = f"the compiler did not finish {what} within {deadline_s:g} s"
-        raise ModelError(message, code="AOS202", hint=_LIMIT_HINT) from error
-    finally:
-        await child.stop()
-
-
 async def _together(runs: list[Coroutine[Any, Any, tuple[str, int]]]) -> list[tuple[str, int]]:
     """The results of all; if one fails, the others are stopped and its error is raised."""
     try:
@@ -248,19 +220,3 @@ async def _together(runs: list[Coroutine[Any, Any, tuple[str, int]]]) -> list[tu
     except ExceptionGroup as errors:
         raise errors.exceptions[0] from None
     return [task.result() for task in started]
-
-
-async def _read(child: Child) -> str:
-    """All that the compiler says; what exceeds the limit is read and dropped."""
-    kept = bytearray()
-    while chunk := await child.stdout.read(65536):
-        kept += chunk[: _OUTPUT_LIMIT_BYTES - len(kept)]
-    return kept.decode(errors="replace")
-
-
-def _internal_error(what: str, output: str, status: int, source: Path) -> ModelError:
-    reason = next(iter(output.strip().splitlines()), f"status {status}")
-    return ModelError(
-        f"the C++ of {what} does not compile: {reason}",
-        hint=f"This is not a mistake in the documents; please report it with {source}",
-    )
