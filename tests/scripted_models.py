@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
+import re
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -32,6 +33,9 @@ __all__ = [
 ]
 
 _DRIVER = Path(__file__).parent / "cpp"
+_TABLE = re.compile(r"constinit const aos::ModelTable .*table_of<(.*)>\(\);")
+_MAIN = r"""#include "scripted.hpp"
+int main(int argc, char** argv) { return aos::run<\1>(argc, argv); }"""
 
 
 class Played(msgspec.Struct, frozen=True):
@@ -136,7 +140,7 @@ def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
     digest = hashlib.sha256((emitted.cpp + driver).encode()).hexdigest()[:24]
     source, executable = cache_dir / f"scripted-{digest}.cpp", cache_dir / f"scripted-{digest}"
     if not executable.exists():
-        source.write_text(emitted.cpp.replace('"aos/model_table.hpp"', '"scripted.hpp"'))
+        source.write_text(_TABLE.sub(_MAIN, emitted.cpp))
         compiler = asyncio.run(find_compiler())
         object_file = str(source.with_suffix(".o"))
         compilation = compiler.compilation(str(source), object_file, str(SOURCES), "-O0", f"-I{_DRIVER}")

@@ -7,6 +7,9 @@
 #include <initializer_list>
 #include <string>
 
+#include "aos/json.hpp"
+#include "aos/support.hpp"
+
 namespace aos {
 
 // Takes each draw from a list: a Bernoulli is true for 1, a discrete draw is the index itself. After the end of the list
@@ -92,20 +95,23 @@ template <class Model>
 std::string observation_name(int action, Observation observation) {
   if (observation == default_observation) return default_observation_text;
   if (observation < 0) return std::string{observation_text(observation)};
-  return Model::response_name(Model::skill_of(action), static_cast<int>(observation));
+  const int skill = Model::grounded_actions()[static_cast<std::size_t>(action)].skill;
+  return Model::skills[static_cast<std::size_t>(skill)].responses[observation];
 }
 
 template <class Model>
 void print_state(JsonWriter& json, const typename Model::State& state) {
   json.begin_object();
-  Model::visit(state, [&](const std::string& name, const auto& leaf) { json.member(name, leaf_text(leaf)); });
+  const auto print = [&](const std::string& name, const Leaf& leaf) { json.member(name, leaf_text(leaf)); };
+  NamedLeavesCall leaves{print};
+  visit_value(state, leaves);
   json.end_object();
 }
 
 template <class Model>
 int find_action(const std::string& name) {
   for (int action = 0; action < Model::action_count(); ++action) {
-    if (name == Model::action_name(action)) return action;
+    if (name == Model::grounded_actions()[static_cast<std::size_t>(action)].name) return action;
   }
   std::exit(3);
 }
@@ -173,9 +179,9 @@ template <class Model>
 void describe() {
   JsonWriter json;
   json.begin_array();
-  for (int action = 0; action < Model::action_count(); ++action) {
-    json.begin_object().member("action", Model::action_name(action)).key("parameters");
-    Model::write_parameters(action, json);
+  for (const GroundedAction& action : Model::grounded_actions()) {
+    json.begin_object().member("action", action.name).key("parameters");
+    Model::skills[static_cast<std::size_t>(action.skill)].write_parameters(action.parameters, json);
     json.end_object();
   }
   std::puts(json.end_array().text().c_str());
@@ -199,17 +205,4 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-// In place of the engine's table: a main function.
-struct ModelTable {
-  int (*main)(int argc, char** argv);
-};
-extern const ModelTable compiled_model;
-
-template <class Model>
-constexpr ModelTable table_of() {
-  return {run<Model>};
-}
-
 }  // namespace aos
-
-int main(int argc, char** argv) { return aos::compiled_model.main(argc, argv); }

@@ -84,6 +84,7 @@ def emit(program: Program) -> EmittedModel:
         flags_type=_flags_type(program),
         has_tables=any(variable.axes for variable in program.variables),
         has_rollout_policy=any(skill.rollout_policy for skill in program.skills),
+        has_corrections=any(skill.is_corrected for skill in program.skills),
         special_states=[state for state in program.special_states if state.condition or state.section],
         watched_skills=_watched_skills(program),
         saved_variables=_saved_variables(program),

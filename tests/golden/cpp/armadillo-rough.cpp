@@ -164,11 +164,11 @@ struct skill__navigate : aos::SkillDefaults {
 
   static void ground(const Draft& __draft) {
     groundings.clear();
-    for (const auto& destination : aos::values<Destination>({
+    for (const auto& destination : std::initializer_list<aos::NamedValue<Destination>>{
              {"corridor", __draft.corridor},
              {"easy_table", __draft.easy_table},
              {"hard_table", __draft.hard_table},
-         })) {
+         }) {
       groundings.push_back(
           {aos::action_name("navigate", {{"destination", destination.name}}), {destination.value}});
     }
@@ -427,10 +427,16 @@ struct Model {
   static constexpr const char* project = "armadillo";
   static constexpr int horizon = 10;
   static constexpr double discount = 0.99;
-  static constexpr int skill_count = 5;
+  static constexpr std::array<aos::SkillFacts, 5> skills{
+      aos::facts_of<skill__navigate>("navigate"),
+      aos::facts_of<skill__observe_arm_outstretched>("observe_arm_outstretched"),
+      aos::facts_of<skill__observe_holding>("observe_holding"),
+      aos::facts_of<skill__pick>("pick"),
+      aos::facts_of<skill__serve>("serve"),
+  };
   static constexpr bool has_rollout_policy = false;
   static constexpr bool has_state_heuristic = false;
-  static constexpr bool is_one_state = false;
+  static constexpr bool has_corrections = false;
 
   // Sets the constants and grounds the actions; call it once before anything else.
   static void prepare() {
@@ -453,33 +459,7 @@ struct Model {
   }
 
   static int action_count() { return static_cast<int>(actions.size()); }
-  static const char* action_name(int action) { return actions[action].name; }
-  static int skill_of(int action) { return actions[action].skill; }
-  static const char* skill_name(int skill) {
-    static constexpr const char* names[] = {"navigate", "observe_arm_outstretched", "observe_holding", "pick", "serve"};
-    return names[skill];
-  }
-  static int response_count(int skill) {
-    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) {
-      return static_cast<int>(Skill::response_names.size());
-    });
-  }
-  static const char* response_name(int skill, int response) {
-    return with_skill(skill, [&]<class Skill>(std::type_identity<Skill>) {
-      return Skill::response_names.begin()[response];
-    });
-  }
-  static bool has_text_response(int skill) {
-    return with_skill(skill, []<class Skill>(std::type_identity<Skill>) {
-      return Skill::has_text_response;
-    });
-  }
-  static void write_parameters(int action, aos::JsonWriter& json) {
-    with_action(action, [&](auto, const auto& parameters) { aos::write_json(json, parameters); });
-  }
-  static void read_locals(int action, std::string_view values) {
-    with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto&) { Skill::read_locals(values); });
-  }
+  static constexpr const std::vector<aos::GroundedAction>& grounded_actions() { return model::actions; }
 
   static void initial(State& state, auto& random) {
     state = start;
@@ -532,7 +512,6 @@ struct Model {
   }
 
   static aos::Ending ending(const State& state) { return state.__ending; }
-  static void visit(const State& state, auto&& visitor) { aos::visit_leaves("", state, visitor); }
   static std::string state_text(const State& state) {
     return aos::leaves_text(state);
   }
@@ -555,7 +534,5 @@ struct Model {
 };
 
 }  // namespace model
-
-#include "aos/model_table.hpp"
 
 constinit const aos::ModelTable aos::compiled_model = aos::table_of<model::Model>();

@@ -18,7 +18,7 @@
 #include "aos/json.hpp"
 #include "aos/outcomes.hpp"
 #include "aos/random.hpp"
-#include "aos/reflection.hpp"
+#include "aos/values.hpp"
 #include "aos/step.hpp"
 
 namespace aos {
@@ -228,7 +228,7 @@ class Belief {
     std::unordered_map<std::string, std::size_t> index;
     for (const auto& [state, state_weight] : particles_) {
       const double weight = state_weight;
-      Model::visit(state, [&](const std::string& name, const auto& leaf) {
+      Model::visit(state, [&](const std::string& name, const Leaf& leaf) {
         const auto [entry, is_new] = index.try_emplace(name, result.size());
         if (is_new) result.push_back({name, {}});
         auto& values = result[entry->second].second;

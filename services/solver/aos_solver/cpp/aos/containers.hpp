@@ -1,17 +1,13 @@
 // Vectors of fixed storage, with the part of std::vector's interface that documents use.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-#include "aos/fault.hpp"
 
 namespace aos {
 
@@ -22,13 +18,8 @@ E nth(std::initializer_list<E> values, int index) {
 }
 
 // Out of the way of the code that runs in every step.
-[[noreturn, gnu::cold, gnu::noinline]] inline void out_of_range(std::ptrdiff_t index, std::size_t size) {
-  throw ModelFault{"AOS215", "element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
-}
-[[noreturn, gnu::cold, gnu::noinline]] inline void no_room(std::size_t size, std::size_t room) {
-  const std::string holds = "; its state variable holds " + std::to_string(room);
-  throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
-}
+[[noreturn, gnu::cold]] void out_of_range(std::ptrdiff_t index, std::size_t size);
+[[noreturn, gnu::cold]] void no_room(std::size_t size, std::size_t room);
 
 // A vector of up to `Room` elements in place, so that a state stays trivially copyable. Converts from and to
 // std::vector; an index out of range and a push beyond `Room` are ModelFaults.
@@ -143,8 +134,9 @@ class Vector {
     const std::vector<T> added(first, last);  // They may be our own.
     const std::ptrdiff_t position = before - values_;
     grown(added.size());
-    std::copy_backward(values_ + position, end() - added.size(), end());
-    std::copy(added.begin(), added.end(), values_ + position);
+    for (T *from = end() - added.size(), *to = end(); from != values_ + position;) *--to = *--from;
+    T* to = values_ + position;
+    for (const auto& value : added) *to++ = value;
     return values_ + position;
   }
   T* insert(const T* before, std::initializer_list<T> values) { return insert(before, values.begin(), values.end()); }

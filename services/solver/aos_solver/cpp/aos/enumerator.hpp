@@ -33,20 +33,8 @@ class Enumerator : public Draws<Enumerator> {
     return choose(weights, 2, 1.0) == 1;
   }
 
-  int choose(const double* weights, int count, double total) {
-    if (depth_ < by_chance_) return choose_by_chance(weights, count, total);
-    if (depth_ == choices_.size()) choices_.push_back({next_outcome(weights, count, 0), 0, 0});
-    Choice& choice = choices_[depth_++];
-    choice.following = next_outcome(weights, count, choice.taken + 1);
-    probability_ *= weights[choice.taken] / total;
-    return choice.taken;
-  }
-
-  double uniform() {
-    if (chance_ == nullptr) throw NotEnumerable{"a draw is continuous"};
-    if (depth_ == choices_.size()) choices_.push_back({0, none, no_alternatives, chance_->uniform()});
-    return choices_[depth_++].value;
-  }
+  int choose(const double* weights, int count, double total);
+  double uniform();
 
   // Calls `run(enumerator)` once for each path; after it, `probability()` is the path's. Throws NotEnumerable.
   template <class Run>

@@ -3,13 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "aos/model_table.hpp"
+#include "aos/values.hpp"
 
 namespace aos {
 
@@ -34,30 +34,35 @@ struct ErasedModel {
   inline static const bool has_state_heuristic = compiled_model.has_state_heuristic;
 
   static void prepare() { compiled_model.prepare(); }
-  static int action_count() { return compiled_model.action_count(); }
-  static const char* action_name(int action) { return compiled_model.action_name(action); }
-  static int skill_of(int action) { return compiled_model.skill_of(action); }
-  static const char* skill_name(int skill) { return compiled_model.skill_name(skill); }
-  static int response_count(int skill) { return compiled_model.response_count(skill); }
-  static const char* response_name(int skill, int response) { return compiled_model.response_name(skill, response); }
-  static bool has_text_response(int skill) { return compiled_model.has_text_response(skill); }
-  static void write_parameters(int action, JsonWriter& json) { compiled_model.write_parameters(action, json); }
-  static void read_locals(int action, std::string_view text) { compiled_model.read_locals(action, text); }
+  static int action_count() { return static_cast<int>(compiled_model.actions->size()); }
+  static const char* action_name(int action) { return grounded(action).name; }
+  static int skill_of(int action) { return grounded(action).skill; }
+  static const char* skill_name(int skill) { return compiled_model.skills[skill].name; }
+  static int response_count(int skill) { return compiled_model.skills[skill].response_count; }
+  static const char* response_name(int skill, int response) { return compiled_model.skills[skill].responses[response]; }
+  static bool has_text_response(int skill) { return compiled_model.skills[skill].has_text_response; }
+  static void write_parameters(int action, JsonWriter& json) {
+    compiled_model.skills[skill_of(action)].write_parameters(grounded(action).parameters, json);
+  }
+  static void read_locals(int action, std::string_view text) {
+    compiled_model.skills[skill_of(action)].read_locals(text);
+  }
 
   static Ending ending(const State& state) { return static_cast<Ending>(state.bytes[compiled_model.ending_offset]); }
   static std::uint64_t hash(const State& state) { return compiled_model.hash(state.bytes); }
   static std::string state_text(const State& state) { return compiled_model.state_text(state.bytes); }
   static std::string save_state(const State& state) { return compiled_model.save_state(state.bytes); }
   static void load_state(State& state, std::string_view saved) { compiled_model.load_state(state.bytes, saved); }
+  // Calls `visitor(name, leaf)` for every single value.
   template <class Visitor>
   static void visit(const State& state, Visitor&& visitor) {
-    compiled_model.visit(state.bytes, std::addressof(visitor),
-                         [](void* context, const std::string& name, const std::string& text) {
-                           (*static_cast<std::remove_reference_t<Visitor>*>(context))(name, text);
-                         });
+    NamedLeavesCall leaves{visitor};
+    compiled_model.visit(state.bytes, leaves);
   }
   // Where the state's single values stand, in the order of `visit`.
-  static std::vector<Place> places(const State& state) { return compiled_model.places(state.bytes); }
+  static std::vector<Place> places(const State& state) {
+    return places_in(state.bytes, [&](ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); });
+  }
 
   template <class Random>
   static void initial(State& state, Random& random) {
@@ -67,17 +72,8 @@ struct ErasedModel {
   static Step step(State& state, int action, Random& random) {
     return functions<Random>().step(state.bytes, action, random);
   }
-  template <class Random>
-  static bool meets_precondition(const State& state, int action, Random& random) {
-    return functions<Random>().meets_precondition(state.bytes, action, random);
-  }
-  template <class Random>
-  static double rollout_weight(const State& state, int action, Random& random) {
-    return functions<Random>().rollout_weight(state.bytes, action, random);
-  }
-  template <class Random>
-  static double state_value(const State& state, Random& random) {
-    return functions<Random>().state_value(state.bytes, random);
+  static bool meets_precondition(const State& state, int action, Enumerator& random) {
+    return compiled_model.meets_precondition(state.bytes, action, random);
   }
   template <class Random>
   static void correct(const State& before, State& next, int action, Random& random) {
@@ -91,6 +87,8 @@ struct ErasedModel {
   static Walked walk(std::uint64_t steps, Sampler& random) { return compiled_model.walk(steps, random); }
 
  private:
+  static const GroundedAction& grounded(int action) { return (*compiled_model.actions)[static_cast<std::size_t>(action)]; }
+
   template <class Random>
   static const DrawingFunctions<Random>& functions() {
     if constexpr (std::is_same_v<Random, Sampler>) {

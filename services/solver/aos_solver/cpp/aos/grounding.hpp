@@ -3,9 +3,11 @@
 
 #include <initializer_list>
 #include <string>
+#include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
+
+#include "aos/reflection.hpp"
 
 namespace aos {
 
@@ -34,20 +36,39 @@ struct NamedValue {
   T value;
 };
 
-template <class T>
-std::vector<NamedValue<T>> values(std::initializer_list<NamedValue<T>> values) {
-  return values;
+// What there is to know about a skill besides what it does.
+struct SkillFacts {
+  const char* name;
+  const char* const* responses;
+  int response_count;
+  bool has_text_response;
+  void (*write_parameters)(const void* parameters, JsonWriter& json);
+  void (*read_locals)(std::string_view values);
+};
+
+template <class Skill>
+constexpr SkillFacts facts_of(const char* name) {
+  return {
+      .name = name,
+      .responses = Skill::response_names.data(),
+      .response_count = static_cast<int>(Skill::response_names.size()),
+      .has_text_response = Skill::has_text_response,
+      .write_parameters =
+          [](const void* parameters, JsonWriter& json) {
+            write_json(json, *static_cast<const typename Skill::Parameters*>(parameters));
+          },
+      .read_locals = Skill::read_locals,
+  };
 }
 
+// The value of a parameter as text.
+struct Argument {
+  std::string_view parameter;
+  std::string_view value;
+};
+
 // `skill(parameter=value, ...)`; the skill alone where there are no parameters.
-inline std::string action_name(const char* skill, std::initializer_list<std::pair<const char*, std::string>> parameters) {
-  std::string list;
-  for (const auto& [parameter, value] : parameters) {
-    if (!list.empty()) list += ", ";
-    list += std::string{parameter} + "=" + value;
-  }
-  return list.empty() ? skill : std::string{skill} + "(" + list + ")";
-}
+std::string action_name(std::string_view skill, std::initializer_list<Argument> arguments);
 
 template <class Parameters>
 void add_actions(std::vector<GroundedAction>& actions, int skill, const std::vector<Grounding<Parameters>>& groundings) {

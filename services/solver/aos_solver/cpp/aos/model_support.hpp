@@ -15,7 +15,7 @@
 #include "aos/correction.hpp"
 #include "aos/fault.hpp"
 #include "aos/grounding.hpp"
-#include "aos/json.hpp"
+#include "aos/model_table.hpp"
 #include "aos/reflection.hpp"
 #include "aos/state_text.hpp"
 #include "aos/step.hpp"

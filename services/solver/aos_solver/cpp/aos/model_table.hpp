@@ -12,7 +12,7 @@
 
 #include "aos/blame.hpp"
 #include "aos/enumerator.hpp"
-#include "aos/json.hpp"
+#include "aos/grounding.hpp"
 #include "aos/random.hpp"
 #include "aos/reflection.hpp"
 #include "aos/rollout.hpp"
@@ -21,17 +21,11 @@
 
 namespace aos {
 
-using LeafVisitor = void (*)(void* context, const std::string& name, const std::string& text);
-
-
 // The model functions that draw, for one source of randomness.
 template <class Random>
 struct DrawingFunctions {
   void (*initial)(void* state, Random& random);
   Step (*step)(void* state, int action, Random& random);
-  bool (*meets_precondition)(const void* state, int action, Random& random);
-  double (*rollout_weight)(const void* state, int action, Random& random);
-  double (*state_value)(const void* state, Random& random);
   void (*correct)(const void* before, void* next, int action, Random& random);
 };
 
@@ -50,31 +44,23 @@ struct ModelTable {
   int horizon;
   double discount;
   int skill_count;
+  const SkillFacts* skills;
+  const std::vector<GroundedAction>* actions;
   bool has_rollout_policy;
   bool has_state_heuristic;
   std::size_t ending_offset;
 
   void (*prepare)();
-  int (*action_count)();
-  const char* (*action_name)(int action);
-  int (*skill_of)(int action);
-  const char* (*skill_name)(int skill);
-  int (*response_count)(int skill);
-  const char* (*response_name)(int skill, int response);
-  bool (*has_text_response)(int skill);
-  void (*write_parameters)(int action, JsonWriter& json);
-  void (*read_locals)(int action, std::string_view text);
-
   bool (*equal)(const void* left, const void* right);
   std::uint64_t (*hash)(const void* state);
-  void (*visit)(const void* state, void* context, LeafVisitor visitor);
-  std::vector<Place> (*places)(const void* state);
+  void (*visit)(const void* state, ValueVisitor& visitor);
   std::string (*state_text)(const void* state);
   std::string (*save_state)(const void* state);
   void (*load_state)(void* state, std::string_view saved);
 
   DrawingFunctions<Sampler> sampling;
   DrawingFunctions<Enumerator> enumerating;
+  bool (*meets_precondition)(const void* state, int action, Enumerator& random);
   double (*rollout)(const void* state, int horizon, Sampler& random);
   Walked (*walk)(std::uint64_t steps, Sampler& random);
 };
@@ -93,25 +79,11 @@ constexpr DrawingFunctions<Random> drawing_functions() {
             blame::at(0);
             return step;
           },
-      .meets_precondition =
-          [](const void* state, int action, Random& random) {
-            const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, random);
-            blame::at(0);
-            return meets;
-          },
-      .rollout_weight =
-          [](const void* state, int action, Random& random) {
-            const double weight = Model::rollout_weight(*static_cast<const State*>(state), action, random);
-            blame::at(0);
-            return weight;
-          },
-      .state_value =
-          [](const void* state, Random& random) {
-            return Model::state_value(*static_cast<const State*>(state), random);
-          },
       .correct =
           [](const void* before, void* next, int action, Random& random) {
-            Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, random);
+            if constexpr (Model::has_corrections) {
+              Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, random);
+            }
           },
   };
 }
@@ -125,39 +97,32 @@ constexpr ModelTable table_of() {
       .project = Model::project,
       .horizon = Model::horizon,
       .discount = Model::discount,
-      .skill_count = Model::skill_count,
+      .skill_count = static_cast<int>(Model::skills.size()),
+      .skills = Model::skills.data(),
+      .actions = &Model::grounded_actions(),
       .has_rollout_policy = Model::has_rollout_policy,
       .has_state_heuristic = Model::has_state_heuristic,
       .ending_offset = offsetof(State, __ending),
       .prepare = Model::prepare,
-      .action_count = Model::action_count,
-      .action_name = Model::action_name,
-      .skill_of = Model::skill_of,
-      .skill_name = Model::skill_name,
-      .response_count = Model::response_count,
-      .response_name = Model::response_name,
-      .has_text_response = Model::has_text_response,
-      .write_parameters = Model::write_parameters,
-      .read_locals = Model::read_locals,
       .equal =
           [](const void* left, const void* right) {
             return *static_cast<const State*>(left) == *static_cast<const State*>(right);
           },
       .hash = [](const void* state) { return Model::hash(*static_cast<const State*>(state)); },
-      .visit =
-          [](const void* state, void* context, LeafVisitor visitor) {
-            Model::visit(*static_cast<const State*>(state), [&](const std::string& name, const auto& leaf) {
-              visitor(context, name, leaf_text(leaf));
-            });
-          },
-      .places =
-          [](const void* state) { return places_in(*static_cast<const State*>(state)); },
+      .visit = [](const void* state,
+                  ValueVisitor& visitor) { visit_value(*static_cast<const State*>(state), visitor); },
       .state_text = [](const void* state) { return Model::state_text(*static_cast<const State*>(state)); },
       .save_state = [](const void* state) { return Model::save_state(*static_cast<const State*>(state)); },
       .load_state =
           [](void* state, std::string_view saved) { Model::load_state(*static_cast<State*>(state), saved); },
       .sampling = drawing_functions<Model, Sampler>(),
       .enumerating = drawing_functions<Model, Enumerator>(),
+      .meets_precondition =
+          [](const void* state, int action, Enumerator& random) {
+            const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, random);
+            blame::at(0);
+            return meets;
+          },
       .rollout =
           [](const void* state, int horizon, Sampler& random) {
             const double value = aos::rollout<Model>(*static_cast<const State*>(state), horizon, random);

@@ -10,7 +10,7 @@
 #include "aos/fault.hpp"
 #include "aos/gathering.hpp"
 #include "aos/random.hpp"
-#include "aos/reflection.hpp"
+#include "aos/values.hpp"
 #include "aos/step.hpp"
 
 namespace aos {

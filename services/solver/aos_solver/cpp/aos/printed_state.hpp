@@ -16,7 +16,7 @@ class PrintedState {
   template <class T>
   PrintedState& operator<<(const T& value) {
     if constexpr (std::is_enum_v<T>) {
-      stream_ << leaf_text(value);
+      stream_ << leaf_text(leaf_of(value));
     } else {
       stream_ << value;
     }

@@ -8,12 +8,10 @@
 #include <initializer_list>
 #include <numbers>
 
-#include "aos/fault.hpp"
-
 namespace aos {
 
 // Out of the way of the code that runs in every step.
-[[noreturn, gnu::cold, gnu::noinline]] inline void bad_weights(const char* text) { throw ModelFault{"AOS215", text}; }
+[[noreturn, gnu::cold]] void bad_weights(const char* text);
 
 // The built-ins that document code calls on `AOS` and `AOSUtils`. A source gives `flag(probability)`,
 // `choose(weights, count, total)` with a positive total, and `uniform()`.

@@ -1,5 +1,8 @@
-// Walks over a state: its leaves by name, its hash, its JSON. Compounds and states list their members in `__fields`,
-// enums have a `name_of`, both emitted.
+// Values as code sees them that knows no types: their members and their single values, one after another. Compounds and
+// states list their members in `__fields`, enums have a `name_of`, both emitted.
+//
+// A type is visited by one small function. All that is made of values (text, JSON, places) is compiled once, with the
+// engine: values.hpp, value_text.hpp.
 #pragma once
 
 #include <bit>
@@ -7,17 +10,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <memory>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <vector>
 
-#include "aos/json.hpp"
 #include "aos/text.hpp"
 
 namespace aos {
+
+class JsonWriter;
 
 template <class T>
 concept Compound = requires(const T& value) { T::__fields(value, [](const char*, const auto&) {}); };
@@ -31,132 +33,127 @@ template <class T>
 concept Mapping = requires { typename T::mapped_type; };
 
 // The name of an enum's value; null for a number that has none.
-template <class E>
-const char* name_in(std::initializer_list<const char*> names, E value) {
+inline const char* name_in(std::initializer_list<const char*> names, int value) {
   const auto index = static_cast<std::size_t>(value);
   return index < names.size() ? names.begin()[index] : nullptr;
 }
 
-// The text of a single value: enums by name, `true` and `false`, the shortest decimal that reads back.
+// A single value where it stands.
+struct Leaf {
+  enum class Kind : std::uint8_t { boolean, signed_number, unsigned_number, real, enumerated, text, string };
+  Kind kind;
+  std::size_t size;
+  const void* place;
+  const char* name = nullptr;  // of an enum's value, if it has one
+};
+
 template <class T>
-std::string leaf_text(const T& leaf) {
-  if constexpr (std::same_as<T, bool>) {
-    return leaf ? "true" : "false";
-  } else if constexpr (std::same_as<T, Text> || std::same_as<T, std::string>) {
+Leaf leaf_of(const T& value) {
+  using Kind = Leaf::Kind;
+  if constexpr (std::is_enum_v<T>) {
+    Leaf leaf{Kind::enumerated, sizeof value, &value};
+    if constexpr (requires { name_of(value); }) leaf.name = name_of(value);
     return leaf;
-  } else if constexpr (std::is_enum_v<T>) {
-    const char* name = name_of(leaf);
-    return name ? name : std::to_string(static_cast<long long>(leaf));
-  } else if constexpr (std::floating_point<T>) {
-    return number_text(leaf);
   } else {
-    return std::to_string(leaf);
+    constexpr Kind kind = std::same_as<T, bool>          ? Kind::boolean
+                          : std::same_as<T, Text>        ? Kind::text
+                          : std::same_as<T, std::string> ? Kind::string
+                          : std::floating_point<T>       ? Kind::real
+                          : std::is_signed_v<T>          ? Kind::signed_number
+                                                         : Kind::unsigned_number;
+    static_assert(kind != Kind::unsigned_number || std::integral<T>);
+    return {kind, sizeof value, &value};
   }
 }
+
+// The text of a single value: enums by name, `true` and `false`, the shortest decimal that reads back.
+std::string leaf_text(const Leaf& leaf);
+
+template <class Key>
+std::string key_text(const Key& key) {
+  std::string text;
+  const auto add = [&](const Leaf& part) {
+    if (!text.empty()) text += ',';
+    text += leaf_text(part);
+  };
+  std::apply([&](const auto&... part) { (add(leaf_of(part)), ...); }, key);
+  return text;
+}
+
+// What there is in a value, in the order of its members. A member, an element or an entry is told before its value.
+class ValueVisitor {
+ public:
+  virtual void leaf(const Leaf& leaf) = 0;
+  virtual void begin_compound() {}
+  virtual void begin_sequence(std::size_t /*size*/) {}
+  virtual void begin_mapping() {}
+  virtual void member(const char* /*name*/) {}
+  virtual void element(std::size_t /*index*/) {}
+  virtual void entry(const std::string& /*key*/) {}
+  virtual void end() {}  // of a compound, a sequence or a mapping
+
+ protected:
+  ~ValueVisitor() = default;
+};
+
+template <class T>
+void visit_value(const T& value, ValueVisitor& visitor) {
+  if constexpr (Compound<T>) {
+    visitor.begin_compound();
+    T::__fields(value, [&](const char* name, const auto& member) {
+      visitor.member(name);
+      visit_value(member, visitor);
+    });
+    visitor.end();
+  } else if constexpr (Mapping<T>) {
+    visitor.begin_mapping();
+    for (const auto& [key, element] : value) {
+      visitor.entry(key_text(key));
+      visit_value(element, visitor);
+    }
+    visitor.end();
+  } else if constexpr (Sequence<T>) {
+    visitor.begin_sequence(value.size());
+    std::size_t index = 0;
+    for (const auto& element : value) {
+      visitor.element(index++);
+      visit_value(element, visitor);
+    }
+    visitor.end();
+  } else {
+    visitor.leaf(leaf_of(value));
+  }
+}
+
+// A value of any type that lives as long as this is used.
+class AnyValue {
+ public:
+  template <class T>
+  AnyValue(const T& value) : value_(&value), visit_(visit_as<T>) {}
+  void visit(ValueVisitor& visitor) const { visit_(value_, visitor); }
+  const void* place() const { return value_; }
+
+ private:
+  template <class T>
+  static void visit_as(const void* value, ValueVisitor& visitor) {
+    visit_value(*static_cast<const T*>(value), visitor);
+  }
+
+  const void* value_;
+  void (*visit_)(const void* value, ValueVisitor& visitor);
+};
+
+// All single values with their names, as one line.
+std::string leaves_text(AnyValue value);
+// Text of a whole value, for the names of grounded actions.
+std::string value_text(AnyValue value);
+void write_json(JsonWriter& json, AnyValue value);
 
 // Document code writes enums to streams as numbers. Those of a state are as small as characters, and are none.
 template <class Stream, class Enum>
   requires std::is_enum_v<Enum> && requires { typename Stream::char_type; }
 Stream& operator<<(Stream& out, Enum value) {
   return static_cast<Stream&>(out << static_cast<int>(value));
-}
-
-template <class Key>
-std::string key_text(const Key& key) {
-  std::string text;
-  std::apply([&](const auto&... part) { ((text += text.empty() ? leaf_text(part) : "," + leaf_text(part)), ...); }, key);
-  return text;
-}
-
-// Calls `visit(name, leaf)` for every single value in `value`: `v1.visited`, `grid[3]`, `cell[1,2]`.
-template <class T, class Visit>
-void visit_leaves(const std::string& name, const T& value, Visit&& visit) {
-  if constexpr (Compound<T>) {
-    T::__fields(value, [&](const char* field, const auto& member) {
-      visit_leaves(name.empty() ? field : name + "." + field, member, visit);
-    });
-  } else if constexpr (Mapping<T>) {
-    for (const auto& [key, element] : value) visit_leaves(name + "[" + key_text(key) + "]", element, visit);
-  } else if constexpr (Sequence<T>) {
-    int index = 0;
-    for (const auto& element : value) visit_leaves(name + "[" + std::to_string(index++) + "]", element, visit);
-  } else {
-    visit(name, value);
-  }
-}
-
-// All leaves of a state with their names, as one line.
-template <class State>
-std::string leaves_text(const State& state) {
-  std::string text;
-  visit_leaves("", state, [&](const std::string& name, const auto& leaf) {
-    text += (text.empty() ? "" : ", ") + name + "=" + leaf_text(leaf);
-  });
-  return text;
-}
-
-// Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
-struct Place {
-  std::size_t offset;
-  std::size_t size;
-  friend bool operator==(const Place&, const Place&) = default;
-};
-
-// The places of a state, without overlap.
-template <class State>
-std::vector<Place> places_in(const State& state) {
-  std::vector<Place> places;
-  std::string compound;
-  visit_leaves("", state, [&](const std::string& name, const auto& leaf) {
-    const auto offset = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(std::addressof(leaf)) -
-                                                 reinterpret_cast<const std::byte*>(std::addressof(state)));
-    const auto dot = name.rfind('.');
-    const std::string owner = dot == std::string::npos ? "" : name.substr(0, dot);
-    if (!owner.empty() && owner == compound) {
-      places.back().size = offset + sizeof leaf - places.back().offset;
-    } else {
-      places.push_back({offset, sizeof leaf});
-    }
-    compound = owner;
-  });
-  return places;
-}
-
-// Text of a whole value, for the names of grounded actions.
-template <class T>
-std::string value_text(const T& value) {
-  if constexpr (Compound<T>) {
-    std::string text;
-    T::__fields(value, [&](const char* field, const auto& member) {
-      text += (text.empty() ? "{" : ", ") + std::string{field} + "=" + value_text(member);
-    });
-    return text + "}";
-  } else if constexpr (Sequence<T>) {
-    std::string text;
-    for (const auto& element : value) text += (text.empty() ? "[" : ", ") + value_text(element);
-    return text.empty() ? "[]" : text + "]";
-  } else {
-    return leaf_text(value);
-  }
-}
-
-template <class T>
-void write_json(JsonWriter& json, const T& value) {
-  if constexpr (Compound<T>) {
-    json.begin_object();
-    T::__fields(value, [&](const char* field, const auto& member) { write_json(json.key(field), member); });
-    json.end_object();
-  } else if constexpr (Sequence<T>) {
-    json.begin_array();
-    for (const auto& element : value) write_json(json, element);
-    json.end_array();
-  } else if constexpr (std::same_as<T, Text>) {
-    json.value(value.view());
-  } else if constexpr (std::is_enum_v<T>) {
-    json.value(leaf_text(value));
-  } else {
-    json.value(value);
-  }
 }
 
 inline std::uint64_t mixed(std::uint64_t hash, std::uint64_t more) {

@@ -18,7 +18,7 @@
 #include "aos/belief.hpp"
 #include "aos/enumerator.hpp"
 #include "aos/fault.hpp"
-#include "aos/reflection.hpp"
+#include "aos/values.hpp"
 
 namespace aos {
 

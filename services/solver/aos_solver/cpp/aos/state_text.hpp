@@ -2,15 +2,14 @@
 #pragma once
 
 #include <bit>
-#include <charconv>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "aos/fault.hpp"
 #include "aos/reflection.hpp"
 
 namespace aos {
@@ -19,29 +18,10 @@ namespace aos {
 // written as its bits.
 class StateWriter {
  public:
-  template <class T>
-  void write(const T& value) {
-    if constexpr (Compound<T>) {
-      T::__fields(value, [this](const char*, const auto& member) { write(member); });
-    } else if constexpr (Mapping<T>) {
-      for (const auto& entry : value) write(entry.second);
-    } else if constexpr (Sequence<T> || std::same_as<T, Text>) {
-      put(static_cast<std::int64_t>(value.size()));
-      for (const auto& element : value) write(element);
-    } else if constexpr (std::floating_point<T>) {
-      put(std::bit_cast<std::int64_t>(static_cast<double>(value)));
-    } else {
-      put(static_cast<std::int64_t>(value));
-    }
-  }
+  void write(AnyValue value);
   const std::string& text() const { return text_; }
 
  private:
-  void put(std::int64_t number) {
-    if (!text_.empty()) text_ += ' ';
-    text_ += std::to_string(number);
-  }
-
   std::string text_;
 };
 
@@ -76,7 +56,7 @@ class StateReader {
   }
 
  private:
-  [[noreturn]] static void malformed() { throw ModelFault{"AOS215", "a saved state that does not fit this model"}; }
+  [[noreturn]] static void malformed();
 
   template <class T>
   static void resize(T& value, std::size_t size) {
@@ -88,14 +68,7 @@ class StateReader {
       malformed();
     }
   }
-  std::int64_t next() {
-    std::int64_t number = 0;
-    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
-    if (error != std::errc{}) malformed();
-    rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
-    if (!rest_.empty()) rest_.remove_prefix(1);
-    return number;
-  }
+  std::int64_t next();
 
   std::string_view rest_;
 };

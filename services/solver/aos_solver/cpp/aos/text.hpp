@@ -2,11 +2,10 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
-
-#include "aos/fault.hpp"
 
 namespace aos {
 
@@ -101,13 +100,10 @@ class Text {
  private:
   std::size_t checked(std::size_t index) const {
     if (index < length_) return index;
-    throw ModelFault{"AOS215", "character " + std::to_string(static_cast<long long>(index)) + " of a text of " +
-                                   std::to_string(length_) + " characters"};
+    no_character(static_cast<std::ptrdiff_t>(index), length_);
   }
-  [[noreturn]] static void overflow(std::size_t size) {
-    throw ModelFault{"AOS215", "a text of " + std::to_string(size) + " characters; a state variable of type string holds " +
-                                   std::to_string(room)};
-  }
+  [[noreturn, gnu::cold]] static void no_character(std::ptrdiff_t index, std::size_t size);
+  [[noreturn, gnu::cold]] static void overflow(std::size_t size);
 
   Text& changed(auto&& change) {
     std::string text = str();

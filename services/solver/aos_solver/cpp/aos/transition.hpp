@@ -76,12 +76,8 @@ double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
 namespace detail {
 
 // Out of the way of the code that runs in every step.
-[[noreturn, gnu::cold, gnu::noinline]] inline void no_such_response(int response) {
-  throw ModelFault{"AOS215", "__moduleResponse is " + std::to_string(response) + ", which is no response"};
-}
-[[noreturn, gnu::cold, gnu::noinline]] inline void no_such_reward(double reward) {
-  throw ModelFault{"AOS214", "the reward is " + std::to_string(reward)};
-}
+[[noreturn, gnu::cold]] void no_such_response(int response);
+[[noreturn, gnu::cold]] void no_such_reward(double reward);
 // After each phase that has a reward of its own, so that the phase is blamed and not the one after it.
 inline void check_reward(double reward) {
   if (!std::isfinite(reward)) no_such_reward(reward);

@@ -1,7 +1,6 @@
 // Random walks: what the rate of a model is measured by.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -19,7 +18,9 @@ class Walks {
  public:
   using State = typename Model::State;
   // As many as fit a processor's nearest cache, within reason.
-  static constexpr int count = static_cast<int>(std::clamp<std::size_t>(16384 / sizeof(State), 16, 256));
+  static constexpr int count = 16384 / sizeof(State) < 16    ? 16
+                               : 16384 / sizeof(State) > 256 ? 256
+                                                             : 16384 / sizeof(State);
 
   explicit Walks(Sampler& random) : random_(random), walks_(count) {
     for (Walk& walk : walks_) start(walk);
