@@ -42,10 +42,12 @@ class Compiler(msgspec.Struct, frozen=True):
 
         Messages read `file:line:column: error: text`; columns count bytes.
         """
-        common = ["-std=c++20", "-O2", "-ffp-contract=off", "-w"]
+        common = ["-std=c++20", "-O2", "-ffp-contract=off", "-fno-math-errno", "-w"]
         if self.family == "gcc":
             own = ["-Wno-narrowing", "-fdiagnostics-column-unit=byte", "-fdiagnostics-color=never"]
             own += ["-fno-diagnostics-show-caret", "-fmax-errors=40"]
+            # Code that follows a draw is not copied for each outcome: a jump costs less than a wrong guess.
+            own += ["--param=max-jump-thread-duplication-stmts=0"]
         else:
             own = ["-Wno-c++11-narrowing", "-fno-color-diagnostics", "-fno-caret-diagnostics"]
             # A null pointer shall crash where it is used, and not be optimised into a trap elsewhere.

@@ -472,11 +472,11 @@ struct Model {
       return aos::step<Environment, Skill>(state, parameters, random);
     });
   }
-  // The same action in the states at the places from `first` to before `end`; the sum of the rewards.
-  static double step_all(int action, int first, int end, auto&& state_at, auto& random) {
-    return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
+  // The same action in each of so many states; the sum of the rewards.
+  static double step_all(int action, int count, auto&& state_at, auto& random) {
+    return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto parameters) {
       double rewards = 0;
-      for (int place = first; place < end; ++place) {
+      for (int place = 0; place < count; ++place) {
         rewards += aos::step<Environment, Skill>(state_at(place), parameters, random).reward;
       }
       return rewards;

@@ -93,22 +93,14 @@ Observation observation_of(const auto& effect) {
   return effect.response - 1;
 }
 
-// The phases in their order. Copies of the state that nothing tells apart are the same object.
+// A copy of what it is made of, or another name for it.
+template <class State, bool is_kept>
+using Kept = std::conditional_t<is_kept, const State, State&>;
+
+// What the skill does once the extrinsic changes are made.
 template <class Environment, class Skill>
-Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, auto& random) {
-  bool meets_precondition = true;
-  Skill::precondition(state, meets_precondition, parameters, random);
-  int execution_time = -1;
-  Skill::execution_time(state, execution_time, parameters, random);
-
-  double extrinsic_reward = 0;
-  if constexpr (Environment::has_extrinsic_changes) {
-    const typename Environment::Chosen chosen{parameters};
-    Environment::extrinsic_changes(state, state_, extrinsic_reward, execution_time, chosen, random);
-    check_reward(extrinsic_reward);
-    if constexpr (!Environment::is_one_state && Skill::keeps_state_) next = state_;
-  }
-
+Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, int execution_time,
+               double extrinsic_reward, const auto& parameters, auto& random) {
   std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
   Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
   Step step;
@@ -129,21 +121,26 @@ Step run_phases(auto& state, auto& state_, auto& next, const auto& parameters, a
   return step;
 }
 
-// A copy of what it is made of, or another name for it.
-template <class State, bool is_kept>
-using Kept = std::conditional_t<is_kept, State, State&>;
-
+// The phases in their order. All changes are made in place, and what is read after them is kept before: of a copy that
+// never changes, a compiler makes no more than is read.
 template <class Environment, class Skill, class State>
 Step transition(State& next, const auto& parameters, auto& random) {
-  if constexpr (Environment::is_one_state) {
-    return run_phases<Environment, Skill>(next, next, next, parameters, random);
-  } else if constexpr (Environment::has_extrinsic_changes) {
-    const Kept<const State, Skill::keeps_state> state = next;
+  Kept<State, Skill::keeps_state> state = next;
+  bool meets_precondition = true;
+  Skill::precondition(state, meets_precondition, parameters, random);
+  int execution_time = -1;
+  Skill::execution_time(state, execution_time, parameters, random);
+
+  if constexpr (Environment::has_extrinsic_changes) {
+    double reward = 0;
+    const typename Environment::Chosen chosen{parameters};
+    Environment::extrinsic_changes(state, next, reward, execution_time, chosen, random);
+    check_reward(reward);
     Kept<State, Skill::keeps_state_> state_ = next;
-    return run_phases<Environment, Skill>(state, state_, next, parameters, random);
+    return run_skill<Environment, Skill>(state, state_, next, meets_precondition, execution_time, reward, parameters,
+                                         random);
   } else {
-    const Kept<const State, Skill::keeps_state> state = next;
-    return run_phases<Environment, Skill>(state, state, next, parameters, random);
+    return run_skill<Environment, Skill>(state, state, next, meets_precondition, execution_time, 0, parameters, random);
   }
 }
 

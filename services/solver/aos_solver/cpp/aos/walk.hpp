@@ -17,29 +17,33 @@ template <class Model>
 class Walks {
  public:
   using State = typename Model::State;
-  // As many as fit a processor's nearest cache, within reason.
+  // As many as fit a processor's nearest cache, within reason; an even number.
   static constexpr int count = 16384 / sizeof(State) < 16    ? 16
                                : 16384 / sizeof(State) > 256 ? 256
-                                                             : 16384 / sizeof(State);
+                                                             : 16384 / sizeof(State) & ~std::size_t{1};
 
-  explicit Walks(Sampler& random) : random_(random), walks_(count) {
+  explicit Walks(Sampler& random)
+      : random_(random),
+        actions_(Model::action_count()),
+        walks_(count),
+        hands_(static_cast<std::size_t>(actions_) * count),
+        dealt_(static_cast<std::size_t>(actions_)) {
     for (Walk& walk : walks_) start(walk);
   }
 
   // One random action in each; the sum of the rewards.
   double round() {
-    sort_by_action();
+    deal();
     double rewards = 0;
-    int first = 0;
-    for (int action = 0; action < static_cast<int>(ends_.size()); ++action) {
-      const int end = ends_[static_cast<std::size_t>(action)];
+    for (int action = 0; action < actions_; ++action) {
+      const std::uint8_t* const hand = hands_.data() + action * count;
       const auto state_at = [&](int place) -> State& {
-        State& state = walks_[order_[place]].state;
+        State& state = walks_[hand[place]].state;
         if (Model::ending(state) != Ending::running) __builtin_unreachable();
         return state;
       };
-      if (first < end) rewards += Model::step_all(action, first, end, state_at, random_);
-      first = end;
+      rewards += Model::step_all(action, static_cast<int>(dealt_[action]), state_at, random_);
+      dealt_[action] = 0;
     }
     for (Walk& walk : walks_) {
       if (++walk.depth == Model::horizon || Model::ending(walk.state) != Ending::running) [[unlikely]] start(walk);
@@ -54,31 +58,29 @@ class Walks {
   };
 
   void start(Walk& walk) {
-    walk = {};
+    walk.depth = 0;
     Model::initial(walk.state, random_);
   }
 
-  // Draws the actions, and lists the walks in their order: those with action a end at ends_[a].
-  void sort_by_action() {
-    const int actions = Model::action_count();
-    ends_.assign(static_cast<std::size_t>(actions), 0);
-    for (int& action : actions_) ++ends_[static_cast<std::size_t>(action = random_.below(actions))];
-    int sum = 0;
-    for (int& end : ends_) {
-      const int next = sum + end;
-      end = sum;
-      sum = next;
+  // Draws the actions, two of each number: the walks with action a are the first dealt_[a] of its hand.
+  void deal() {
+    Sampler draws = random_;
+    for (int walk = 0; walk < count; walk += 2) {
+      const std::uint64_t bits = draws.bits();
+      take((bits >> 32) * actions_ >> 32, walk);
+      take((bits & 0xffffffff) * actions_ >> 32, walk + 1);
     }
-    for (int walk = 0; walk < count; ++walk) {
-      order_[ends_[static_cast<std::size_t>(actions_[walk])]++] = static_cast<std::size_t>(walk);
-    }
+    random_ = draws;
+  }
+  void take(std::uint64_t action, int walk) {
+    hands_[action * count + dealt_[action]++] = static_cast<std::uint8_t>(walk);
   }
 
   Sampler& random_;
+  int actions_;
   std::vector<Walk> walks_;
-  std::vector<int> ends_;
-  int actions_[count];
-  std::size_t order_[count];
+  std::vector<std::uint8_t> hands_;
+  std::vector<std::uint32_t> dealt_;
 };
 
 struct Walked {
