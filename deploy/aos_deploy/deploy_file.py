@@ -57,16 +57,16 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True):
 class SolverPart(msgspec.Struct, frozen=True, kw_only=True):
     """The budget of one decision, in simulations or in time, and what makes it reproducible.
 
-    Without a horizon the environment document's holds. With the planner `auto` the model's size decides.
-    POMCP can search with several `threads`, and with a budget in time go on while a skill runs. With a
-    `policy`, which `aos solve` has written, nothing is searched.
+    Without a horizon the environment document's holds. With the planner `auto` the model's size and
+    horizon decide. POMCP can search with several `threads`; POMCP and SARSOP, with a budget in time, go on
+    while a skill runs. With a `policy`, which `aos solve` has written, nothing is searched.
     """
 
     simulations: Count | None = None
     time_s: Seconds | None = None
     horizon: Count | None = None
     policy: str | None = None
-    planner: Literal["pomcp", "despot", "auto"] = "pomcp"
+    planner: Literal["pomcp", "despot", "sarsop", "auto"] = "pomcp"
     threads: Annotated[int, msgspec.Meta(ge=1, le=32)] = 1
     think_while_acting: bool = True
     seed: Seed = 1

@@ -185,7 +185,7 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
     compiler = await find_compiler()
     if compiler.precompilation("a.hpp", "/include") is None:
         pytest.skip(f"{compiler.version} includes no precompiled headers by themselves")
-    engine = (await build_engine(cache_dir)).parent
+    engine = await build_engine(cache_dir)
     assert (engine / "aos/model_support.hpp.gch").is_file()
     (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)
     objects = []

@@ -37,7 +37,7 @@ PolicyFile = Annotated[
 ]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations give the same result")]
 PlannerName = Annotated[
-    Planner, typer.Option("--planner", help="How to search; with auto the model's size decides")
+    Planner, typer.Option("--planner", help="How to search; with auto the model's size and horizon decide")
 ]
 Threads = Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]

@@ -36,6 +36,8 @@ _SUPPORT = "aos/model_support.hpp"
 
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
+_ENGINE_OBJECTS = ("engine.o", "point_based.o")
+"""Each from the source of its name; point-based search is mostly loops over numbers."""
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
@@ -83,7 +85,7 @@ async def build_engine(
     on_progress: Callable[[str], None] = lambda text: None,
     state_bytes: int = STATE_BYTES[0],
 ) -> Path:
-    """The engine's object file for states of up to `state_bytes`; errors as in `build`.
+    """The directory of the engine's object files for states of up to `state_bytes`; errors as in `build`.
 
     Setting up a machine may call it, so that its first model is compiled as quickly as the later ones.
     """
@@ -93,8 +95,11 @@ async def build_engine(
         on_progress(f"compiling the engine with {compiler.version}, once for all models")
         if compiler.family == "zig":
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
-        define = f"-DAOS_STATE_BYTES={state_bytes}"
-        commands = [compiler.compilation(str(SOURCES / "engine.cpp"), _OBJECT, str(SOURCES), define)]
+        options = ((f"-DAOS_STATE_BYTES={state_bytes}",), ("-O3",))
+        commands = [
+            compiler.compilation(str((SOURCES / part).with_suffix(".cpp")), part, str(SOURCES), *more)
+            for part, more in zip(_ENGINE_OBJECTS, options, strict=True)
+        ]
         if state_bytes == STATE_BYTES[0] and (command := compiler.precompilation(_SUPPORT, str(SOURCES))):
             (staging / _SUPPORT).parent.mkdir()
             commands.append(command)
@@ -104,7 +109,7 @@ async def build_engine(
             if status != 0:
                 raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
 
-    return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make) / _OBJECT
+    return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make)
 
 
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
@@ -175,7 +180,8 @@ class _Build:
 
     async def _link(self, staging: Path, engine: Path) -> None:
         model = staging / _OBJECT
-        linking = self._compiler.linking([str(model), str(engine)], _EXECUTABLE)
+        objects = [str(model), *(str(engine / part) for part in _ENGINE_OBJECTS)]
+        linking = self._compiler.linking(objects, _EXECUTABLE)
         output, status = await self._run(linking, staging)
         if status != 0:
             raise internal_error(self._emitted.project, output, status, self._kept_source())

@@ -48,7 +48,7 @@ from aos_solver.printed import pass_on
 __all__ = ["Engine", "ImpossiblePolicy", "Planner"]
 
 ImpossiblePolicy = Literal["hold", "widen", "reset"]
-Planner = Literal["pomcp", "despot", "auto"]
+Planner = Literal["pomcp", "despot", "sarsop", "auto"]
 
 log = logging.getLogger(__name__)
 

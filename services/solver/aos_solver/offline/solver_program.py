@@ -12,7 +12,7 @@ from aos_solver.compiler_run import internal_error, run_compiler
 __all__ = ["build_solver"]
 
 _SOURCE = Path(__file__).parent / "cpp" / "sarsop.cpp"
-_JSON = SOURCES / "aos" / "json.hpp"
+_SHARED = (SOURCES / "aos" / "json.hpp", *sorted((SOURCES / "point_based").iterdir()))
 _OBJECT = "sarsop.o"
 _EXECUTABLE = "sarsop"
 
@@ -24,7 +24,7 @@ async def build_solver(cache_dir: Path, compiler: Compiler | None = None) -> Pat
     """
     compiler = compiler or await find_compiler()
     compilation = compiler.compilation(str(_SOURCE), _OBJECT, str(SOURCES), "-O3")
-    texts = [path.read_text() for path in (*sorted(_SOURCE.parent.iterdir()), _JSON)]
+    texts = [path.read_text() for path in (*sorted(_SOURCE.parent.iterdir()), *_SHARED)]
     options = compiler.compilation("", "", "", "-O3")
     name = f"sarsop-{digest_of([compiler.version, *options, *texts])}"
 

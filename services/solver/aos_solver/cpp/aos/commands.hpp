@@ -66,7 +66,7 @@ class Engine {
 
   void reset_belief(JsonWriter& json) {
     belief_ = Belief<Model>::initial(random_);
-    search_.forget();
+    search_.start_over();
     summary(json);
   }
 

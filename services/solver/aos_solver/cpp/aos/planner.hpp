@@ -1,9 +1,11 @@
-// The planner of a model: POMCP or DESPOT, as asked for or as the model's size suggests.
+// The planner of a model: POMCP, DESPOT or SARSOP, as asked for or as the model's size suggests.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,18 +15,23 @@
 #include "aos/belief.hpp"
 #include "aos/budget.hpp"
 #include "aos/despot.hpp"
+#include "aos/point_based.hpp"
 #include "aos/pomcp.hpp"
 #include "aos/random.hpp"
 #include "aos/step.hpp"
 
 namespace aos {
 
-enum class PlannerKind { pomcp, despot, automatic };
+enum class PlannerKind { pomcp, despot, sarsop, automatic };
+
+// What of a value may come from beyond the horizon, for `automatic` to count without one.
+inline constexpr double negligible_beyond = 0.2;
 
 // Nothing where there is no such planner.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
   if (name == "pomcp") return PlannerKind::pomcp;
   if (name == "despot") return PlannerKind::despot;
+  if (name == "sarsop") return PlannerKind::sarsop;
   if (name == "auto") return PlannerKind::automatic;
   return std::nullopt;
 }
@@ -32,21 +39,25 @@ inline std::optional<PlannerKind> planner_kind(std::string_view name) {
 template <class Model>
 class Planner {
  public:
-  // See Pomcp and Despot. `automatic` takes DESPOT where its scenarios can have each state that matters among them; with
-  // more states POMCP has earned more wherever both were measured, and without bounds DESPOT has nothing to go by.
+  // See Pomcp, Despot and PointBased. `automatic` takes SARSOP where the states can be listed and the horizon hardly
+  // matters; else DESPOT where its scenarios can have each state that matters among them, and POMCP with more states.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
-    why_ = "it was asked for";
-    if (kind == PlannerKind::automatic) kind = suited_kind(belief, horizon);
-    used_ = kind;
-    return kind == PlannerKind::despot ? despot().search(belief, budget, horizon, random)
-                                       : pomcp_.search(belief, budget, horizon, random);
+    used_ = suited_kind(kind, belief, horizon);
+    if (used_ == PlannerKind::despot) return despot().search(belief, budget, horizon, random);
+    if (used_ == PlannerKind::pomcp) return pomcp_.search(belief, budget, horizon, random);
+    const std::uint64_t simulations = point_based_.search(budget);
+    why_ += "; " + bounds_text();
+    return simulations;
   }
 
   // The planner of the last search, and why it was that one.
-  const char* name() const { return used_ == PlannerKind::despot ? "despot" : "pomcp"; }
+  const char* name() const {
+    return used_ == PlannerKind::sarsop ? "sarsop" : used_ == PlannerKind::despot ? "despot" : "pomcp";
+  }
   const std::string& why() const { return why_; }
 
   std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
+    if (used_ == PlannerKind::sarsop) return point_based_.estimates();
     return used_ == PlannerKind::despot ? despot_->estimates(belief) : pomcp_.estimates(belief);
   }
   // What to do: what is worth most, as far as its value can be believed.
@@ -56,7 +67,7 @@ class Planner {
     int best = -1;
     for (int action = 0; action < static_cast<int>(estimates.size()); ++action) {
       const ActionEstimate& candidate = estimates[static_cast<std::size_t>(action)];
-      const bool counts = used_ == PlannerKind::despot ? candidate.n > 0 : is_well_visited(candidate.n, most);
+      const bool counts = used_ == PlannerKind::pomcp ? is_well_visited(candidate.n, most) : candidate.n > 0;
       if (counts && (best < 0 || candidate.q > estimates[static_cast<std::size_t>(best)].q)) best = action;
     }
     return std::max(best, 0);
@@ -67,9 +78,12 @@ class Planner {
   void think_about(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                    IsOver&& is_over) {
     if (used_ == PlannerKind::pomcp) pomcp_.think_about(action, belief, budget, horizon, random, is_over);
+    if (used_ == PlannerKind::sarsop) point_based_.think_about(action, budget, is_over);
   }
   // How many simulations the next search need not make, since they were made before.
-  std::uint64_t known_simulations() const { return pomcp_.known_simulations(); }
+  std::uint64_t known_simulations() const {
+    return used_ == PlannerKind::sarsop ? point_based_.known_simulations() : pomcp_.known_simulations();
+  }
 
   void move_to(int action, Observation observation) {
     if (used_ == PlannerKind::pomcp) {
@@ -78,16 +92,41 @@ class Planner {
       pomcp_.forget();
     }
   }
+  // What is known below the belief holds no longer.
   void forget() { pomcp_.forget(); }
+  // Another mission begins.
+  void start_over() {
+    forget();
+    point_based_.start_over();
+  }
 
  private:
-  PlannerKind suited_kind(const Belief<Model>& belief, int horizon) {
+  // Sets `why_`.
+  PlannerKind suited_kind(PlannerKind asked_for, const Belief<Model>& belief, int horizon) {
+    why_ = "it was asked for";
+    if (asked_for == PlannerKind::pomcp || asked_for == PlannerKind::despot) return asked_for;
+    const bool may_choose = asked_for == PlannerKind::automatic;
+    const double beyond = std::pow(Model::discount, horizon);
+    if (may_choose && beyond > negligible_beyond) {
+      why_ = "SARSOP reckons without the horizon, beyond which rewards still count";
+      return sampling_kind(belief, horizon);
+    }
+    if (const std::string& obstacle = point_based_.prepare(belief); !obstacle.empty()) {
+      why_ = "SARSOP cannot be used: " + obstacle;
+      return may_choose ? sampling_kind(belief, horizon) : PlannerKind::pomcp;
+    }
+    if (may_choose) why_ = std::to_string(point_based_.states()) + " states matter, so that all can be listed";
+    return PlannerKind::sarsop;
+  }
+
+  // Goes on with `why_`.
+  PlannerKind sampling_kind(const Belief<Model>& belief, int horizon) {
     if (!pomcp_.prepare(belief, horizon)) {
-      why_ = "there are too many states to derive bounds from";
+      why_ += "; there are too many states to derive bounds from";
       return PlannerKind::pomcp;
     }
     const std::size_t states = pomcp_.known_states();
-    why_ = std::to_string(states) + " states differ in what is yet to be earned, ";
+    why_ += "; " + std::to_string(states) + " states differ in what is yet to be earned, ";
     if (states > most_scenarios) {
       why_ += "more than DESPOT has scenarios";
       return PlannerKind::pomcp;
@@ -96,12 +135,20 @@ class Planner {
     return PlannerKind::despot;
   }
 
+  std::string bounds_text() const {
+    const auto [lower, upper] = point_based_.bounds();
+    char text[96];
+    std::snprintf(text, sizeof text, "without a horizon the belief is worth between %.4g and %.4g", lower, upper);
+    return text;
+  }
+
   Despot<Model>& despot() {
     if (!despot_) despot_ = std::make_unique<Despot<Model>>();
     return *despot_;
   }
 
   Pomcp<Model> pomcp_;
+  PointBased<Model> point_based_;
   std::unique_ptr<Despot<Model>> despot_;
   PlannerKind used_ = PlannerKind::pomcp;
   std::string why_;

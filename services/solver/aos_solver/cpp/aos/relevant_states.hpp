@@ -23,7 +23,7 @@
 namespace aos {
 
 inline constexpr std::size_t most_relevant_states = 400'000;
-inline constexpr std::size_t most_relevant_bytes = std::size_t{32} << 20;  // of states
+inline constexpr std::size_t most_relevant_bytes = std::size_t{100} << 20;  // of states
 inline constexpr std::size_t most_relevant_branches = 8'000'000;
 inline constexpr std::size_t most_relevant_paths = 10'000'000;  // of all steps that are enumerated
 inline constexpr std::size_t tried_states = 2000;
@@ -40,7 +40,16 @@ class RelevantStates {
     float probability;
   };
   static constexpr std::uint32_t none = 0xffffffffu;
-  static constexpr std::size_t most_states = std::min(most_relevant_states, most_relevant_bytes / sizeof(State));
+  static constexpr std::size_t most_room = std::min(most_relevant_states, most_relevant_bytes / sizeof(State));
+
+  RelevantStates() = default;
+  // For somebody who does not see the state, so that what is observed matters, too; up to so many states.
+  static RelevantStates by_observations(std::size_t most_states) {
+    RelevantStates states;
+    states.observations_matter_ = true;
+    states.most_states_ = std::min(most_states, most_room);
+    return states;
+  }
 
   // Adds what can be reached from a belief. Throws NotEnumerable where that is too much.
   void reach_from(const Belief<Model>& belief) {
@@ -59,6 +68,7 @@ class RelevantStates {
   }
 
   std::size_t size() const { return states_.size(); }
+  const State& operator[](std::uint32_t number) const { return states_[number]; }
   // By state and action; the branches of all pairs stand one after the other.
   const std::vector<float>& rewards() const { return rewards_; }
   const std::vector<std::size_t>& branch_ends() const { return branch_ends_; }
@@ -133,7 +143,7 @@ class RelevantStates {
     const Key key = key_of(state);
     std::uint32_t& number = numbers_[slot_of(key)];
     if (number == none) {
-      if (states_.size() == most_states) throw NotEnumerable{"too many states"};
+      if (states_.size() == most_states_) throw NotEnumerable{"too many states"};
       number = static_cast<std::uint32_t>(states_.size());
       states_.push_back(state);
       keys_.push_back(key);
@@ -188,7 +198,7 @@ class RelevantStates {
     branches_.push_back({next, static_cast<float>(probability)});
   }
 
-  // Of each action: what it earns, and a number that tells where it leads.
+  // Of each action: what it earns, and a number that tells where it leads, and by what observation if that matters.
   Signature signature_of(const State& state) {
     Signature signature;
     if (Model::ending(state) != Ending::running) return signature;
@@ -202,7 +212,9 @@ class RelevantStates {
         const Step step = Model::step(next, static_cast<int>(action), path);
         reward += path.probability() * step.reward;
         if (Model::ending(next) != Ending::running) return;
-        leads_to += path.probability() * (1 + static_cast<double>(hash_of(key_of(next)) >> 40));
+        std::uint64_t hash = hash_of(key_of(next));
+        if (observations_matter_) hash = mixed(hash, static_cast<std::uint64_t>(step.observation));
+        leads_to += path.probability() * (1 + static_cast<double>(hash >> 40));
       });
       signature.push_back(std::round(unit * reward));
       signature.push_back(std::round(leads_to));
@@ -240,6 +252,8 @@ class RelevantStates {
 
   static std::size_t actions() { return static_cast<std::size_t>(Model::action_count()); }
 
+  bool observations_matter_ = false;
+  std::size_t most_states_ = most_room;
   std::vector<Variable> variables_;
   Key mask_{};
   std::size_t paths_ = 0;

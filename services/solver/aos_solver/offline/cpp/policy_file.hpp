@@ -11,11 +11,16 @@
 #include <string>
 #include <vector>
 
-#include "bounds.hpp"
-#include "regions.hpp"
-#include "sarsop.hpp"
+#include "point_based/bounds.hpp"
+#include "point_based/regions.hpp"
+#include "point_based/sarsop.hpp"
 
 namespace aos::offline {
+
+using point_based::LowerBound;
+using point_based::Region;
+using point_based::Regions;
+using point_based::Sarsop;
 
 inline void write_policy(const std::string& path, const Regions& regions, const Sarsop& solver) {
   std::ofstream file{path, std::ios::binary};

@@ -12,14 +12,16 @@
 #include <exception>
 
 #include "aos/json.hpp"
-#include "flat_model.hpp"
+#include "flat_file.hpp"
+#include "point_based/flat_model.hpp"
+#include "point_based/regions.hpp"
+#include "point_based/sarsop.hpp"
 #include "policy_file.hpp"
-#include "regions.hpp"
-#include "sarsop.hpp"
 
 namespace {
 
 using namespace aos::offline;
+using namespace aos::point_based;
 
 // Of this process, so that a busy machine changes nothing.
 double cpu_seconds() {
@@ -55,7 +57,7 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
     if (cpu_seconds() >= seconds) return "time";
     if (solver.bytes() >= memory_bytes) return "memory";
     if (is_told_to_stop()) return "stopped";
-    solver.improve(precision);
+    solver.improve(precision, [] { return false; });
   }
 }
 

@@ -1,4 +1,4 @@
-// A POMDP as numbers: what the offline solver reads.
+// A POMDP as numbers in a file: what the offline solver reads.
 //
 // The file: the text "AOSFLAT1", then little-endian and without gaps
 //   u64 states, actions, observations, outcomes, sensings, readings, starts, start entries; f64 discount;
@@ -6,7 +6,6 @@
 //   u64 first_outcome[states * actions + 1]; u32 next[outcomes]; u32 sensing[outcomes]; f64 probability[outcomes];
 //   u64 first_reading[sensings + 1]; u32 observation[readings]; f64 probability[readings];
 //   f64 start_weight[starts]; u64 first_entry[starts + 1]; u32 state[start entries]; f64 probability[start entries].
-// A sensing is a distribution of observations; most outcomes share few of them.
 #pragma once
 
 #include <cstdint>
@@ -14,50 +13,13 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "point_based/flat_model.hpp"
 
 namespace aos::offline {
 
-struct Outcome {
-  std::uint32_t next;
-  std::uint32_t sensing;
-  double probability;
-};
-
-struct Reading {
-  std::uint32_t observation;
-  double probability;
-};
-
-// The robot is told at the start which of these beliefs it is in.
-struct Start {
-  double weight;
-  std::vector<std::pair<std::uint32_t, double>> belief;
-};
-
-// The elements of a row in a list of rows.
-template <class Element>
-struct Rows {
-  std::vector<std::uint64_t> first;
-  std::vector<Element> elements;
-
-  const Element* begin(std::size_t row) const { return elements.data() + first[row]; }
-  const Element* end(std::size_t row) const { return elements.data() + first[row + 1]; }
-};
-
-struct FlatModel {
-  std::size_t states = 0;
-  std::size_t actions = 0;
-  std::size_t observations = 0;
-  double discount = 0;
-  std::vector<double> rewards;
-  Rows<Outcome> outcomes;  // of (state, action)
-  Rows<Reading> readings;  // of a sensing
-  std::vector<Start> starts;
-
-  std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }
-};
+using point_based::FlatModel;
 
 namespace detail {
 

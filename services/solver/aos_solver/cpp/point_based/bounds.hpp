@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "regions.hpp"
+#include "point_based/regions.hpp"
 
-namespace aos::offline {
+namespace aos::point_based {
 
 // The states that have a probability, by their numbers in the region, ascending.
 struct Belief {
@@ -28,14 +28,24 @@ struct AlphaVector {
   bool is_gone() const { return values.empty(); }
 };
 
-inline double expected(const std::vector<double>& values, const Belief& belief) {
-  double sum = 0;
-  if (belief.size() == values.size()) {
-    for (std::size_t i = 0; i < values.size(); ++i) sum += belief.probabilities[i] * values[i];
-  } else {
-    for (std::size_t i = 0; i < belief.size(); ++i) sum += belief.probabilities[i] * values[belief.states[i]];
+// Of so many pairs of a probability and a value. In eight sums, which a processor can add up side by side.
+template <class ValueOf>
+double weighted_sum(const std::vector<double>& probabilities, ValueOf&& value_of) {
+  constexpr std::size_t width = 8;
+  double sums[width]{};
+  const std::size_t whole = probabilities.size() / width * width;
+  for (std::size_t i = 0; i < whole; i += width) {
+    for (std::size_t j = 0; j < width; ++j) sums[j] += probabilities[i + j] * value_of(i + j);
   }
-  return sum;
+  for (std::size_t i = whole; i < probabilities.size(); ++i) sums[i - whole] += probabilities[i] * value_of(i);
+  return ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+}
+
+inline double expected(const std::vector<double>& values, const Belief& belief) {
+  if (belief.size() == values.size()) {
+    return weighted_sum(belief.probabilities, [&](std::size_t i) { return values[i]; });
+  }
+  return weighted_sum(belief.probabilities, [&](std::size_t i) { return values[belief.states[i]]; });
 }
 
 // Alpha vectors of a region. Their numbers stay; those that were given up are empty.
@@ -53,6 +63,15 @@ class LowerBound {
   const AlphaVector& operator[](std::uint32_t number) const { return vectors_[number]; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(vectors_.size()); }
   std::size_t kept() const { return kept_; }
+  // Numbers those that were kept anew.
+  void close_gaps() {
+    std::erase_if(vectors_, [](const AlphaVector& vector) { return vector.is_gone(); });
+  }
+  // Keeps the vectors of the beginning only.
+  void keep_blind() {
+    std::erase_if(vectors_, [](const AlphaVector& vector) { return !vector.is_blind; });
+    kept_ = vectors_.size();
+  }
 
  private:
   std::vector<AlphaVector> vectors_;
@@ -97,6 +116,12 @@ class UpperBound {
     return std::min(value, corner + drop);
   }
 
+  // Keeps the values of single states only.
+  void forget_points() {
+    points_.clear();
+    changes_.clear();
+  }
+
   std::uint32_t changes() const { return static_cast<std::uint32_t>(changes_.size()); }
   std::size_t points() const { return points_.size(); }
 
@@ -134,4 +159,4 @@ class UpperBound {
   std::vector<std::uint32_t> changes_;
 };
 
-}  // namespace aos::offline
+}  // namespace aos::point_based

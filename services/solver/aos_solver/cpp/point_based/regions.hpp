@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "flat_model.hpp"
+#include "point_based/flat_model.hpp"
 
-namespace aos::offline {
+namespace aos::point_based {
 
 inline constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 
@@ -62,6 +62,9 @@ class Regions {
     number();
     for (Region& region : all) add_moves(region);
   }
+
+  // Whether nothing can be earned from a state on.
+  bool is_worthless(std::uint32_t state) const { return is_worthless_[state]; }
 
   std::vector<Region> all;
   std::vector<std::uint32_t> region_of;  // of a state; nowhere if it is worthless or never reached
@@ -211,4 +214,4 @@ class Regions {
   std::vector<bool> is_reached_;
 };
 
-}  // namespace aos::offline
+}  // namespace aos::point_based

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "regions.hpp"
+#include "point_based/regions.hpp"
 
-namespace aos::offline {
+namespace aos::point_based {
 
 // Values of a state's actions, [state * actions + action]; `model.states` rows, worthless and unreached ones are 0.
 using ActionValues = std::vector<double>;
@@ -24,18 +24,20 @@ class InitialBounds {
     for (std::size_t state = 0; state < model.states; ++state) {
       if (regions.region_of[state] != nowhere) states_.push_back(static_cast<std::uint32_t>(state));
     }
+    scale_ = 1e-9;
     for (const double reward : model.rewards) {
-      lowest_ = std::min(lowest_, reward);
       highest_ = std::max(highest_, reward);
+      scale_ = std::max(scale_, std::abs(reward));
     }
-    scale_ = std::max({1e-9, highest_, -lowest_});
     entries_ = model.outcomes.elements.size();
   }
 
   // The value of doing one action for ever, from below; by state.
   std::vector<double> blind_values(std::size_t action) const {
     std::vector<double> values(model_.states, 0.0);
-    for (const std::uint32_t state : states_) values[state] = lowest_ / (1 - model_.discount);
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t state : states_) lowest = std::min(lowest, model_.rewards[model_.row(state, action)]);
+    for (const std::uint32_t state : states_) values[state] = std::min(lowest, 0.0) / (1 - model_.discount);
     repeat(settled_blind, entries_ / model_.actions, least_sweeps_, [&] {
       double change = 0;
       for (const std::uint32_t state : states_) {
@@ -143,9 +145,8 @@ class InitialBounds {
   const Regions& regions_;
   std::vector<std::uint32_t> states_;
   std::size_t entries_ = 0;
-  double lowest_ = 0;
   double highest_ = 0;
   double scale_ = 0;
 };
 
-}  // namespace aos::offline
+}  // namespace aos::point_based

@@ -1,7 +1,7 @@
 // The beliefs that were met, what actions lead to from them, and both bounds of their values.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "bounds.hpp"
-#include "initial_bounds.hpp"
-#include "regions.hpp"
+#include "point_based/bounds.hpp"
+#include "point_based/initial_bounds.hpp"
+#include "point_based/regions.hpp"
 
-namespace aos::offline {
+namespace aos::point_based {
 
 inline constexpr double negligible = 1e-12;
 
@@ -68,7 +68,8 @@ class BeliefGraph {
     node.region = region;
     node.belief = std::move(belief);
     UpperBound& bound = upper_[region];
-    node.upper = std::min(bound.of(node.belief), best_informed(node));
+    const std::vector<double> informed = informed_values(node);
+    node.upper = std::min(bound.of(node.belief), *std::max_element(informed.begin(), informed.end()));
     node.seen_changes = bound.changes();
     refresh_lower(node);
     return entry->second;
@@ -86,14 +87,53 @@ class BeliefGraph {
   void expand(Node& node) {
     if (node.is_expanded) return;
     node.is_expanded = true;
-    const Region& region = regions_.all[node.region];
+    const std::vector<double> informed = informed_values(node);
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
-      const double upper = informed(node, action);
-      if (upper < node.lower) continue;
-      Branch branch{action, expected(region.moves[action].rewards, node.belief), upper, {}};
-      add_successors(node.belief, region.moves[action], branch.successors);
-      node.branches.push_back(std::move(branch));
+      if (informed[action] < node.lower) continue;
+      node.branches.push_back(branch(node, action, informed[action]));
+      bytes_ += sizeof(Branch) + node.branches.back().successors.size() * sizeof(Successor);
     }
+  }
+
+  // What an action leads to; `upper` bounds what it is worth.
+  Branch branch(const Node& node, std::uint32_t action, double upper) {
+    const Move& move = regions_.all[node.region].moves[action];
+    Branch branch{action, expected(move.rewards, node.belief), upper, {}};
+    add_successors(node.belief, move, branch.successors);
+    return branch;
+  }
+
+  // Keeps the bounds of the beginning only.
+  void start_over() {
+    for (LowerBound& bound : lower_) bound.keep_blind();
+    forget_beliefs();
+  }
+
+  // Keeps alpha vectors and the values of single states only.
+  void forget_beliefs() {
+    index_.clear();
+    uninformed_.clear();
+    nodes_.clear();
+    bytes_ = 0;
+    for (UpperBound& bound : upper_) bound.forget_points();
+    for (LowerBound& bound : lower_) {
+      bound.close_gaps();
+      for (std::uint32_t number = 0; number < bound.size(); ++number) {
+        bytes_ += bound[number].values.size() * sizeof(double) + sizeof(AlphaVector);
+      }
+    }
+  }
+
+  // What each action is worth at most, by what knowing more would give.
+  std::vector<double> informed_values(const Node& node) const {
+    const std::vector<std::uint32_t>& states = regions_.all[node.region].states;
+    std::vector<double> sums(model_.actions, 0.0);
+    for (std::size_t i = 0; i < node.belief.size(); ++i) {
+      const double* values = informed_.data() + model_.row(states[node.belief.states[i]], 0);
+      const double probability = node.belief.probabilities[i];
+      for (std::size_t action = 0; action < sums.size(); ++action) sums[action] += probability * values[action];
+    }
+    return sums;
   }
 
   void refresh_lower(Node& node) {
@@ -157,7 +197,7 @@ class BeliefGraph {
   static Key key_of(std::uint32_t region, const Belief& belief) {
     Key key{mixed(0x9ae16a3b2f90404fu, region), mixed(0xc949d7c7509e6557u, region)};
     for (std::size_t i = 0; i < belief.size(); ++i) {
-      const auto rounded = static_cast<std::uint64_t>(std::llround(belief.probabilities[i] * 1e9));
+      const auto rounded = static_cast<std::uint64_t>(belief.probabilities[i] * 1e9 + 0.5);
       key.high = mixed(key.high, rounded * 0x2545f4914f6cdd1du + belief.states[i]);
       key.low = mixed(key.low + belief.states[i], rounded);
     }
@@ -178,21 +218,6 @@ class BeliefGraph {
       lower.add(std::move(vector));
     }
     lower_.push_back(std::move(lower));
-  }
-
-  double informed(const Node& node, std::uint32_t action) const {
-    const std::vector<std::uint32_t>& states = regions_.all[node.region].states;
-    double sum = 0;
-    for (std::size_t i = 0; i < node.belief.size(); ++i) {
-      sum += node.belief.probabilities[i] * informed_[model_.row(states[node.belief.states[i]], action)];
-    }
-    return sum;
-  }
-
-  double best_informed(const Node& node) const {
-    double best = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t action = 0; action < model_.actions; ++action) best = std::max(best, informed(node, action));
-    return best;
   }
 
   void add_successors(const Belief& belief, const Move& move, std::vector<Successor>& successors) {
@@ -241,4 +266,4 @@ class BeliefGraph {
   std::vector<std::uint32_t> reached_;
 };
 
-}  // namespace aos::offline
+}  // namespace aos::point_based

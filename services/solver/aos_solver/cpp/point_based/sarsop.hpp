@@ -12,13 +12,15 @@
 #include <utility>
 #include <vector>
 
-#include "belief_graph.hpp"
+#include "point_based/belief_graph.hpp"
+#include "point_based/online.hpp"
 
-namespace aos::offline {
+namespace aos::point_based {
 
 class Sarsop {
  public:
   Sarsop(const FlatModel& model, const Regions& regions) : model_(model), regions_(regions), graph_(model, regions) {
+    trials_.assign(model.actions, 0);
     for (const Start& start : model.starts) add_start(start);
   }
 
@@ -35,16 +37,58 @@ class Sarsop {
   }
   const LowerBound& lower_of(std::uint32_t region) const { return graph_.lower(region); }
 
-  // One trial, with backups.
-  void improve(double precision) {
+  // Forgets all that trials have found out.
+  void start_over() {
+    roots_.clear();
+    graph_.start_over();
+    vectors_added_ = 0;
+  }
+
+  // Goes on from another belief; all that is known of other beliefs is kept, of alpha vectors only if there is no room.
+  void move_to(const Start& start, std::size_t most_bytes) {
+    if (bytes() > most_bytes) {
+      prune();
+      graph_.forget_beliefs();
+    }
+    roots_.clear();
+    trials_.assign(model_.actions, 0);
+    add_start(start);
+  }
+
+  // One trial, with backups; it is cut short after `is_over()`. Returns how many states were backed up.
+  template <class IsOver>
+  std::uint64_t improve(double precision, IsOver&& is_over) {
     const Root* widest = nullptr;
     for (const Root& root : roots_) {
       if (widest == nullptr || weighted_gap(root) > weighted_gap(*widest)) widest = &root;
     }
-    if (widest == nullptr) return;
-    sample(widest->node, precision);
-    for (auto step = path_.rbegin(); step != path_.rend(); ++step) backup(*step);
-    if (vectors_added_ > std::max<std::size_t>(200, vectors() / 4)) prune();
+    return widest == nullptr ? 0 : improve_from(widest->node, precision, is_over);
+  }
+
+  // The same below an action that is carried out at the only start.
+  template <class IsOver>
+  std::uint64_t improve_below(std::uint32_t action, double precision, IsOver&& is_over) {
+    if (roots_.empty()) return 0;
+    const Node& root = graph_[roots_.front().node];
+    const Branch branch = graph_.branch(root, action, root.upper);
+    refreshed_lower(branch);
+    refreshed_upper(branch);
+    const Successor* next = widest_of(branch.successors, precision);
+    return next == nullptr ? 0 : improve_from(next->node, precision, is_over);
+  }
+
+  // Of all actions at the only start.
+  std::vector<ActionBounds> action_bounds() {
+    std::vector<ActionBounds> bounds(model_.actions);
+    if (roots_.empty()) return bounds;
+    const Node& root = graph_[roots_.front().node];
+    const std::vector<double> informed = graph_.informed_values(root);
+    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+      const Branch branch = graph_.branch(root, action, informed[action]);
+      const double upper = std::min(branch.upper, refreshed_upper(branch));
+      bounds[action] = {refreshed_lower(branch), upper, trials_[action]};
+    }
+    return bounds;
   }
 
   // Gives up alpha vectors that are the best at no belief that the remaining actions reach.
@@ -108,6 +152,18 @@ class Sarsop {
     roots_.push_back({start.weight * total, graph_.node_of(region, std::move(belief))});
   }
 
+  template <class IsOver>
+  std::uint64_t improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
+    sample(number, precision, is_over);
+    std::uint64_t states = 0;
+    for (auto step = path_.rbegin(); step != path_.rend(); ++step) {
+      backup(*step);
+      states += graph_[*step].belief.size();
+    }
+    if (vectors_added_ > std::max<std::size_t>(200, vectors() / 4)) prune();
+    return states;
+  }
+
   double over_roots(double Node::*bound) {
     double sum = 0;
     for (const Root& root : roots_) sum += root.weight * graph_[root.node].*bound;
@@ -119,7 +175,8 @@ class Sarsop {
     return root.weight * (node.upper - node.lower);
   }
 
-  void sample(std::uint32_t number, double precision) {
+  template <class IsOver>
+  void sample(std::uint32_t number, double precision, IsOver&& is_over) {
     path_.clear();
     const double gap = graph_[number].upper - graph_[number].lower;
     double allowed = std::max(precision, share_of_gap_ * gap);
@@ -132,6 +189,7 @@ class Sarsop {
       if (node.upper <= low && node.upper <= std::max(high, node.lower + allowed)) return;
       path_.push_back(number);
       graph_.expand(node);
+      if (is_over()) return;
       if (node.branches.empty()) return;
       Branch* best = nullptr;
       double best_lower = -std::numeric_limits<double>::infinity();
@@ -140,6 +198,7 @@ class Sarsop {
         branch.upper = std::min(branch.upper, refreshed_upper(branch));
         if (best == nullptr || branch.upper > best->upper) best = &branch;
       }
+      if (path_.size() == 1) ++trials_[best->action];
       low = std::max(low, best_lower);
       high = std::max(high, best_lower + allowed);
       allowed /= model_.discount;
@@ -259,6 +318,7 @@ class Sarsop {
   const Regions& regions_;
   BeliefGraph graph_;
   std::vector<Root> roots_;
+  std::vector<std::uint32_t> trials_;  // by action: how many began with it at a root
   std::vector<std::uint32_t> path_;
   std::vector<const AlphaVector*> chosen_;
   std::vector<double> later_;
@@ -266,4 +326,4 @@ class Sarsop {
   std::size_t vectors_added_ = 0;
 };
 
-}  // namespace aos::offline
+}  // namespace aos::point_based

@@ -1,0 +1,52 @@
+// A POMDP as numbers: what the point-based solver works on.
+//
+// A sensing is a distribution of observations; most outcomes share few of them.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace aos::point_based {
+
+struct Outcome {
+  std::uint32_t next;
+  std::uint32_t sensing;
+  double probability;
+};
+
+struct Reading {
+  std::uint32_t observation;
+  double probability;
+};
+
+// The robot is told at the start which of these beliefs it is in.
+struct Start {
+  double weight;
+  std::vector<std::pair<std::uint32_t, double>> belief;
+};
+
+// The elements of a row in a list of rows.
+template <class Element>
+struct Rows {
+  std::vector<std::uint64_t> first;
+  std::vector<Element> elements;
+
+  const Element* begin(std::size_t row) const { return elements.data() + first[row]; }
+  const Element* end(std::size_t row) const { return elements.data() + first[row + 1]; }
+};
+
+struct FlatModel {
+  std::size_t states = 0;
+  std::size_t actions = 0;
+  std::size_t observations = 0;
+  double discount = 0;
+  std::vector<double> rewards;
+  Rows<Outcome> outcomes;  // of (state, action)
+  Rows<Reading> readings;  // of a sensing
+  std::vector<Start> starts;
+
+  std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }
+};
+
+}  // namespace aos::point_based

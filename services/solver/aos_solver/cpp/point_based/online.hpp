@@ -1,0 +1,54 @@
+// SARSOP during a mission: from the belief of each decision, with all that earlier ones have found out.
+//
+// The one header of this folder that the engine's templates include; what is behind it is an object file of its own.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "point_based/flat_model.hpp"
+
+namespace aos::point_based {
+
+// What an action is worth at least and at most, and how many trials began with it.
+struct ActionBounds {
+  double lower = 0;
+  double upper = 0;
+  std::uint32_t trials = 0;
+};
+
+class OnlineSarsop {
+ public:
+  using IsOver = std::function<bool()>;
+
+  // Works out the first bounds. The discount must be below 1.
+  explicit OnlineSarsop(FlatModel model);
+  ~OnlineSarsop();
+
+  // Forgets all that trials have found out; keeps the first bounds.
+  void start_over();
+
+  // Goes on from a belief, by state. Returns whether it is one that the model's starts can lead to.
+  bool move_to(const std::vector<std::pair<std::uint32_t, double>>& belief);
+
+  // Runs trials, one at least, until `is_over()`, until so many states were backed up (0: no limit), or until nothing is
+  // left to find out. Returns how many states were backed up.
+  std::uint64_t improve(std::uint64_t most_states, const IsOver& is_over);
+  // The same below an action that is carried out.
+  std::uint64_t improve_below(std::uint32_t action, std::uint64_t most_states, const IsOver& is_over);
+
+  // Of all actions, of the belief moved to; discounted, without end.
+  std::vector<ActionBounds> action_bounds();
+  // What the belief moved to is worth at least and at most.
+  std::pair<double, double> bounds();
+
+ private:
+  struct Solver;
+  std::unique_ptr<Solver> solver_;
+};
+
+}  // namespace aos::point_based

@@ -1,0 +1,147 @@
+"""SARSOP at every decision: true bounds, repeatable, kept over a mission; refused where there are none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_bundle, built_text, engine_of
+
+from aos_solver.answers import Plan
+from aos_solver.build import BuiltModel
+from aos_solver.endings import MissionLimits
+from aos_solver.engine import Engine
+from aos_solver.search import Search
+from aos_solver.simulation import simulate_mission
+
+ALMOST_ENDLESS = 200
+"""The tiger's discount of 0.95 leaves a 30,000th of what comes later."""
+
+TICKET = {
+    "ticket.ef": """project: ticket
+horizon: 10
+discount: 1
+
+state_variable: bool is_winner
+
+initial_belief:
+state.is_winner = AOS.Bernoulli(0.5);
+""",
+    "check.sd": """project: ticket
+
+dynamic_model:
+__reward = state.is_winner ? 2 : -1;
+__moduleResponse = done;
+""",
+    "check.am": """project: ticket
+
+response: done
+response_rule: True
+
+module_activation: skill
+path: /check
+""",
+}
+
+
+@pytest.fixture
+async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
+    return await built_bundle(bundles / "bench" / "tiger", cache_dir)
+
+
+@pytest.fixture
+async def tag(bundles: Path, cache_dir: Path) -> BuiltModel:
+    return await built_bundle(bundles / "bench" / "tag", cache_dir)
+
+
+async def _decide(engine: Engine, simulations: int = 20_000, seed: int = 1) -> Plan:
+    plan = await engine.plan(simulations=simulations, seed=seed, planner="sarsop")
+    assert plan.planner == "sarsop"
+    return plan
+
+
+@pytest.mark.parametrize("heard", [(), ("tiger_left",), ("tiger_left", "tiger_left")])
+async def test_values_are_true_lower_bounds_and_the_best_one_is_tight(
+    heard: tuple[str, ...], tiger: BuiltModel
+) -> None:
+    async with engine_of(tiger) as engine:
+        for sound in heard:
+            await engine.update("listen", sound)
+        plan = await _decide(engine, simulations=100_000)
+        exact = {value.action: value.q for value in (await engine.exact(ALMOST_ENDLESS)).actions}
+    assert plan.best.q == pytest.approx(max(exact.values()), abs=0.02)
+    assert exact[plan.best.action] == pytest.approx(max(exact.values()))
+    for action in plan.actions:
+        assert action.q <= exact[action.action] + 0.01
+
+
+async def test_the_same_simulations_repeat_to_the_bit_and_need_no_seed(tag: BuiltModel) -> None:
+    plans = []
+    for seed in (1, 2):
+        async with engine_of(tag) as engine:
+            plans.append(await _decide(engine, seed=seed))
+    assert plans[0].actions == plans[1].actions
+    assert 20_000 <= plans[0].simulations == plans[1].simulations
+
+
+async def test_a_later_decision_knows_what_an_earlier_one_has_found_out(tag: BuiltModel) -> None:
+    async with engine_of(tag) as engine:
+        first = await _decide(engine, simulations=40_000)
+        again = await _decide(engine, simulations=1)
+        await engine.reset_belief()
+        anew = await _decide(engine, simulations=1)
+    assert again.known_simulations == first.simulations
+    assert again.best.q >= first.best.q
+    assert anew.known_simulations == 0
+    assert anew.best.q < first.best.q - 5
+
+
+async def test_an_opponent_that_flees_is_tagged_in_the_same_way_each_time(tag: BuiltModel) -> None:
+    search = Search(simulations=5_000, seed=2, planner="sarsop")
+    limits = MissionLimits(goal_probability=0.999, step_limit=90)
+    async with engine_of(tag) as engine:
+        runs = [await simulate_mission(engine, search, limits) for _ in range(2)]
+    assert runs[0].ending == "goal"
+    assert runs[0] == runs[1]
+
+
+async def test_a_belief_that_no_observation_leads_to_is_reckoned_with(tag: BuiltModel) -> None:
+    async with engine_of(tag) as engine:
+        await _decide(engine, simulations=1)
+        # The robot always knows where it is, but for this.
+        await engine.update_without_observation("move(direction=north)", ran_probability=0.5)
+        plan = await _decide(engine)
+    assert -20 < plan.best.q < 10
+
+
+async def test_thinking_while_acting_goes_on_with_what_the_action_leads_to(tag: BuiltModel) -> None:
+    async with engine_of(tag) as engine:
+        plan = await _decide(engine, simulations=1)
+        await engine.think(plan.index, seed=1, time_s=0.2)
+        warm = await _decide(engine, simulations=1)
+    assert warm.known_simulations > plan.simulations
+
+
+async def test_without_a_discount_another_planner_decides_and_says_why(cache_dir: Path) -> None:
+    async with engine_of(await built_text(TICKET, cache_dir)) as engine:
+        plan = await engine.plan(simulations=500, seed=1, planner="sarsop")
+    assert plan.planner == "pomcp"
+    assert plan.why.startswith("SARSOP cannot be used: without a discount")
+
+
+@pytest.mark.parametrize(
+    ("problem", "planner", "why"),
+    # Behind two doors, and on 49 cells with 8 rocks: what the rover has learnt does not count.
+    [
+        ("bench/tiger", "sarsop", "2 states"),
+        ("bench/rocksample-7-8", "sarsop", f"{49 * 2**8} states"),
+        ("armadillo-finer", "despot", "without the horizon"),
+    ],
+)
+async def test_auto_chooses_by_states_and_horizon_and_says_so(
+    problem: str, planner: str, why: str, bundles: Path, cache_dir: Path
+) -> None:
+    async with engine_of(await built_bundle(bundles / problem, cache_dir)) as engine:
+        plan = await engine.plan(simulations=500, seed=1, planner="auto")
+    assert plan.planner == planner
+    assert why in plan.why
