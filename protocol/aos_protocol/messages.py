@@ -190,10 +190,14 @@ class StartMission(Message, frozen=True):
 
 
 class Marginal(Message, frozen=True):
-    """The distribution of one state variable: value text to probability, most probable first."""
+    """The distribution of one state variable: value text to probability, most probable first.
+
+    Of many values only the most probable ones are told; `others` is the probability of all the rest.
+    """
 
     variable: str
     values: dict[str, float]
+    others: float = 0.0
 
 
 class BeliefSummary(Message, frozen=True):

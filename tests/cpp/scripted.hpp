@@ -150,7 +150,7 @@ void play() {
     json.key("state");
     print_state<Model>(json, state);
     typename Model::State loaded{};
-    Model::load_state(loaded, Model::save_state(state));
+    Model::load_state(loaded, Model::save_state(state), Model::save_constants());
     json.member("is_saved", loaded == state && Model::hash(loaded) == Model::hash(state));
     json.member("ending", static_cast<int>(Model::ending(state))).end_object();
   }

@@ -153,10 +153,29 @@ class Prediction(msgspec.Struct, frozen=True):
 
 
 class ExportedBelief(msgspec.Struct, frozen=True):
-    """A belief that another engine with the same state layout can take: weights, and states as bytes."""
+    """A belief that another engine with the same state layout can take: weights, and states as text.
 
-    is_exact: bool
+    `constants` are the variables that no code of the model changes, as text; states hold the others.
+    """
+
+    error_bound: float
+    is_drawn: bool
+    states: int
+    constants: dict[str, str]
     particles: tuple[tuple[float, str], ...]
+
+    @property
+    def is_exact(self) -> bool:
+        return self.error_bound == 0
+
+    def fields(self) -> list[str]:
+        """What an engine that takes it over is told."""
+        fields = [repr(self.error_bound), str(int(self.is_drawn)), str(len(self.constants))]
+        for name, value in self.constants.items():
+            fields += name, value
+        for weight, state in self.particles:
+            fields += repr(weight), state
+        return fields
 
 
 class WorldStart(msgspec.Struct, frozen=True):

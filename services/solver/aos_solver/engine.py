@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import re
 import signal
-import struct
 import sys
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
@@ -41,9 +39,11 @@ from aos_solver.answers import (
     WorldStep,
     WorldSteps,
 )
+from aos_solver.blame_page import new_blame_page, running_piece
 from aos_solver.build import BuiltModel
 from aos_solver.local_values import UnusableLocals, local_values_line
 from aos_solver.printed import pass_on
+from aos_solver.shared_memory import SharedMemory
 
 __all__ = ["Engine", "ImpossiblePolicy", "Planner"]
 
@@ -65,9 +65,8 @@ EXACT_TIME_S = 300.0
 EXIT_DEADLINE_S = 2.0
 EXACT_BELIEF_BUDGET = 20_000_000
 ADDRESS_SPACE_BYTES = 8 * 1024**3
-ANSWER_LIMIT_BYTES = 256 * 1024**2
-BLAME_BYTES = 65536
-"""The largest page that blame.hpp maps; each of its threads has a line of 64 bytes in the first 4096."""
+ANSWER_LIMIT_BYTES = 32 * 1024**2
+"""Of one answer; what may be longer comes in pieces."""
 
 
 class _FaultAnswer(msgspec.Struct, frozen=True):
@@ -90,11 +89,11 @@ class Engine:
         self._seed = seed
         self._policy = impossible_observation
         self._child: Child | None = None
-        self._belief: ExportedBelief | None = None
+        self._changes = 0
         self._asking = asyncio.Lock()
         self._printed: asyncio.Task[None] | None = None
-        self._blame: int | None = None
-        self._keeps_belief = True
+        self._blame: SharedMemory | None = None
+        self._beliefs: SharedMemory | None = None
         self.description: EngineDescription
 
     @classmethod
@@ -108,11 +107,12 @@ class Engine:
     ) -> Self:
         """Starts the child on the initial belief; ModelError if the model cannot even begin.
 
-        A child that is started again gets the belief, which is fetched after each change; or, without
-        `keeps_belief`, the initial one.
+        A child that is started again gets the belief, of which each child keeps a copy in our memory; or,
+        without `keeps_belief`, the initial one.
         """
         engine = cls(built, seed, impossible_observation)
-        engine._keeps_belief = keeps_belief
+        if keeps_belief:
+            engine._beliefs = SharedMemory.create("aos-beliefs")
         try:
             await engine._start_child()
         except BaseException:
@@ -123,6 +123,9 @@ class Engine:
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
         await self._drop_child()
+        if self._beliefs is not None:
+            self._beliefs.close()
+            self._beliefs = None
 
     @property
     def model_digest(self) -> str:
@@ -226,11 +229,17 @@ class Engine:
         return await self._change_belief(command, BeliefUpdate)
 
     async def export_belief(self) -> ExportedBelief:
-        return await self._ask("export_belief", ExportedBelief)
+        """The whole belief, however many pieces it takes; nobody changes it meanwhile."""
+        belief = await self._ask("export_belief\t0", ExportedBelief)
+        particles = list(belief.particles)
+        while len(particles) < belief.states:
+            piece = await self._ask(f"export_belief\t{len(particles)}", ExportedBelief)
+            particles += piece.particles
+        return msgspec.structs.replace(belief, particles=tuple(particles))
 
     async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
         """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
-        return await self._change_belief(_import_command(belief), BeliefSummary)
+        return await self._change_belief("\t".join(("import_belief", *belief.fields())), BeliefSummary)
 
     async def reset_world(self, seed: int) -> WorldStart:
         """Starts a hidden state, drawn from the initial belief, for missions without a robot."""
@@ -273,8 +282,7 @@ class Engine:
 
     async def _change_belief(self, command: str, kind: type[A]) -> A:
         answer = await self._ask(command, kind)
-        if self._keeps_belief:
-            self._belief = await self.export_belief()
+        self._changes += 1
         return answer
 
     async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
@@ -289,10 +297,9 @@ class Engine:
                 return await self._exchange(command, kind, deadline_s)
 
     async def _start_child(self) -> None:
-        # In memory, so that nothing is left behind however we end; the child opens it through us.
-        self._blame = os.memfd_create("aos-blame")
-        os.truncate(self._blame, BLAME_BYTES)
-        arguments = [f"/proc/{os.getpid()}/fd/{self._blame}", str(self._seed), self._policy]
+        self._blame = new_blame_page()
+        beliefs = "" if self._beliefs is None else self._beliefs.path
+        arguments = [self._blame.path, beliefs, str(self._seed), self._policy]
         self._child = await Child.start(
             guarded(
                 [str(self._built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)
@@ -309,8 +316,12 @@ class Engine:
     async def _restart_child(self) -> None:
         await self._drop_child()
         await self._start_child()
-        if self._belief is not None:
-            await self._exchange(_import_command(self._belief), BeliefSummary, ANSWER_DEADLINE_S)
+        if self._changes > 0 and self._beliefs is not None:
+            try:
+                await self._exchange(f"restore_belief\t{self._changes}", _Done, ANSWER_DEADLINE_S)
+            except AosError:
+                await self._drop_child()
+                raise
 
     async def _exchange(self, command: str | None, kind: type[A], deadline_s: float) -> A:
         """One line there and one back; `command` None only waits for the answer."""
@@ -341,7 +352,7 @@ class Engine:
 
     async def _lost(self, code: str, message: str) -> AosError:
         """The error for a child that is gone or has to go; the blame page tells what ran last."""
-        piece = _running_piece(self._blame) if self._blame is not None else 0
+        piece = running_piece(self._blame) if self._blame is not None else 0
         status = None if code == "AOS211" else await self._status()
         await self._drop_child()
         if status == -signal.SIGKILL:
@@ -379,19 +390,8 @@ class Engine:
             self._printed.cancel()
             self._printed = None
         if self._blame is not None:
-            os.close(self._blame)
+            self._blame.close()
             self._blame = None
-
-
-def _running_piece(blame: int) -> int:
-    """The piece of document code that ran when the child ended; of several threads, the first one's."""
-    lines = struct.iter_unpack("=I60x", os.pread(blame, 4096, 0))
-    return next((piece for (piece,) in lines if piece != 0), 0)
-
-
-def _import_command(belief: ExportedBelief) -> str:
-    particles = "\t".join(f"{weight!r}\t{state}" for weight, state in belief.particles)
-    return f"import_belief\t{int(belief.is_exact)}\t{particles}"
 
 
 def _status_text(returncode: int) -> str:

@@ -522,15 +522,21 @@ struct Model {
     const auto ended = static_cast<std::uint64_t>(state.__ending);
     return aos::mixed(aos::hashed(0, state), ended);
   }
+  // What differs between states.
   static std::string save_state(const State& state) {
     aos::StateWriter text;
     State::__fields(state, [&](const char*, const auto& value) { text.write(value); });
     text.write(state.__ending);
     return text.text();
   }
-  static void load_state(State& state, std::string_view saved) {
+  // What does not.
+  static aos::SavedConstants save_constants() { return {}; }
+  // Either may have come from documents in which other variables were constants.
+  static void load_state(State& state, std::string_view saved, const aos::SavedConstants& constants) {
     aos::StateReader text{saved};
-    State::__fields(state, [&](const char*, auto& value) { text.read(value); });
+    State::__fields(state, [&](const char* name, auto& value) {
+      constants.read(name, value, text);
+    });
     text.read(state.__ending);
     text.finish();
   }

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -16,9 +15,9 @@
 #include "aos/enumerator.hpp"
 #include "aos/gathering.hpp"
 #include "aos/json.hpp"
+#include "aos/marginals.hpp"
 #include "aos/outcomes.hpp"
 #include "aos/random.hpp"
-#include "aos/values.hpp"
 #include "aos/step.hpp"
 
 namespace aos {
@@ -43,6 +42,8 @@ class Belief {
 
   const std::vector<Particle>& particles() const { return particles_; }
   bool is_exact() const { return error_bound_ == 0; }
+  // Whether its states were drawn at random.
+  bool is_drawn() const { return source_ == Source::drawing; }
   // No event's probability is further than this from the exact belief's; 1 where steps were sampled.
   double error_bound() const { return error_bound_; }
   // How many states of equal weight would tell as much.
@@ -147,28 +148,37 @@ class Belief {
   }
 
   void write_summary(JsonWriter& json) const {
-    json.begin_object().key("marginals").begin_array();
-    for (const auto& [variable, values] : marginals()) {
-      json.begin_object().member("variable", variable).key("values").begin_object();
-      for (const auto& [value, probability] : values) json.member(value, probability);
-      json.end_object().end_object();
-    }
-    json.end_array().member("entropy", entropy());
+    Marginals<Model>{particles_}.write(json.begin_object().key("marginals"));
+    json.member("entropy", entropy());
     json.member("goal_probability", probability_of(Ending::goal));
     json.member("failure_probability", probability_of(Ending::failure));
     json.member("states", particles_.size()).member("effective_states", effective_states());
     json.member("is_exact", is_exact()).member("error_bound", error_bound_).end_object();
   }
 
-  static Belief of(const std::vector<Particle>& particles, bool is_exact) {
+  static Belief of(const std::vector<Particle>& particles, double error_bound, bool is_drawn) {
     Gathering<Model> gathering;
     for (const auto& [state, weight] : particles) gathering.add(state, weight);
-    return is_exact ? Belief{gathering, 0, Source::enumeration} : Belief{gathering, 1, Source::drawing};
+    return Belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
+  }
+
+  // The same belief, for a model with the same states.
+  template <class To>
+  Belief<To> as() const {
+    Belief<To> result;
+    for (const auto& [state, weight] : particles_) result.particles_.push_back({state, weight});
+    result.cumulative_ = cumulative_;
+    result.error_bound_ = error_bound_;
+    result.source_ = static_cast<typename Belief<To>::Source>(source_);
+    return result;
   }
 
  private:
   enum class Source { enumeration, drawing };
+  template <class>
+  friend class Belief;
 
+  Belief() = default;
   Belief(const Gathering<Model>& gathering, double error_bound, Source source)
       : error_bound_(std::min(error_bound, 1.0)), source_(source) {
     const double sum = gathering.total();
@@ -184,9 +194,9 @@ class Belief {
     if (source == Source::drawing) return particle_count;
     return std::clamp(most_weighted_bytes / sizeof(State), particle_count, most_weighted_states);
   }
-  bool is_thin() const { return source_ == Source::drawing && particles_.size() < few_particles; }
+  bool is_thin() const { return is_drawn() && particles_.size() < few_particles; }
   std::size_t most_paths() const {
-    return source_ == Source::drawing ? most_paths_of_particles : most_enumerated_paths;
+    return is_drawn() ? most_paths_of_particles : most_enumerated_paths;
   }
 
   // The outcomes whose observation is of use, as a belief, and their probability.
@@ -219,33 +229,6 @@ class Belief {
     const double probability = gathering.total() / drawn;
     gathering.reduce(particle_count, random);
     return {Belief{gathering, 1, Source::drawing}, probability};
-  }
-
-  using Marginal = std::pair<std::string, std::vector<std::pair<std::string, double>>>;
-
-  std::vector<Marginal> marginals() const {
-    std::vector<Marginal> result;
-    std::unordered_map<std::string, std::size_t> index;
-    for (const auto& [state, state_weight] : particles_) {
-      const double weight = state_weight;
-      Model::visit(state, [&](const std::string& name, const Leaf& leaf) {
-        const auto [entry, is_new] = index.try_emplace(name, result.size());
-        if (is_new) result.push_back({name, {}});
-        auto& values = result[entry->second].second;
-        const std::string text = leaf_text(leaf);
-        const auto known = std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == text; });
-        if (known == values.end()) {
-          values.push_back({text, weight});
-        } else {
-          known->second += weight;
-        }
-      });
-    }
-    for (auto& [variable, values] : result) {
-      std::stable_sort(values.begin(), values.end(),
-                       [](const auto& left, const auto& right) { return left.second > right.second; });
-    }
-    return result;
   }
 
   std::vector<Particle> particles_;

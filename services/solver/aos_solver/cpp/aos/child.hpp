@@ -96,8 +96,11 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
     return engine.update(json, whole(1), fields.at(2), has_locals ? std::optional{fields[3]} : std::nullopt);
   }
   if (command == "update_without_observation") return engine.update_without_observation(json, whole(1), real(2));
-  if (command == "export_belief") return engine.export_belief(json);
-  if (command == "import_belief") return engine.import_belief(json, whole(1) != 0, {fields.begin() + 2, fields.end()});
+  if (command == "export_belief") return engine.export_belief(json, large(1));
+  if (command == "import_belief") {
+    return engine.import_belief(json, real(1), whole(2) != 0, large(3), {fields.begin() + 4, fields.end()});
+  }
+  if (command == "restore_belief") return engine.restore_belief(json, large(1));
   if (command == "reset_world") return engine.reset_world(json, large(1));
   if (command == "step_world") return engine.step_world(json, whole(1));
   if (command == "show_world") return engine.show_world(json);
@@ -156,11 +159,11 @@ inline void say(std::FILE* out, const JsonWriter& json) {
 
 }  // namespace detail
 
-// Arguments: the blame page's path, the seed, the policy for impossible observations.
+// Arguments: the paths of the blame page and of the kept beliefs, the seed, the policy for impossible observations.
 template <class Model>
 int run_child(int argc, char** argv) {
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: %s BLAME_FILE SEED hold|widen|reset\n", argv[0]);
+  if (argc != 5) {
+    std::fprintf(stderr, "usage: %s BLAME_FILE BELIEF_FILE SEED hold|widen|reset\n", argv[0]);
     return 2;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -168,7 +171,7 @@ int run_child(int argc, char** argv) {
   std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
 
-  const std::string_view policy_text = argv[3];
+  const std::string_view policy_text = argv[4];
   const auto policy = policy_text == "hold"    ? ImpossiblePolicy::hold
                       : policy_text == "reset" ? ImpossiblePolicy::reset
                                                : ImpossiblePolicy::widen;
@@ -176,7 +179,7 @@ int run_child(int argc, char** argv) {
   JsonWriter json;
   detail::guarded(json, [&] {
     Model::prepare();
-    engine = std::make_unique<Engine<Model>>(std::strtoull(argv[2], nullptr, 10), policy);
+    engine = std::make_unique<Engine<Model>>(std::strtoull(argv[3], nullptr, 10), policy, argv[2]);
     engine->describe(json);
   });
   detail::say(out, json);

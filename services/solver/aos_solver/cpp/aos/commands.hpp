@@ -22,8 +22,10 @@
 #include "aos/exploration.hpp"
 #include "aos/fault.hpp"
 #include "aos/json.hpp"
+#include "aos/kept_beliefs.hpp"
 #include "aos/planner.hpp"
 #include "aos/reachability.hpp"
+#include "aos/state_text.hpp"
 #include "aos/walk.hpp"
 #include "aos/worlds.hpp"
 
@@ -41,8 +43,9 @@ class Engine {
   using Corrected = CorrectedModel<Model>;
   static_assert(std::is_trivially_copyable_v<State>);
 
-  explicit Engine(std::uint64_t seed, ImpossiblePolicy policy)
-      : random_(seed), policy_(policy), belief_(Belief<Model>::initial(random_)), hidden_() {}
+  // `kept_beliefs` is the path of the file for KeptBeliefs.
+  Engine(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs)
+      : random_(seed), policy_(policy), belief_(Belief<Model>::initial(random_)), kept_(kept_beliefs), hidden_() {}
 
   void describe(JsonWriter& json) const {
     json.begin_object().member("project", Model::project).member("horizon", Model::horizon);
@@ -65,9 +68,7 @@ class Engine {
   }
 
   void reset_belief(JsonWriter& json) {
-    belief_ = Belief<Model>::initial(random_);
-    search_.start_over();
-    summary(json);
+    become(json, Belief<Model>::initial(random_), [&] { search_.start_over(); });
   }
 
   void summary(JsonWriter& json) const { belief_.write_summary(json); }
@@ -154,28 +155,24 @@ class Engine {
     auto [posterior, probability] = locals ? corrected_posterior(action, observation, *locals, uncorrected)
                                            : belief_.posterior(action, observation, random_);
     const bool is_impossible = posterior.particles().empty();
-    if (is_impossible) {
-      belief_ = after_impossible(action);
-      search_.forget();
-    } else {
-      belief_ = std::move(posterior);
-      search_.move_to(action, observation);
-    }
     json.begin_object().member("probability", probability).member("is_impossible", is_impossible);
     if (!uncorrected.code.empty()) {
       json.key("uncorrected").begin_object().member("code", uncorrected.code).member("text", uncorrected.text);
       json.member("piece", uncorrected.piece).end_object();
     }
-    summary(json.key("summary"));
+    json.key("summary");
+    if (is_impossible) {
+      become(json, after_impossible(action));
+    } else {
+      become(json, std::move(posterior), [&] { search_.move_to(action, observation); });
+    }
     json.end_object();
   }
 
   // Nobody knows whether the action ran.
   void update_without_observation(JsonWriter& json, int action, double ran_probability) {
-    belief_ = belief_.mixed_with(belief_.predicted(checked(action), random_), ran_probability);
-    search_.forget();
     json.begin_object().member("probability", 1.0).member("is_impossible", false);
-    summary(json.key("summary"));
+    become(json.key("summary"), belief_.mixed_with(belief_.predicted(checked(action), random_), ran_probability));
     json.end_object();
   }
 
@@ -192,26 +189,47 @@ class Engine {
     json.end_object();
   }
 
-  // Each particle as its weight and its state as text.
-  void export_belief(JsonWriter& json) const {
-    json.begin_object().member("is_exact", belief_.is_exact()).key("particles").begin_array();
-    for (const auto& [state, weight] : belief_.particles()) {
-      json.begin_array().value(weight).value(Model::save_state(state)).end_array();
+  // The particles from number `first` on, as many as fit one answer, each as its weight and its state as text; what is the
+  // same in all states only with the first of them.
+  void export_belief(JsonWriter& json, std::size_t first) const {
+    const auto& particles = belief_.particles();
+    const SavedConstants constants = first == 0 ? Model::save_constants() : SavedConstants{};
+    json.begin_object().member("error_bound", belief_.error_bound()).member("is_drawn", belief_.is_drawn());
+    json.member("states", particles.size()).key("constants").begin_object();
+    for (const auto& [name, text] : constants.texts()) json.member(name, text);
+    json.end_object().key("particles").begin_array();
+    const std::size_t most_bytes = json.text().size() + most_answer_bytes;
+    for (std::size_t number = first; number < particles.size() && json.text().size() < most_bytes; ++number) {
+      json.begin_array().value(particles[number].weight).value(Model::save_state(particles[number].state)).end_array();
     }
     json.end_array().end_object();
   }
 
-  void import_belief(JsonWriter& json, bool is_exact, const std::vector<std::string_view>& fields) {
+  // The fields are as many pairs of a constant's name and text as there are constants, then pairs of weight and state.
+  void import_belief(JsonWriter& json, double error_bound, bool is_drawn, std::size_t constants,
+                     const std::vector<std::string_view>& fields) {
+    SavedConstants saved;
     std::vector<typename Belief<Model>::Particle> particles;
     for (std::size_t i = 0; i + 1 < fields.size(); i += 2) {
+      if (i < 2 * constants) {
+        saved.add_text(fields[i], fields[i + 1]);
+        continue;
+      }
       State state{};
-      Model::load_state(state, fields[i + 1]);
+      Model::load_state(state, fields[i + 1], saved);
       particles.push_back({state, std::stod(std::string{fields[i]})});
     }
     if (particles.empty()) throw BadCommand{"an empty belief"};
-    belief_ = Belief<Model>::of(particles, is_exact);
+    become(json, Belief<Model>::of(particles, error_bound, is_drawn));
+  }
+
+  // After the change of this number, of an engine before this one.
+  void restore_belief(JsonWriter& json, std::uint64_t change) {
+    auto kept = kept_.restore(change);
+    if (!kept) throw BadCommand{"that belief was not kept"};
+    belief_ = *std::move(kept);
     search_.forget();
-    summary(json);
+    json.begin_object().end_object();
   }
 
   // Worlds for somebody who learns.
@@ -264,6 +282,8 @@ class Engine {
   }
 
  private:
+  static constexpr std::size_t most_answer_bytes = std::size_t{16} << 20;  // about
+
   struct Thought {
     int action;
     Budget budget;
@@ -283,8 +303,8 @@ class Engine {
       Model::read_locals(action, locals);
       Corrected::made = observation;
       const auto [posterior, probability] =
-          belief_of<Corrected>(belief_).posterior(action, observation, random_);
-      return {belief_of<Model>(posterior), probability};
+          belief_.template as<Corrected>().posterior(action, observation, random_);
+      return {posterior.template as<Model>(), probability};
     } catch (const ModelFault& fault) {
       uncorrected = {fault.code, fault.text, blame::piece()};
     } catch (const std::exception& error) {
@@ -293,12 +313,16 @@ class Engine {
     return belief_.posterior(action, observation, random_);
   }
 
-  // The same belief for a model with the same states.
-  template <class To, class From>
-  static Belief<To> belief_of(const Belief<From>& belief) {
-    std::vector<typename Belief<To>::Particle> particles;
-    for (const auto& [state, weight] : belief.particles()) particles.push_back({state, weight});
-    return Belief<To>::of(particles, belief.is_exact());
+  // Takes over a belief and tells it. Nothing changes where it cannot be told.
+  void become(JsonWriter& json, Belief<Model> belief) {
+    become(json, std::move(belief), [&] { search_.forget(); });
+  }
+  template <class Follow>
+  void become(JsonWriter& json, Belief<Model> belief, Follow&& follow) {
+    belief.write_summary(json);
+    belief_ = std::move(belief);
+    kept_.keep(belief_);
+    follow();
   }
 
   static double seconds_since(std::chrono::nanoseconds processor_start) {
@@ -356,6 +380,7 @@ class Engine {
   Sampler random_;
   ImpossiblePolicy policy_;
   Belief<Model> belief_;
+  KeptBeliefs<Model> kept_;
   Planner<Model> search_;
   int planned_horizon_ = 0;
   std::optional<Thought> thought_;

@@ -52,13 +52,17 @@ struct ErasedModel {
   static std::uint64_t hash(const State& state) { return compiled_model.hash(state.bytes); }
   static std::string state_text(const State& state) { return compiled_model.state_text(state.bytes); }
   static std::string save_state(const State& state) { return compiled_model.save_state(state.bytes); }
-  static void load_state(State& state, std::string_view saved) { compiled_model.load_state(state.bytes, saved); }
+  static SavedConstants save_constants() { return compiled_model.save_constants(); }
+  static void load_state(State& state, std::string_view saved, const SavedConstants& constants) {
+    compiled_model.load_state(state.bytes, saved, constants);
+  }
   // Calls `visitor(name, leaf)` for every single value.
   template <class Visitor>
   static void visit(const State& state, Visitor&& visitor) {
     NamedLeavesCall leaves{visitor};
     compiled_model.visit(state.bytes, leaves);
   }
+  static void visit_values(const State& state, ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); }
   // Where the state's single values stand, in the order of `visit`.
   static std::vector<Place> places(const State& state) {
     return places_in(state.bytes, [&](ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); });

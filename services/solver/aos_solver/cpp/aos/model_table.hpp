@@ -16,6 +16,7 @@
 #include "aos/random.hpp"
 #include "aos/reflection.hpp"
 #include "aos/rollout.hpp"
+#include "aos/state_text.hpp"
 #include "aos/step.hpp"
 #include "aos/walk.hpp"
 
@@ -56,7 +57,8 @@ struct ModelTable {
   void (*visit)(const void* state, ValueVisitor& visitor);
   std::string (*state_text)(const void* state);
   std::string (*save_state)(const void* state);
-  void (*load_state)(void* state, std::string_view saved);
+  SavedConstants (*save_constants)();
+  void (*load_state)(void* state, std::string_view saved, const SavedConstants& constants);
 
   DrawingFunctions<Sampler> sampling;
   DrawingFunctions<Enumerator> enumerating;
@@ -113,8 +115,11 @@ constexpr ModelTable table_of() {
                   ValueVisitor& visitor) { visit_value(*static_cast<const State*>(state), visitor); },
       .state_text = [](const void* state) { return Model::state_text(*static_cast<const State*>(state)); },
       .save_state = [](const void* state) { return Model::save_state(*static_cast<const State*>(state)); },
+      .save_constants = Model::save_constants,
       .load_state =
-          [](void* state, std::string_view saved) { Model::load_state(*static_cast<State*>(state), saved); },
+          [](void* state, std::string_view saved, const SavedConstants& constants) {
+            Model::load_state(*static_cast<State*>(state), saved, constants);
+          },
       .sampling = drawing_functions<Model, Sampler>(),
       .enumerating = drawing_functions<Model, Enumerator>(),
       .meets_precondition =

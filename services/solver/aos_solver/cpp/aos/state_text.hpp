@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "aos/reflection.hpp"
@@ -25,7 +26,7 @@ class StateWriter {
   std::string text_;
 };
 
-// Reads what a StateWriter wrote. Constants are read past: they have their values already.
+// Reads what a StateWriter wrote. What is a constant here is read past: it has its value already.
 class StateReader {
  public:
   explicit StateReader(std::string_view text) : rest_(text) {}
@@ -71,6 +72,31 @@ class StateReader {
   std::int64_t next();
 
   std::string_view rest_;
+};
+
+// The variables that are constants where states are saved, by name: what need not be saved with each of them.
+class SavedConstants {
+ public:
+  void add(std::string_view name, AnyValue value);
+  void add_text(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
+  const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
+
+  // The value of a variable from here if it was a constant, or else from the rest of a saved state.
+  template <class T>
+  void read(std::string_view name, T& value, StateReader& state) const {
+    const std::string* const constant = find(name);
+    if (constant == nullptr) return state.read(value);
+    if constexpr (!std::is_const_v<T>) {
+      StateReader text{*constant};
+      text.read(value);
+      text.finish();
+    }
+  }
+
+ private:
+  const std::string* find(std::string_view name) const;
+
+  std::vector<std::pair<std::string, std::string>> texts_;
 };
 
 }  // namespace aos

@@ -169,4 +169,17 @@ std::int64_t StateReader::next() {
   return number;
 }
 
+void SavedConstants::add(std::string_view name, AnyValue value) {
+  StateWriter text;
+  text.write(value);
+  add_text(name, text.text());
+}
+
+const std::string* SavedConstants::find(std::string_view name) const {
+  for (const auto& [known, text] : texts_) {
+    if (known == name) return &text;
+  }
+  return nullptr;
+}
+
 }  // namespace aos

@@ -1,9 +1,11 @@
 // Values of which only the leaves are known: their names, numbers and places.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -91,6 +93,30 @@ class NamedLeavesCall final : public NamedLeaves {
 
  private:
   Use& use_;
+};
+
+// Single values as numbers, in their order: equal values have equal numbers. Values of the same shape have the same leaves,
+// by name.
+struct LeafNumbers final : ValueVisitor {
+  std::vector<std::uint64_t> numbers;
+  std::uint64_t shape = 0;
+
+  void clear() {
+    numbers.clear();
+    shape = 0;
+  }
+
+  void leaf(const Leaf& leaf) override {
+    if (is_text(leaf)) return numbers.push_back(std::hash<std::string_view>{}(characters_of(leaf)));
+    with_number(leaf, [&](auto number) {
+      if constexpr (std::is_floating_point_v<decltype(number)>) {
+        numbers.push_back(std::bit_cast<std::uint64_t>(double{number}));
+      } else {
+        numbers.push_back(static_cast<std::uint64_t>(number));
+      }
+    });
+  }
+  void begin_sequence(std::size_t size) override { shape = mixed(shape, size); }
 };
 
 // Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
