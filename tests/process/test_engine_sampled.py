@@ -67,6 +67,24 @@ else __moduleResponse = low;
 """2^24 combinations of draws, of which only the number of ones is kept."""
 
 
+TEMPTING = GAUGE | {
+    "leap.sd": """project: gauge
+
+precondition:
+__meetPrecondition = state.level > 100;
+violate_penalty: -100
+
+rollout_policy:
+__heuristicValue = 10;
+
+dynamic_model:
+__moduleResponse = high;
+""",
+    "leap.am": MAPPING.format(project="gauge").replace("/read", "/leap"),
+}
+"""The only skill that play-outs prefer cannot be run."""
+
+
 async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path) -> None:
     async with engine_of(await built_text(GAUGE, cache_dir)) as engine:
         first = await engine.update("read", "high")
@@ -87,3 +105,11 @@ async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> No
     assert update.probability == pytest.approx(7036530 / 2**24, abs=0.03)  # 13 heads or more of 24
     assert sum(update.summary.marginals[0].values.values()) == pytest.approx(1)
     assert min(int(value) for value in update.summary.marginals[0].values) >= 13
+
+
+async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(cache_dir: Path) -> None:
+    async with engine_of(await built_text(TEMPTING, cache_dir)) as engine:
+        plan = await engine.plan(simulations=2, seed=1)
+    values = {value.action: value for value in plan.actions}
+    assert (values["leap"].n, values["read"].n) == (1, 1)
+    assert values["read"].q == pytest.approx(-(1 - 0.95**5) / 0.05), "five readings, no leap"

@@ -26,6 +26,9 @@ class Enumerator : public Draws<Enumerator> {
   // Of the path; given the draws that were left to chance.
   double probability() const { return probability_; }
 
+  // How many choices are known of the path: all of the one before it that it shares.
+  std::size_t draws() const { return choices_.size(); }
+
   bool flag(double probability) {
     if (probability <= 0) return false;
     if (probability >= 1) return true;

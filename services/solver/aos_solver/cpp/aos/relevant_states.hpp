@@ -25,7 +25,7 @@ namespace aos {
 inline constexpr std::size_t most_relevant_states = 400'000;
 inline constexpr std::size_t most_relevant_bytes = std::size_t{100} << 20;  // of states
 inline constexpr std::size_t most_relevant_branches = 8'000'000;
-inline constexpr std::size_t most_relevant_paths = 10'000'000;  // of all steps that are enumerated
+inline constexpr std::size_t most_relevant_work = 20'000'000;  // about a second's
 inline constexpr std::size_t tried_states = 2000;
 inline constexpr std::size_t first_tried_states = 16;
 inline constexpr int walked_states = 2000;
@@ -51,12 +51,14 @@ class RelevantStates {
     return states;
   }
 
-  // Adds what can be reached from a belief. Throws NotEnumerable where that is too much.
+  // Adds what can be reached from a belief. Throws NotEnumerable where that is too much: in numbers of states and steps,
+  // not in time, so that decisions can be repeated. Where most states of a belief were drawn once only, there are more.
   void reach_from(const Belief<Model>& belief) {
-    paths_ = 0;
+    work_ = 0;
     if (states_.empty()) ignore_everything(belief);
     while (true) {
       for (const auto& particle : belief.particles()) number_of(particle.state);
+      if (belief.is_drawn() && 2 * size() > belief.particles().size()) throw NotEnumerable{"too many states"};
       if (explore()) return;
       states_.clear();
       keys_.clear();
@@ -170,7 +172,7 @@ class RelevantStates {
         const std::size_t first = branches_.size();
         if (Model::ending(states_[number]) == Ending::running) {
           draws.for_each_path([&](Enumerator& path) {
-            count_path();
+            count_path(path);
             State next = states_[number];
             const Step step = Model::step(next, static_cast<int>(action), path);
             reward += path.probability() * step.reward;
@@ -184,8 +186,11 @@ class RelevantStates {
     return !tell_apart();
   }
 
-  void count_path() {
-    if (++paths_ > most_relevant_paths) throw NotEnumerable{"too many outcomes"};
+  // Before a step: what it takes, in draws. A large state costs as much to copy.
+  void count_path(const Enumerator& path) {
+    constexpr std::size_t bytes_per_draw = 64;
+    work_ += 1 + path.draws() + sizeof(State) / bytes_per_draw;
+    if (work_ > most_relevant_work) throw NotEnumerable{"too many outcomes"};
   }
 
   void add_branch(std::size_t first, std::uint32_t next, double probability) {
@@ -207,7 +212,7 @@ class RelevantStates {
       double reward = 0;
       double leads_to = 0;
       comparing_.for_each_path([&](Enumerator& path) {
-        count_path();
+        count_path(path);
         State next = state;
         const Step step = Model::step(next, static_cast<int>(action), path);
         reward += path.probability() * step.reward;
@@ -256,7 +261,7 @@ class RelevantStates {
   std::size_t most_states_ = most_room;
   std::vector<Variable> variables_;
   Key mask_{};
-  std::size_t paths_ = 0;
+  std::size_t work_ = 0;
   Enumerator comparing_;
   std::vector<State> states_;
   std::vector<Key> keys_;

@@ -22,14 +22,28 @@ inline int action_at(const double* sums, int count, double drawn) {
   return action;
 }
 
-// By the documents' rollout policy where it prefers anything; else any action whose precondition holds; else any.
+// The action is drawn no more.
+inline void leave_out(double* sums, int count, int action) {
+  const double before = action > 0 ? sums[action - 1] : 0;
+  const double weight = sums[action] - before;
+  sums[action] = before;
+  for (int i = action + 1; i < count; ++i) sums[i] -= weight;
+}
+
+// By the documents' rollout policy among the actions whose preconditions hold; where it prefers none of them any whose
+// precondition holds; else any.
 template <class Model>
 int rollout_action(const typename Model::State& state, double* sums, int count, Sampler& random) {
   if constexpr (Model::has_rollout_policy) {
     double total = 0;
     int filled = 0;
     Model::rollout_weights(state, random, [&](double weight) { sums[filled++] = total += weight; });
-    if (total > 0) return action_at(sums, count, random.uniform() * total);
+    for (int left = count; total > 0 && left > 0; --left) {
+      const int action = action_at(sums, count, random.uniform() * total);
+      if (Model::meets_precondition(state, action, random)) return action;
+      leave_out(sums, count, action);
+      total = sums[count - 1];
+    }
   }
   for (int attempt = 0; attempt < 2 * count; ++attempt) {
     const int action = random.below(count);
