@@ -9,7 +9,7 @@
     aos/<robot>/bundle/announced    stream  a new project revision                            ProjectRevision
     aos/<robot>/bundle/report       stream  what became of a bundle                              BundleReport
     aos/<robot>/activate/<skill>    query   run a grounded action                         Activate -> Outcome
-    aos/<robot>/middleware/ready    query   which skills are generated           MappingQuery -> MappingState
+    aos/<robot>/middleware/ready    stream and query: which mappings run         MappingQuery -> MappingState
     aos/<robot>/call/<path>         query   the adapter runs a skill's code          SkillCall -> SkillResult
     aos/<robot>/skill/cancel        query   stop whatever moves                           Cancel -> Cancelled
     aos/<robot>/topic/<path>        stream  raw data of the robot                                TopicMessage

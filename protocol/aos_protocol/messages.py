@@ -346,16 +346,18 @@ class Outcome(Message, frozen=True):
 
 
 class MappingQuery(Message, frozen=True):
-    """Asks the middleware whether the mappings of a revision are generated."""
-
-    revision: int = 0
+    """Asks the middleware which mappings it runs."""
 
 
 class MappingState(Message, frozen=True):
-    """The revision the middleware runs, and the skills it has mappings for."""
+    """The newest revision that the middleware runs, and the skills it has mappings for; 0 before the first.
+
+    `refused` is the newest revision whose mappings it could not use; its log says why.
+    """
 
     revision: int
     skills: tuple[str, ...]
+    refused: int = 0
 
 
 class SkillCall(Message, frozen=True):

@@ -33,6 +33,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.bus import Bus
 from aos_runtime.children import PIPE, Child
+from aos_runtime.told_state import state_when
 
 PATIENCE_S = 20.0
 
@@ -161,14 +162,16 @@ class System:
 
     async def state(self, revision: int) -> MappingState:
         """The state of the mappings once they are those of a revision."""
-        async with asyncio.timeout(PATIENCE_S):
-            while True:
-                state = await self.bus.ask(
-                    self.keys.mapping_state, MappingQuery(), MappingState, timeout_s=5.0
-                )
-                if state.revision >= revision:
-                    return state
-                await asyncio.sleep(0.02)
+        return await self._state_when(lambda state: state.revision >= revision)
+
+    async def refusal(self, revision: int) -> MappingState:
+        """The state of the mappings once a revision is refused."""
+        return await self._state_when(lambda state: state.refused >= revision)
+
+    async def _state_when(self, holds: Callable[[MappingState], bool]) -> MappingState:
+        return await state_when(
+            self.bus, self.keys.mapping_state, MappingQuery(), MappingState, holds, timeout_s=PATIENCE_S
+        )
 
     async def activate(
         self,
@@ -181,14 +184,10 @@ class System:
         request = Activate(ActivationId("m", 1, step), skill, parameters or {}, deadline_s, revision=revision)
         return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=PATIENCE_S)
 
-    async def logged(self, text: str) -> str:
-        """The service's log once it holds a text."""
-        async with asyncio.timeout(PATIENCE_S):
-            while True:
-                log = (self.run_dir / "middleware.log").read_text()
-                if text in log:
-                    return log
-                await asyncio.sleep(0.02)
+    @property
+    def log(self) -> str:
+        """What the service has logged."""
+        return (self.run_dir / "middleware.log").read_text()
 
 
 @pytest.fixture
@@ -251,8 +250,9 @@ async def test_a_revision_that_cannot_be_loaded_changes_nothing_and_is_reported(
     text = SENSE.replace("path:", "imports: import: no_such_module_at_all\npath:")
     project = system.registry.current.project
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
-    assert "sense.am:7" in await system.logged("revision 2 is not used")
-    assert (await system.state(1)).revision == 1
+    assert (await system.refusal(2)).revision == 1
+    assert "revision 2 is not used" in system.log
+    assert "sense.am:7" in system.log
     assert (await system.activate("sense")).response == "quiet"
 
 

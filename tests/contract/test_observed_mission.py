@@ -33,6 +33,7 @@ from aos_protocol.messages import (
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 from aos_runtime.clock import SystemClock
+from aos_runtime.told_state import state_when
 from aos_solver.build import BuiltModel
 from aos_solver.endings import MissionLimits
 from aos_solver.hot_plug import RunningModel
@@ -160,14 +161,14 @@ class Robot:
         return running
 
     async def await_mappings(self) -> None:
-        async with asyncio.timeout(PATIENCE_S):
-            while True:
-                state = await self._bus.ask(
-                    self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=PATIENCE_S
-                )
-                if state.skills:
-                    return
-                await asyncio.sleep(0.02)
+        await state_when(
+            self._bus,
+            self._keys.mapping_state,
+            MappingQuery(),
+            MappingState,
+            lambda state: bool(state.skills),
+            timeout_s=PATIENCE_S,
+        )
 
 
 async def start_middleware(bus: Bus, keys: Keys, endpoint: str, run_dir: Path) -> Child:

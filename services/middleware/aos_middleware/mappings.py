@@ -18,7 +18,7 @@ from aos_middleware.low_level import default_constants
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, SkillError
-from aos_protocol.messages import ProjectRevision
+from aos_protocol.messages import MappingState, ProjectRevision
 
 __all__ = ["Mappings", "emit_project"]
 
@@ -48,39 +48,41 @@ def emit_project(project: Project) -> tuple[EmittedMapping, ...]:
 
 
 class Mappings:
-    """Evaluators by revision and skill. A revision that cannot be used changes nothing but the log."""
+    """Evaluators by revision and skill. A revision that cannot be used is refused and changes nothing."""
 
-    def __init__(self, folder: Path, make_evaluator: Callable[[EmittedMapping], Evaluator]) -> None:
-        """`folder` receives the modules of the newest revision, for people."""
+    def __init__(
+        self,
+        folder: Path,
+        make_evaluator: Callable[[EmittedMapping], Evaluator],
+        on_change: Callable[[MappingState], None],
+    ) -> None:
+        """`folder` receives the modules of the newest revision, for people; `on_change` each new state."""
         self._folder = folder
         self._make_evaluator = make_evaluator
+        self._on_change = on_change
         self._kept: dict[int, dict[str, Evaluator]] = {}
         self._refusal: AosError | None = None
+        self._refused = 0
         self._announced = 0
         self._adopting = asyncio.Lock()
 
     @property
-    def revision(self) -> int:
-        """The newest revision in use; 0 before the first."""
-        return max(self._kept, default=0)
-
-    @property
-    def skills(self) -> tuple[str, ...]:
-        """The skills of the newest revision, sorted."""
-        return tuple(sorted(self._kept.get(self.revision, {})))
+    def state(self) -> MappingState:
+        """The newest revision in use with its skills, sorted, and the newest that was refused."""
+        return MappingState(self._revision, tuple(sorted(self._newest)), self._refused)
 
     def evaluator(self, skill: str, revision: int = 0) -> Evaluator:
         """The evaluator of a skill in a revision, or in the newest where that one is not kept.
 
         SkillError AOS501 if there is no such skill; the reason of the refusal if no revision could be used.
         """
-        mappings = self._kept.get(revision) or self._kept.get(self.revision, {})
+        mappings = self._kept.get(revision) or self._newest
         if skill in mappings:
             return mappings[skill]
         if not self._kept and self._refusal is not None:
             raise self._refusal
         near = get_close_matches(skill, mappings, n=1)
-        known = f"did you mean {near[0]}?" if near else f"Known are: {', '.join(self.skills) or 'none'}"
+        known = f"did you mean {near[0]}?" if near else f"Known are: {', '.join(sorted(mappings)) or 'none'}"
         raise SkillError(f"there is no skill {skill}", code="AOS501", hint=known)
 
     async def adopt(self, announced: ProjectRevision) -> None:
@@ -96,16 +98,21 @@ class Mappings:
             try:
                 await self._adopt(announced)
             except AosError as error:
-                self._refusal = error
-                _log.error("revision %d is not used: %s", announced.revision, error)
-                for diagnostic in error.diagnostics:
-                    _log.error("%s: %s", diagnostic.span, diagnostic.message)
+                self._refuse(announced.revision, error)
 
     async def close(self) -> None:
         """Ends all workers."""
         for evaluator in self._evaluators():
             await evaluator.close()
         self._kept.clear()
+
+    @property
+    def _revision(self) -> int:
+        return max(self._kept, default=0)
+
+    @property
+    def _newest(self) -> dict[str, Evaluator]:
+        return self._kept.get(self._revision, {})
 
     async def _adopt(self, announced: ProjectRevision) -> None:
         emitted = emit_project(announced.project)
@@ -117,12 +124,20 @@ class Mappings:
         self._kept = dict(sorted(self._kept.items())[-_KEPT:])
         self._write(emitted)
         _log.info("revision %d: mappings of %s", announced.revision, ", ".join(sorted(mappings)))
+        self._on_change(self.state)
         for evaluator in outdated - self._evaluators():
             async with evaluator.in_use:
                 await evaluator.close()
 
+    def _refuse(self, revision: int, error: AosError) -> None:
+        self._refusal, self._refused = error, revision
+        _log.error("revision %d is not used: %s", revision, error)
+        for diagnostic in error.diagnostics:
+            _log.error("%s: %s", diagnostic.span, diagnostic.message)
+        self._on_change(self.state)
+
     def _same_or_new(self, emitted: EmittedMapping) -> Evaluator:
-        current = self._kept.get(self.revision, {}).get(emitted.skill)
+        current = self._newest.get(emitted.skill)
         if current is not None and current.emitted.digest == emitted.digest:
             return current
         return self._make_evaluator(emitted)

@@ -62,7 +62,7 @@ class _Middleware:
             evaluation_s=settings.evaluation_s,
             allowed_imports=settings.allowed_imports,
         )
-        self._mappings = Mappings(folder, self._make_evaluator)
+        self._mappings = Mappings(folder, self._make_evaluator, self._tell_state)
         self._ledger = OutcomeLedger.open(run_dir / "middleware.db")
         self._low_level = LowLevelValues(self._ledger.outcomes())
         self._around = Surroundings(service.bus, service.keys, service.clock, {}, self._low_level)
@@ -101,7 +101,10 @@ class _Middleware:
         return Evaluator(emitted, self._logs / f"mapping-{emitted.skill}.log", self._limits)
 
     async def _answer_state(self, _: MappingQuery, __: str) -> MappingState:
-        return MappingState(self._mappings.revision, self._mappings.skills)
+        return self._mappings.state
+
+    def _tell_state(self, state: MappingState) -> None:
+        self._service.bus.tell(self._service.keys.mapping_state, state)
 
     async def _activate(self, request: Activate, key: str) -> Outcome:
         """Runs an activation, joins the one of the same id, or tells again how it ended."""

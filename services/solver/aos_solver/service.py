@@ -11,7 +11,7 @@ import asyncio
 import logging
 from pathlib import Path
 
-from aos_protocol.errors import AosError
+from aos_protocol.errors import AosError, BusError
 from aos_protocol.messages import (
     Activate,
     CheckModel,
@@ -30,6 +30,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.journal import Journal
 from aos_runtime.lifecycle import Service
+from aos_runtime.told_state import state_when
 from aos_solver.build import BuiltModel
 from aos_solver.endings import MissionLimits
 from aos_solver.engine import Engine
@@ -44,7 +45,6 @@ log = logging.getLogger(__name__)
 
 ASK_TIMEOUT_S = 5.0
 MAPPING_DEADLINE_S = 20.0
-MAPPING_POLL_S = 0.05
 ACTIVATION_MARGIN_S = 5.0
 """How much longer than the activation itself its answer may take."""
 
@@ -169,9 +169,14 @@ class _Solver:
         return PolicySearch(policy=policy, **budget)
 
     async def _mapping_revision(self) -> int:
-        state = await self._bus.ask(
-            self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
-        )
+        """The revision that the middleware runs; 0 while it cannot be asked."""
+        try:
+            state = await self._bus.ask(
+                self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
+            )
+        except BusError as error:
+            log.warning("the middleware does not tell its revision: %s", error)
+            return 0
         return state.revision
 
     def _report_progress(self, remark: str) -> None:
@@ -203,15 +208,18 @@ class _Solver:
         log.info("the mission ended: %s, %s", state.ending, state.remark)
 
     async def _await_mappings(self, revision: int) -> None:
-        """Until the middleware has the mappings of a revision, or the deadline; then activations tell."""
-        deadline_s = self.clock.monotonic_s() + MAPPING_DEADLINE_S
-        while self.clock.monotonic_s() < deadline_s:
-            try:
-                if await self._mapping_revision() >= revision:
-                    return
-            except AosError as error:
-                log.info("the middleware is not there yet: %s", error)
-            await asyncio.sleep(MAPPING_POLL_S)
+        """Until the middleware has dealt with a revision, or the deadline; then activations tell."""
+        try:
+            await state_when(
+                self._bus,
+                self._keys.mapping_state,
+                MappingQuery(),
+                MappingState,
+                lambda state: max(state.revision, state.refused) >= revision,
+                timeout_s=MAPPING_DEADLINE_S,
+            )
+        except AosError as error:
+            log.warning("the mission starts without the mappings of revision %d: %s", revision, error)
 
     def _next_epoch(self) -> int:
         epoch = 1 + len(self._journal.rows("epoch"))

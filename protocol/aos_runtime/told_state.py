@@ -1,0 +1,46 @@
+"""Waiting for a state that a service tells when it changes and gives to whoever asks."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import TypeVar
+
+from aos_protocol.errors import BusError
+from aos_protocol.messages import Message
+from aos_runtime.bus import Bus
+
+__all__ = ["state_when"]
+
+M = TypeVar("M", bound=Message)
+
+_QUESTION_S = 5.0
+
+_IS_AWAY = ("AOS601", "AOS604", "AOS606")
+"""What an asker hears of a service that starts, stops or is busy: it tells its state when it has one."""
+
+
+async def state_when(
+    bus: Bus, key: str, question: Message, kind: type[M], holds: Callable[[M], bool], *, timeout_s: float
+) -> M:
+    """The first state on `key` for which `holds`, told already or from now on.
+
+    `key` is a stream of states and answers `question` with the present one; its service may come later.
+    BusError AOS601 if no such state is told within `timeout_s`, AOS605 if the bus is left.
+    """
+    try:
+        async with asyncio.timeout(timeout_s), bus.listen(key, kind) as told:
+            try:
+                state = await bus.ask(key, question, kind, timeout_s=min(timeout_s, _QUESTION_S))
+            except BusError as error:
+                if error.code not in _IS_AWAY:
+                    raise
+            else:
+                if holds(state):
+                    return state
+            async for _, state in told:
+                if holds(state):
+                    return state
+    except TimeoutError:
+        raise BusError(f"what is awaited on {key} did not come in {timeout_s:g} s", code="AOS601") from None
+    raise BusError(f"{bus.sender} has left the bus", code="AOS605")
