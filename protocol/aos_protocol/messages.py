@@ -33,6 +33,7 @@ __all__ = [
     "MappingQuery",
     "MappingState",
     "Marginal",
+    "MissionQuery",
     "MissionState",
     "ModelCheck",
     "Outcome",
@@ -216,6 +217,10 @@ class BeliefSummary(Message, frozen=True):
     is_exact: bool
     effective_states: float = 0.0
     error_bound: float = 0.0
+
+
+class MissionQuery(Message, frozen=True):
+    """Asks the solver where the mission is."""
 
 
 class MissionState(Message, frozen=True):

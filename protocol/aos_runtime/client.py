@@ -17,8 +17,8 @@ from aos_protocol.messages import (
     DecisionRecord,
     History,
     HistoryQuery,
+    MissionQuery,
     MissionState,
-    StartMission,
 )
 from aos_runtime.bus import Bus
 from aos_runtime.subscription import merged
@@ -48,7 +48,7 @@ class AosClient:
     async def mission_state(self) -> MissionState:
         """Where the mission is now; BusError AOS604 if there is no solver."""
         return await self.bus.ask(
-            self.keys.mission_state, StartMission(), MissionState, timeout_s=_HISTORY_TIMEOUT_S
+            self.keys.mission_state, MissionQuery(), MissionState, timeout_s=_HISTORY_TIMEOUT_S
         )
 
     async def decisions(self) -> AsyncIterator[DecisionRecord]:

@@ -16,8 +16,8 @@ from aos_protocol.messages import (
     History,
     HistoryQuery,
     Message,
+    MissionQuery,
     MissionState,
-    StartMission,
 )
 from aos_runtime.bus import Bus
 from aos_runtime.client import AosClient, DecisionFeed
@@ -56,7 +56,7 @@ class Storyteller:
 
     async def appear(self) -> None:
         await self._bus.answer(self._keys.decision_history, HistoryQuery, self._history)
-        await self._bus.answer(self._keys.mission_state, StartMission, self._state)
+        await self._bus.answer(self._keys.mission_state, MissionQuery, self._state)
         await self._bus.announce(self._keys.live("solver"))
 
     def decide(self, *, is_lost: bool = False) -> None:
@@ -72,7 +72,7 @@ class Storyteller:
     async def _history(self, query: HistoryQuery, _: str) -> Message:
         return History("m", tuple(self.told[query.since :]))
 
-    async def _state(self, _: StartMission, __: str) -> Message:
+    async def _state(self, _: MissionQuery, __: str) -> Message:
         return self.state
 
 

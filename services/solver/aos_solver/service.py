@@ -21,6 +21,7 @@ from aos_protocol.messages import (
     MappingQuery,
     MappingState,
     Message,
+    MissionQuery,
     MissionState,
     ModelCheck,
     Outcome,
@@ -91,7 +92,7 @@ class _Solver:
         bus, keys = self._bus, self._keys
         async with asyncio.TaskGroup() as tasks, bus.listen(keys.announced, ProjectRevision) as announced:
             await bus.answer(keys.start_mission, StartMission, self._start)
-            await bus.answer(keys.mission_state, StartMission, self._answer_state)
+            await bus.answer(keys.mission_state, MissionQuery, self._answer_state)
             await bus.answer(keys.decision_history, HistoryQuery, self._answer_history)
             await bus.answer(keys.check_model, CheckModel, self._check)
             await self._service.ready()
@@ -120,7 +121,7 @@ class _Solver:
         self._started.set()
         return self._state()
 
-    async def _answer_state(self, _: StartMission, __: str) -> MissionState:
+    async def _answer_state(self, _: MissionQuery, __: str) -> MissionState:
         return self._state()
 
     async def _answer_history(self, query: HistoryQuery, _: str) -> History:
