@@ -14,7 +14,7 @@ import asyncio
 import signal
 import socket
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager, suppress
+from contextlib import asynccontextmanager
 
 from aos_deploy.events import Report, ServiceChanged
 from aos_deploy.program import Program, settings_of
@@ -87,6 +87,7 @@ class Supervisor:
         self._tasks = tasks
         self._started_s = clock.monotonic_s()
         self._running: dict[str, _Running] = {}
+        self._watches: list[asyncio.Task[None]] = []
         self._is_stopping = False
         self._bus: Bus | None = None
         self._presence: asyncio.Task[None] | None = None
@@ -133,11 +134,9 @@ class Supervisor:
                     hint=self._look_at_log(program.name),
                 ) from None
 
-    async def until_ended(self, name: str, *, timeout_s: float) -> None:
-        """Returns when a process has ended, or after the timeout."""
-        with suppress(TimeoutError):
-            async with asyncio.timeout(timeout_s):
-                await self._running[name].child.wait()
+    async def until_one_ended(self, *, timeout_s: float) -> None:
+        """Returns after the timeout if every process goes on; if one ends, so does the supervision."""
+        await asyncio.wait(self._watches, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
 
     async def _spawn(self, program: Program) -> None:
         base = ServiceSettings(
@@ -153,7 +152,7 @@ class Supervisor:
             )
         self._running[program.name] = running = _Running(program, child)
         self._changed(program.name, "starting")
-        self._tasks.create_task(self._watch(running))
+        self._watches.append(self._tasks.create_task(self._watch(running)))
 
     async def _follow_presence(self, bus: Bus) -> None:
         async with bus.presence(self.keys.all_live) as changes:
