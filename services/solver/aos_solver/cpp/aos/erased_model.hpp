@@ -63,6 +63,8 @@ struct ErasedModel {
     compiled_model.visit(state.bytes, leaves);
   }
   static void visit_values(const State& state, ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); }
+  // How many bytes of a state the model uses; the others are 0.
+  static std::size_t state_bytes() { return compiled_model.state_bytes; }
   // Where the state's single values stand, in the order of `visit`.
   static std::vector<Place> places(const State& state) {
     return places_in(state.bytes, [&](ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); });

@@ -41,6 +41,7 @@ inline constexpr auto size_mark = [] {
 // See the emitted `Model` for what each member means.
 struct ModelTable {
   const char* size_mark;
+  std::size_t state_bytes;
   const char* project;
   int horizon;
   double discount;
@@ -96,6 +97,7 @@ constexpr ModelTable table_of() {
   static_assert(std::is_trivially_copyable_v<State> && alignof(State) <= alignof(std::uint64_t));
   return {
       .size_mark = size_mark<sizeof(State)>.data(),
+      .state_bytes = sizeof(State),
       .project = Model::project,
       .horizon = Model::horizon,
       .discount = Model::discount,

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <tuple>
 #include <vector>
 
 #include "aos/belief.hpp"
@@ -80,6 +81,7 @@ class RelevantStates {
   std::uint32_t find(const State& state) const { return numbers_[slot_of(key_of(state))]; }
 
  private:
+  // What matters of a state: its first `words_` are in use.
   using Key = std::array<std::uint64_t, (sizeof(State) + 7) / 8>;
   using Signature = std::vector<double>;
 
@@ -104,6 +106,7 @@ class RelevantStates {
     }
     std::erase_if(variables_, [](const Variable& variable) { return variable.examples.size() == 1; });
     for (const Variable& variable : variables_) set_ignored(variable.place, true);
+    find_words();
   }
 
   static void add_example(Variable& variable, const State& state) {
@@ -122,21 +125,36 @@ class RelevantStates {
     std::memset(reinterpret_cast<std::byte*>(mask_.data()) + place.offset, is_ignored ? 0x00 : 0xff, place.size);
   }
 
+  // Lists the words of which anything matters.
+  void find_words() {
+    words_ = 0;
+    for (std::size_t word = 0; 8 * word < Model::state_bytes(); ++word) {
+      if (mask_[word] != 0) word_[words_++] = word;
+    }
+  }
+
   Key key_of(const State& state) const {
-    Key key{};
-    std::memcpy(key.data(), &state, sizeof(State));
-    for (std::size_t i = 0; i < key.size(); ++i) key[i] &= mask_[i];
+    Key key;
+    for (std::size_t i = 0; i < words_; ++i) {
+      std::memcpy(&key[i], reinterpret_cast<const std::byte*>(&state) + 8 * word_[i], 8);
+      key[i] &= mask_[word_[i]];
+    }
     return key;
   }
-  static std::uint64_t hash_of(const Key& key) {
+  bool is_same(const Key& left, const Key& right) const {
+    std::uint64_t difference = 0;
+    for (std::size_t i = 0; i < words_; ++i) difference |= left[i] ^ right[i];
+    return difference == 0;
+  }
+  std::uint64_t hash_of(const Key& key) const {
     std::uint64_t hash = 0;
-    for (const std::uint64_t word : key) hash = mixed(hash, word);
+    for (std::size_t i = 0; i < words_; ++i) hash = mixed(hash, key[i]);
     return hash;
   }
   // Open addressing, at most half full.
   std::size_t slot_of(const Key& key) const {
     std::size_t slot = hash_of(key) & (numbers_.size() - 1);
-    while (numbers_[slot] != none && keys_[numbers_[slot]] != key) slot = (slot + 1) & (numbers_.size() - 1);
+    while (numbers_[slot] != none && !is_same(keys_[numbers_[slot]], key)) slot = (slot + 1) & (numbers_.size() - 1);
     return slot;
   }
 
@@ -241,8 +259,9 @@ class RelevantStates {
 
   // By the variables that have been found to matter; returns whether there are new ones.
   bool tell_apart() {
-    const Key before = mask_;
+    const auto before = mask_;
     for (const Variable& variable : variables_) set_ignored(variable.place, !variable.matters);
+    find_words();
     return mask_ != before;
   }
 
@@ -260,7 +279,9 @@ class RelevantStates {
   bool observations_matter_ = false;
   std::size_t most_states_ = most_room;
   std::vector<Variable> variables_;
-  Key mask_{};
+  std::array<std::uint64_t, std::tuple_size_v<Key>> mask_{};  // of a whole state
+  std::array<std::size_t, std::tuple_size_v<Key>> word_{};
+  std::size_t words_ = 0;
   std::size_t work_ = 0;
   Enumerator comparing_;
   std::vector<State> states_;
