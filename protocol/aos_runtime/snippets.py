@@ -1,4 +1,4 @@
-"""What a C++ snippet of a document mentions, writes, calls and declares; the only door to tree-sitter.
+"""What a C++ snippet of a document mentions, writes, calls and declares.
 
 Reading is tolerant: whatever the text is, the answer is a `Cpp`, with faults where it does not parse. A
 snippet with bracket, quote, comment or preprocessor faults could leave its function, so nothing else of it is
@@ -13,10 +13,10 @@ from functools import lru_cache
 
 import msgspec
 import tree_sitter
-import tree_sitter_cpp
 
 from aos_runtime.cpp_facts import Access, Call, Cpp, Declaration, DeclarationKind, Mention
 from aos_runtime.cpp_tokens import Extent, Fault, FaultKind, Lines, Tokens, cut
+from aos_runtime.cpp_tree import tree_of
 
 __all__ = [
     "Access",
@@ -81,11 +81,7 @@ def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
     if tokens.faults or is_empty:
         return Cpp(code, literals=tokens.literals, faults=tokens.faults, is_empty=is_empty)
     complete = Cpp(code).replace((offset, ";") for offset in tokens.missing_semicolons)
-    tree = _PARSER.parse((before + complete + after).encode("utf-8", "replace"))
-    return _Reader(code, complete, len(before), tokens).read(tree.root_node)
-
-
-_PARSER = tree_sitter.Parser(tree_sitter.Language(tree_sitter_cpp.language()))
+    return _Reader(code, complete, len(before), tokens).read(tree_of(before + complete + after))
 
 
 class _Reader:

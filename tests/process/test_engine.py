@@ -193,11 +193,15 @@ async def test_model_code_that_crashes_is_named_by_its_document_line(cache_dir: 
         "project: tiger\n\ndynamic_model:\nint* nothing = nullptr;\n*nothing = 1;\n"
         "__moduleResponse = hears_left;\n__moduleResponse = hears_right;\n"
     )
+    listening = (0).to_bytes(4, "little")
     async with engine_of(await built_text(crashing, cache_dir)) as engine:
-        with pytest.raises(ModelError, match=r"listen\.sd:4") as error:
+        with pytest.raises(ModelError, match=r"listen\.sd:5") as error:
             await engine.plan(simulations=100, seed=1)
         assert error.value.code == "AOS210"
         assert "signal 11" in str(error.value)
+        await engine.reset_worlds([1])
+        with pytest.raises(ModelError, match=r"listen\.sd:5"):
+            await engine.step_worlds(listening)
         assert (await engine.summary()).states == 2
 
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from aos_deploy.commands import documents, plan
 from aos_protocol.errors import ModelError
-from aos_solver import engine
+from aos_solver import engine, replay
 
 HALL = """project: hall
 horizon: 4
@@ -94,15 +94,12 @@ def _place(span: dict[str, Any]) -> str:
 
 FAULTS = [
     ("int* nothing = nullptr;\n*nothing = 1;", "AOS210"),
-    ("volatile bool is_on = true;\nwhile (is_on) {}", "AOS211"),
-    ('throw std::runtime_error("no way");', "AOS215"),
-    ("__reward = 0.0 / (state.place - state.place);", "AOS214"),
+    ("volatile bool is_on = true;\nwhile (is_on) {\n    state__.place += 1;\n}", "AOS211"),
 ]
+"""Each is wrong in its second line; for others see test_fault_statements."""
 
 
-@pytest.mark.parametrize(
-    ("code", "error_code"), FAULTS, ids=["segfault", "loop", "exception", "not a number"]
-)
+@pytest.mark.parametrize(("code", "error_code"), FAULTS, ids=["segfault", "loop"])
 def test_a_fault_of_model_code_names_its_document_line(
     app: typer.Typer,
     hall: Callable[..., Path],
@@ -111,10 +108,11 @@ def test_a_fault_of_model_code_names_its_document_line(
     error_code: str,
 ) -> None:
     monkeypatch.setattr(engine, "ANSWER_DEADLINE_S", 1.0)
+    monkeypatch.setattr(replay, "HANG_DEADLINE_S", 1.5)
     result = CliRunner().invoke(app, ["plan", str(hall(code)), "--time", "0.1"])
     assert isinstance(result.exception, ModelError)
     (diagnostic,) = result.exception.diagnostics
-    assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 4)
+    assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 5)
 
 
 def test_a_fault_that_the_actions_lead_to_is_a_warning_of_lint(
@@ -122,7 +120,7 @@ def test_a_fault_that_the_actions_lead_to_is_a_warning_of_lint(
 ) -> None:
     folder = hall("state__.place = state.place + 1;\nif (state.place == 2) throw 1;")
     severity, place, _ = linted(app, folder)["AOS215"]
-    assert (severity, place) == ("warning", "walk.sd:4")
+    assert (severity, place) == ("warning", "walk.sd:5")
 
 
 def test_a_model_whose_goal_and_doors_can_be_reached_is_clean(

@@ -50,6 +50,11 @@ class BuiltModel(msgspec.Struct, frozen=True):
     is_from_cache: bool
     compile_s: float = 0.0
 
+    @property
+    def cache_dir(self) -> Path:
+        """The cache that it is an entry of."""
+        return self.executable.parent.parent
+
 
 async def build(
     emitted: EmittedModel,
@@ -58,8 +63,9 @@ async def build(
     compiler: Compiler | None = None,
     on_progress: Callable[[str], None] = lambda text: None,
     deadline_s: float | None = None,
+    is_optimized: bool = True,
 ) -> BuiltModel:
-    """The executable of a model, from the cache or compiled now.
+    """The executable of a model, from the cache or compiled now. Without optimisation code keeps its order.
 
     ModelError AOS201 carries the compiler's errors as diagnostics at the documents' places, or names the
     emitted file where an error is not in document code; AOS202 when the compiler ran out of time or memory;
@@ -67,10 +73,11 @@ async def build(
     """
     compiler = compiler or await find_compiler()
     cache = BuildCache(cache_dir)
-    name = f"model-{digest_of([emitted.cpp, *_circumstances(compiler)])}"
+    options = [] if is_optimized else ["-O0"]
+    name = f"model-{digest_of([emitted.cpp, *options, *_circumstances(compiler)])}"
     if (entry := cache.find(name)) is not None:
         return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
-    work = _Build(emitted, cache, compiler, on_progress, deadline_s or compiler.deadline_s)
+    work = _Build(emitted, cache, compiler, on_progress, deadline_s or compiler.deadline_s, options)
     started_s = time.monotonic()
     entry = await cache.fill(name, work.make)
     seconds = time.monotonic() - started_s
@@ -126,12 +133,14 @@ class _Build:
         compiler: Compiler,
         on_progress: Callable[[str], None],
         deadline_s: float,
+        options: list[str],
     ) -> None:
         self._emitted = emitted
         self._cache = cache
         self._compiler = compiler
         self._on_progress = on_progress
         self._deadline_s = deadline_s
+        self._options = options
 
     async def make(self, staging: Path) -> None:
         self._on_progress(f"compiling {self._emitted.project} with {self._compiler.version}")
@@ -156,7 +165,8 @@ class _Build:
     async def _compile(self, staging: Path) -> None:
         (staging / MODEL_FILE).write_text(self._emitted.cpp)
         (staging / _SOURCE).write_text(without_line_directives(self._emitted.cpp))
-        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *self._precompiled)
+        more = [*self._precompiled, *self._options]
+        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *more)
         output, status = await self._run(compilation, staging)
         if status != 0:
             raise self._failure(output, status)

@@ -10,18 +10,14 @@ from __future__ import annotations
 import asyncio
 import logging
 import re
-import signal
-import sys
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from typing import Literal, Self, TypeVar
 
 import msgspec
 
-from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary
-from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.answers import (
     BeliefUpdate,
     EngineDescription,
@@ -39,15 +35,14 @@ from aos_solver.answers import (
     WorldStep,
     WorldSteps,
 )
-from aos_solver.blame_page import new_blame_page, running_piece
 from aos_solver.build import BuiltModel
+from aos_solver.engine_child import EngineChild, EngineStart, ImpossiblePolicy, KilledError
 from aos_solver.local_values import UnusableLocals, local_values_line
-from aos_solver.printed import pass_on
+from aos_solver.replay import at_its_statement
 from aos_solver.shared_memory import SharedMemory
 
 __all__ = ["Engine", "ImpossiblePolicy", "Planner"]
 
-ImpossiblePolicy = Literal["hold", "widen", "reset"]
 Planner = Literal["pomcp", "despot", "sarsop", "auto"]
 
 log = logging.getLogger(__name__)
@@ -57,28 +52,15 @@ A = TypeVar("A")
 _PARAMETER = re.compile(r"(\w+)=(\w+)")
 """In the name of an action whose parameters are values of state variables, which are in it by name."""
 
-START_DEADLINE_S = 20.0
 ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
 """For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
 EXACT_TIME_S = 300.0
-EXIT_DEADLINE_S = 2.0
 EXACT_BELIEF_BUDGET = 20_000_000
-ADDRESS_SPACE_BYTES = 8 * 1024**3
-ANSWER_LIMIT_BYTES = 32 * 1024**2
-"""Of one answer; what may be longer comes in pieces."""
-
-
-class _FaultAnswer(msgspec.Struct, frozen=True):
-    fault: EngineFault | None = None
 
 
 class _Done(msgspec.Struct, frozen=True):
     """The answer that says nothing more."""
-
-
-class _KilledError(ModelError):
-    """The child was ended by SIGKILL: from outside, not by model code, so asking again is right."""
 
 
 class Engine:
@@ -88,12 +70,11 @@ class Engine:
         self._built = built
         self._seed = seed
         self._policy = impossible_observation
-        self._child: Child | None = None
-        self._changes = 0
-        self._asking = asyncio.Lock()
-        self._printed: asyncio.Task[None] | None = None
-        self._blame: SharedMemory | None = None
+        self._child: EngineChild | None = None
         self._beliefs: SharedMemory | None = None
+        self._changes = 0
+        self._world: list[str] = []
+        self._asking = asyncio.Lock()
         self.description: EngineDescription
 
     @classmethod
@@ -214,14 +195,21 @@ class Engine:
         except UnusableLocals as reason:
             update, why = await self._change_belief(command, BeliefUpdate), str(reason)
         else:
+            before = self._changes
             update = await self._change_belief(command, BeliefUpdate)
             if update.uncorrected is None:
                 return update
-            fault = update.uncorrected
-            why = self._blamed(fault.code, fault.text, fault.piece).message
+            why = (await self._correction_fault(update.uncorrected, command, before)).message
         remark = f"the local variables of {action} do not correct the belief: {why}"
         log.warning("%s", remark)
         return msgspec.structs.replace(update, remark=remark)
+
+    async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> ModelError:
+        """Why local variables did not correct the belief that was there after so many changes."""
+        assert self._child is not None
+        error = self._child.fault(fault.code, fault.text, fault.piece)
+        commands = [*self._restoration(before), command]
+        return await at_its_statement(error, self._built, self._start, commands)
 
     async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
         """The mixture of "it ran" and "it did not"."""
@@ -243,11 +231,15 @@ class Engine:
 
     async def reset_world(self, seed: int) -> WorldStart:
         """Starts a hidden state, drawn from the initial belief, for missions without a robot."""
-        return await self._ask(f"reset_world\t{seed}", WorldStart)
+        start = await self._ask(f"reset_world\t{seed}", WorldStart)
+        self._world = [f"reset_world\t{seed}"]
+        return start
 
     async def step_world(self, index: int) -> WorldStep:
         """Runs an action on the hidden state, by the model."""
-        return await self._ask(f"step_world\t{index}", WorldStep)
+        step = await self._ask(f"step_world\t{index}", WorldStep)
+        self._world.append(f"step_world\t{index}")
+        return step
 
     async def world_state(self) -> str:
         """The hidden state as text for people."""
@@ -287,112 +279,50 @@ class Engine:
 
     async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
         async with self._asking:
-            if self._child is None or self._child.returncode is not None:
+            if self._child is None or not self._child.is_running:
                 await self._restart_child()
+            assert self._child is not None
             try:
-                return await self._exchange(command, kind, deadline_s)
-            except _KilledError as error:
+                return await self._child.ask(command, kind, deadline_s)
+            except KilledError as error:
                 log.warning("asking again: %s", error)
                 await self._restart_child()
-                return await self._exchange(command, kind, deadline_s)
+                return await self._child.ask(command, kind, deadline_s)
+            except ModelError as error:
+                raise await self._located(error, command) from None
+
+    async def _located(self, fault: ModelError, command: str) -> ModelError:
+        """The fault at its statement, if a replay of the command finds it."""
+        commands = [*self._restoration(self._changes), *self._world, command]
+        return await at_its_statement(fault, self._built, self._start, commands)
 
     async def _start_child(self) -> None:
-        self._blame = new_blame_page()
-        beliefs = "" if self._beliefs is None else self._beliefs.path
-        arguments = [self._blame.path, beliefs, str(self._seed), self._policy]
-        self._child = await Child.start(
-            guarded(
-                [str(self._built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)
-            ),
-            name="engine",
-            stdin=PIPE,
-            stdout=PIPE,
-            stderr=PIPE,
-            stream_limit_bytes=ANSWER_LIMIT_BYTES,
-        )
-        self._printed = asyncio.create_task(pass_on(self._child.stderr, sys.stderr.buffer))
-        self.description = await self._exchange(None, EngineDescription, START_DEADLINE_S)
+        try:
+            self._child = await EngineChild.start(self._built, self._start)
+        except ModelError as error:
+            raise await at_its_statement(error, self._built, self._start, []) from None
+        self.description = self._child.description
+
+    @property
+    def _start(self) -> EngineStart:
+        return EngineStart(self._seed, self._policy, "" if self._beliefs is None else self._beliefs.path)
 
     async def _restart_child(self) -> None:
         await self._drop_child()
         await self._start_child()
-        if self._changes > 0 and self._beliefs is not None:
-            try:
-                await self._exchange(f"restore_belief\t{self._changes}", _Done, ANSWER_DEADLINE_S)
-            except AosError:
-                await self._drop_child()
-                raise
-
-    async def _exchange(self, command: str | None, kind: type[A], deadline_s: float) -> A:
-        """One line there and one back; `command` None only waits for the answer."""
-        child = self._child
-        assert child is not None
-        try:
-            async with asyncio.timeout(deadline_s):
-                if command is not None:
-                    child.stdin.write(command.encode() + b"\n")
-                    await child.stdin.drain()
-                line = await child.stdout.readline()
-        except TimeoutError:
-            raise await self._lost("AOS211", f"the model did not finish within {deadline_s:.0f} s") from None
-        except (ConnectionError, ValueError):
-            line = b""
-        if not line.endswith(b"\n"):
-            raise await self._lost("AOS210", "model code ended the engine")
-        return self._decoded(line, kind)
-
-    def _decoded(self, line: bytes, kind: type[A]) -> A:
-        try:
-            fault = msgspec.json.decode(line, type=_FaultAnswer).fault
-            if fault is None:
-                return msgspec.json.decode(line, type=kind)
-        except msgspec.MsgspecError as error:
-            raise ModelError(f"the engine's answer makes no sense: {error}", code="AOS213") from error
-        raise self._blamed(fault.code, fault.text, fault.piece)
-
-    async def _lost(self, code: str, message: str) -> AosError:
-        """The error for a child that is gone or has to go; the blame page tells what ran last."""
-        piece = running_piece(self._blame) if self._blame is not None else 0
-        status = None if code == "AOS211" else await self._status()
-        await self._drop_child()
-        if status == -signal.SIGKILL:
-            return _KilledError("the engine was killed", code="AOS213")
-        if status is not None:
-            message = f"{message} ({_status_text(status)})"
-            code = code if piece else "AOS213"
-        return self._blamed(code, message, piece)
-
-    async def _status(self) -> int | None:
-        """How a child that has closed its output ended; None if it lingers."""
         assert self._child is not None
         try:
-            async with asyncio.timeout(EXIT_DEADLINE_S):
-                return await self._child.wait()
-        except TimeoutError:
-            return None
+            for command in self._restoration(self._changes):
+                await self._child.ask(command, _Done, ANSWER_DEADLINE_S)
+        except AosError:
+            await self._drop_child()
+            raise
 
-    def _blamed(self, code: str, message: str, piece: int) -> AosError:
-        spans = self._built.emitted.snippets
-        if not 0 < piece <= len(spans):
-            return ModelError(message, code=code)
-        span: Span = spans[piece - 1]
-        hint = "Look at this piece of the document"
-        diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)
-        return ModelError(f"{span}: {message}", code=code, hint=hint, diagnostics=(diagnostic,))
+    def _restoration(self, changes: int) -> list[str]:
+        """What brings a new child to the belief after so many changes, the last or the one before it."""
+        return [f"restore_belief\t{changes}"] if changes > 0 and self._beliefs is not None else []
 
     async def _drop_child(self) -> None:
         child, self._child = self._child, None
         if child is not None:
-            child.kill()
-            await child.wait()
-        if self._printed is not None:
-            await asyncio.wait({self._printed}, timeout=EXIT_DEADLINE_S)
-            self._printed.cancel()
-            self._printed = None
-        if self._blame is not None:
-            self._blame.close()
-            self._blame = None
-
-
-def _status_text(returncode: int) -> str:
-    return f"signal {-returncode}" if returncode < 0 else f"exit status {returncode}"
+            await child.close()

@@ -20,4 +20,5 @@
 #include "aos/state_text.hpp"
 #include "aos/step.hpp"
 #include "aos/text.hpp"
+#include "aos/trace.hpp"
 #include "aos/transition.hpp"

@@ -113,11 +113,11 @@ Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, i
     step.reward = penalty + effect.reward;
   }
   check_reward(step.reward);
+  step.observation = observation_of<Skill>(effect);
   if constexpr (Environment::has_special_states) {
     step.reward += Environment::special_states(next, random);
     check_reward(step.reward);
   }
-  step.observation = observation_of<Skill>(effect);
   return step;
 }
 

@@ -1,0 +1,127 @@
+"""A fault of model code in a section of many statements is told at the statement that failed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+from aos_protocol.errors import ModelError
+from aos_solver.build import BuiltModel
+
+WARD = """project: ward
+horizon: 4
+
+define_type: tFault
+enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda
+
+state_variable: int rooms
+state_variable: int[] beds
+code:
+state.beds = {1, 2, 3};
+state_variable: bool is_open
+"""
+
+# The statement of each fault has its name in a comment.
+SLIP = """project: ward
+parameter: tFault fault
+
+available_parameters_code:
+for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda})
+    __possibleParameters.push_back(make_tuple(fault));
+
+dynamic_model:
+// Nothing is wrong up to here.
+auto bed = [&](int i) {
+    int index = i * 2;
+    return state__.beds[index];  // eLambda
+};
+state__.rooms += bed(0);
+if (fault == eNull) {
+    int* nothing = nullptr;
+    state__.rooms = *nothing;  // eNull
+} else if (fault == eRange)
+    state__.beds[7] = 1;  // eRange
+switch (fault) {
+    case eThrow:
+        state__.is_open = true;
+        throw runtime_error("no way");  // eThrow
+    case eLambda:
+        state__.rooms = bed(3);
+        break;
+    default:
+        break;
+}
+for (int i = 0; i < 3; ++i) {
+    __reward += 1;
+    if (fault == eReward && i == 2) __reward = 1.0 / (i - 2);  // eReward
+    __reward -= 1;
+}
+__moduleResponse = ok;
+if (fault == eResponse)
+    __moduleResponse = 9;  // eResponse
+"""
+ANSWERING = """project: ward
+response: ok
+response_rule: True
+module_activation: skill
+path: /slip
+"""
+FAULTS = {
+    "eNull": ("AOS210", "signal 11"),
+    "eRange": ("AOS215", "element 7 of a vector of 3"),
+    "eThrow": ("AOS215", "no way"),
+    "eReward": ("AOS214", "the reward is"),
+    "eResponse": ("AOS215", "__moduleResponse is 9"),
+    "eLambda": ("AOS215", "element 6 of a vector of 3"),
+}
+
+
+def line_of(text: str, mark: str) -> int:
+    return next(number for number, line in enumerate(text.splitlines(), 1) if f"// {mark}" in line)
+
+
+def in_json(sdl: str) -> str:
+    """The skill in the other dialect, its code as arrays of lines."""
+    parameters, _, effect = sdl.partition("available_parameters_code:\n")[2].partition("\ndynamic_model:\n")
+    blocks = [
+        [{"AssignmentName": "code", "AssignmentCode": code.splitlines()}] for code in (parameters, effect)
+    ]
+    return json.dumps(
+        {
+            "PlpMain": {"Project": "ward", "Name": "slip", "Type": "PLP", "Version": 1},
+            "GlobalVariableModuleParameters": [{"Name": "fault", "Type": "tFault"}],
+            "PossibleParametersValue": blocks[0],
+            "DynamicModel": {"NextStateAssignments": blocks[1]},
+        },
+        indent=2,
+    )
+
+
+DOCUMENTS = {"slip.sd": SLIP, "slip.json": in_json(SLIP)}
+
+
+async def fault_of(built: BuiltModel, name: str) -> ModelError:
+    """The fault of a mission whose second action is the faulty one."""
+    async with engine_of(built) as running:
+        actions = [action.name for action in running.description.actions]
+        await running.reset_world(1)
+        await running.step_world(actions.index("slip(fault=eNone)"))
+        with pytest.raises(ModelError) as caught:
+            await running.step_world(actions.index(f"slip(fault={name})"))
+    return caught.value
+
+
+@pytest.mark.parametrize("document", DOCUMENTS)
+@pytest.mark.parametrize("name", FAULTS)
+async def test_a_fault_is_told_at_its_statement(name: str, document: str, cache_dir: Path) -> None:
+    text = DOCUMENTS[document]
+    built = await built_text({"ward.ef": WARD, document: text, "slip.am": ANSWERING}, cache_dir)
+    fault = await fault_of(built, name)
+    (diagnostic,) = fault.diagnostics
+    code, message = FAULTS[name]
+    assert (diagnostic.span.file, diagnostic.span.line) == (document, line_of(text, name))
+    assert fault.code == code
+    assert message in fault.message
