@@ -139,6 +139,13 @@ def test_the_screen_shows_steps_values_and_belief_bars() -> None:
         assert expected in text
 
 
+def test_the_screen_says_what_was_remarkable_about_a_step() -> None:
+    screen = Screen("armadillo")
+    screen.take(msgspec.structs.replace(OBSERVED, remark="the local variables do not correct the belief"))
+    screen.take(msgspec.structs.replace(DECISION, sequence=2, step=2))
+    assert "step 1: the local variables do not correct the belief" in shown(screen)
+
+
 def test_the_live_view_draws_and_lets_go_of_the_terminal() -> None:
     console = Console(file=io.StringIO(), width=120, force_terminal=True)
     with LiveView("armadillo", console) as view:

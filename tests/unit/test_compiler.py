@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
 
 from aos_protocol.errors import ModelError
 from aos_solver import compiler as compiler_module
-from aos_solver.compiler import find_compiler
+from aos_solver.compiler import Compiler, find_compiler
+from aos_solver.compiler_run import run_compiler
 
 
 def fake(directory: Path, name: str, text: str, status: int = 0) -> None:
@@ -73,3 +75,9 @@ async def test_the_wheel_is_the_last_resort(tools: Path, monkeypatch: pytest.Mon
 async def test_this_machine_has_one(cache_dir: Path) -> None:
     found = await find_compiler(os.environ)
     assert "-std=c++20" in found.compilation("a.cpp", "a.o", str(cache_dir))
+
+
+async def test_a_compiler_that_talks_without_end_is_read_to_its_end_and_not_kept(tmp_path: Path) -> None:
+    talking = [sys.executable, "-c", "import sys; sys.stdout.write('x' * 5_000_000); sys.exit(3)"]
+    said, status = await run_compiler(Compiler((), "gcc", ""), talking, tmp_path, 30.0, "a model")
+    assert (len(said), status) == (4 << 20, 3)

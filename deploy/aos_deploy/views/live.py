@@ -26,7 +26,7 @@ __all__ = ["LiveView", "Screen"]
 
 _BAR_CELLS = 20
 _FEWEST_STEPS = 3
-_OTHER_ROWS = 10
+_OTHER_ROWS = 11
 _SHOWN_VALUES = 4
 _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow", "ended": "dim"}
 
@@ -74,7 +74,9 @@ class Screen:
             columns.add_row(beliefs, values)
             room = console.height - max(beliefs.row_count, values.row_count) - _OTHER_ROWS
             yield Text()
-            yield self._step_table(max(room, _FEWEST_STEPS))
+            shown = sorted(self.steps)[-max(room, _FEWEST_STEPS) :]
+            yield self._step_table(shown)
+            yield from self._step_remark(shown)
             yield Text()
             yield columns
         yield Text()
@@ -103,12 +105,18 @@ class Screen:
         if self.remark != self.state.remark:
             yield Text(self.remark)
 
-    def _step_table(self, row_count: int) -> Table:
+    def _step_remark(self, shown: list[int]) -> Iterator[Text]:
+        """What the newest of the steps that has a remark has to say."""
+        remarked = [step for step in shown if self.steps[step].remark]
+        if remarked:
+            yield Text(f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}", style="yellow")
+
+    def _step_table(self, shown: list[int]) -> Table:
         table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
         for column in ("step", "action", "value", "observation", "surprise", "goal"):
             is_number = column in ("step", "value", "surprise", "goal")
             table.add_column(column, justify="right" if is_number else "left", no_wrap=True)
-        for step in sorted(self.steps)[-row_count:]:
+        for step in shown:
             record = self.steps[step]
             chosen = _value_of(record)
             table.add_row(
