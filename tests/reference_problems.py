@@ -9,33 +9,41 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from itertools import product
 from math import hypot
-from typing import Protocol
+from typing import Any, Protocol, TypeVar
 
 __all__ = ["MODELS", "Belief", "Model", "expected_reward", "initial_belief", "observed"]
 
-Belief = dict[Hashable, float]
-Outcome = tuple[float, Hashable | None, float, str]
+S = TypeVar("S", bound=Hashable)
+
+Belief = dict[S, float]
+Outcome = tuple[float, S | None, float, str]
+
+Cell = tuple[int, int]
+Chase = tuple[Cell, Cell]
+"""Where the robot is, and where its opponent."""
+Survey = tuple[Cell, tuple[bool, ...]]
+"""Where the robot is, and which rocks are good."""
 
 MOVES = {"north": (0, 1), "east": (1, 0), "south": (0, -1), "west": (-1, 0)}
 
 
-class Model(Protocol):
+class Model(Protocol[S]):
     actions: tuple[str, ...]
 
-    def starts(self) -> list[Hashable]:
+    def starts(self) -> list[S]:
         """The states of the initial belief, all equally likely."""
         ...
 
-    def step(self, state: Hashable, action: str) -> Iterator[Outcome]: ...
+    def step(self, state: S, action: str) -> Iterator[Outcome[S]]: ...
 
 
-class Tiger:
+class Tiger(Model[str]):
     actions = ("listen", "open(door=left_door)", "open(door=right_door)")
 
-    def starts(self) -> list[Hashable]:
+    def starts(self) -> list[str]:
         return ["left", "right"]
 
-    def step(self, state: Hashable, action: str) -> Iterator[Outcome]:
+    def step(self, state: str, action: str) -> Iterator[Outcome[str]]:
         if action == "listen":
             other = "left" if state == "right" else "right"
             yield 0.85, state, -1, f"tiger_{state}"
@@ -45,15 +53,15 @@ class Tiger:
                 yield 0.5, after, -100 if f"door={state}_door" in action else 10, "opened"
 
 
-class Tag:
+class Tag(Model[Chase]):
     actions = (*(f"move(direction={name})" for name in sorted(MOVES)), "tag")
     cells = (*((x, y) for y in (0, 1) for x in range(10)), *((x, y) for y in (2, 3, 4) for x in (5, 6, 7)))
 
-    def starts(self) -> list[Hashable]:
+    def starts(self) -> list[Chase]:
         return list(product(self.cells, self.cells))
 
-    def step(self, state: Hashable, action: str) -> Iterator[Outcome]:
-        robot, opponent = state  # type: ignore[misc]
+    def step(self, state: Chase, action: str) -> Iterator[Outcome[Chase]]:
+        robot, opponent = state
         if action == "tag":
             if robot == opponent:
                 yield 1, None, 10, "tagged"
@@ -66,12 +74,12 @@ class Tag:
             response = "same_cell" if fled == there else f"cell_{self.cells.index(there)}"
             yield probability, (there, fled), -1, response
 
-    def _moved(self, cell: tuple[int, int], way: tuple[int, int]) -> tuple[int, int]:
+    def _moved(self, cell: Cell, way: Cell) -> Cell:
         there = (cell[0] + way[0], cell[1] + way[1])
         return there if there in self.cells else cell
 
     @staticmethod
-    def _flight(robot: tuple[int, int], opponent: tuple[int, int]) -> Iterator[tuple[float, tuple[int, int]]]:
+    def _flight(robot: Cell, opponent: Cell) -> Iterator[tuple[float, Cell]]:
         yield 0.2, (0, 0)
         for axis in (0, 1):
             away = opponent[axis] - robot[axis]
@@ -81,7 +89,7 @@ class Tag:
                     yield share, (side, 0) if axis == 0 else (0, side)
 
 
-class RockSample:
+class RockSample(Model[Survey]):
     size = 7
     rocks = ((2, 0), (0, 1), (3, 1), (6, 3), (2, 4), (3, 4), (5, 5), (1, 6))
     actions = (
@@ -90,11 +98,11 @@ class RockSample:
         "sample",
     )
 
-    def starts(self) -> list[Hashable]:
+    def starts(self) -> list[Survey]:
         return [((0, 3), good) for good in product((False, True), repeat=len(self.rocks))]
 
-    def step(self, state: Hashable, action: str) -> Iterator[Outcome]:
-        (x, y), good = state  # type: ignore[misc]
+    def step(self, state: Survey, action: str) -> Iterator[Outcome[Survey]]:
+        (x, y), good = state
         if action == "sample":
             if (x, y) not in self.rocks:
                 yield 1, state, -100, "sampled"
@@ -118,15 +126,15 @@ class RockSample:
                 yield 1, state, -100, "moved"
 
 
-MODELS: dict[str, Model] = {"tiger": Tiger(), "tag": Tag(), "rocksample-7-8": RockSample()}
+MODELS: dict[str, Model[Any]] = {"tiger": Tiger(), "tag": Tag(), "rocksample-7-8": RockSample()}
 
 
-def initial_belief(model: Model) -> Belief:
+def initial_belief(model: Model[S]) -> Belief[S]:
     starts = model.starts()
     return dict.fromkeys(starts, 1 / len(starts))
 
 
-def expected_reward(model: Model, belief: Belief, action: str) -> float:
+def expected_reward(model: Model[S], belief: Belief[S], action: str) -> float:
     return sum(
         weight * probability * reward
         for state, weight in belief.items()
@@ -134,9 +142,9 @@ def expected_reward(model: Model, belief: Belief, action: str) -> float:
     )
 
 
-def observed(model: Model, belief: Belief, action: str, response: str) -> tuple[float, Belief]:
+def observed(model: Model[S], belief: Belief[S], action: str, response: str) -> tuple[float, Belief[S]]:
     """How likely the response is, and the belief after it; empty if the problem has ended with it."""
-    after: Belief = {}
+    after: Belief[S] = {}
     total = 0.0
     for state, weight in belief.items():
         for probability, following, _, said in model.step(state, action):

@@ -6,7 +6,7 @@ import asyncio
 import os
 import signal
 import sys
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable
 from contextlib import asynccontextmanager
 
 import msgspec
@@ -221,7 +221,7 @@ async def test_rubbish_on_a_stream_is_left_out(endpoint: str, other: Bus, keys: 
 
 
 async def test_rubbish_as_a_question_is_refused(endpoint: str, other: Bus, keys: Keys) -> None:
-    await other.answer(keys.catalogue, CatalogueQuery, list_catalogue)  # type: ignore[arg-type]
+    await other.answer(keys.catalogue, ProjectQuery, list_catalogue)
     rogue = await asyncio.to_thread(zenoh.open, client_config(endpoint))
     try:
         for payload in (None, b"", b"\xc1", b"\x81" * 50_000):
@@ -309,9 +309,9 @@ async def test_an_interpreter_ends_though_its_bus_was_never_closed(endpoint: str
         assert await child.wait() == 5
 
 
-async def _error_of(question: object) -> AosError:
+async def _error_of(question: Awaitable[Message]) -> AosError:
     with pytest.raises(AosError) as caught:
-        await question  # type: ignore[misc]
+        await question
     return caught.value
 
 

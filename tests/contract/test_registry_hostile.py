@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 import io
+import lzma
 import random
 import sys
 import tarfile
 import time
 import zipfile
 from collections.abc import AsyncIterator
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -32,6 +35,7 @@ HOSTILE_ARCHIVES = 400
 DROPPED_ARCHIVES = 60
 SLOWEST_S = 1.0
 REFUSAL_CODES = ("AOS101", "AOS120")
+COMPRESSIONS = {"tar": bytes, "tar.gz": partial(gzip.compress, mtime=0), "tar.xz": lzma.compress}
 
 
 @pytest_asyncio.fixture
@@ -78,10 +82,10 @@ def hostile_name(name: str, chance: random.Random) -> str:
     return chance.choice(odd) if chance.random() < 0.2 else name
 
 
-def tar_of(files: dict[str, bytes], chance: random.Random, form: str) -> bytes:
+def tar_of(files: dict[str, bytes], chance: random.Random) -> bytes:
     kinds = (tarfile.SYMTYPE, tarfile.LNKTYPE, tarfile.CHRTYPE, tarfile.FIFOTYPE, tarfile.GNUTYPE_SPARSE)
     buffer = io.BytesIO()
-    with tarfile.open(fileobj=buffer, mode=f"w:{form}") as archive:  # type: ignore[call-overload]
+    with tarfile.open(fileobj=buffer, mode="w") as archive:
         for name, data in files.items():
             member = tarfile.TarInfo(name)
             member.size = len(data)
@@ -110,7 +114,7 @@ def hostile_archive(files: dict[str, bytes], chance: random.Random) -> tuple[str
     if form == "zip":
         data = zip_of({name: data for name, data in chosen.items() if name}, chance)
     else:
-        data = tar_of(chosen, chance, {"tar": "", "tar.gz": "gz", "tar.xz": "xz"}[form])
+        data = COMPRESSIONS[form](tar_of(chosen, chance))
     return form, mutated(data, chance) if chance.random() < 0.7 else data
 
 

@@ -7,6 +7,7 @@ import os
 import signal
 from collections.abc import AsyncIterator, Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 import pytest_asyncio
@@ -42,8 +43,8 @@ async def evaluator(tmp_path: Path) -> AsyncIterator[Start]:
     """Makes evaluators of documents' texts; their workers end with the test."""
     made: list[Evaluator] = []
 
-    def make(text: str, **limits: object) -> Evaluator:
-        wanted = EvaluationLimits(**{"evaluation_s": 1.0, **limits})  # type: ignore[arg-type]
+    def make(text: str, **limits: Any) -> Evaluator:
+        wanted = EvaluationLimits(**{"evaluation_s": 1.0, **limits})
         made.append(Evaluator(emitted(text), tmp_path / "logs" / "mapping.log", wanted))
         return made[-1]
 

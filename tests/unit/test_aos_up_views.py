@@ -106,10 +106,9 @@ def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> N
 
 
 def shown(screen: Screen) -> str:
-    console = Console(file=io.StringIO(), width=120, force_terminal=False)
-    console.print(screen)
-    text = console.file.getvalue()  # type: ignore[attr-defined]
-    return str(text)
+    text = io.StringIO()
+    Console(file=text, width=120, force_terminal=False).print(screen)
+    return text.getvalue()
 
 
 def test_the_screen_says_what_is_being_waited_for() -> None:
@@ -147,11 +146,11 @@ def test_the_screen_says_what_was_remarkable_about_a_step() -> None:
 
 
 def test_the_live_view_draws_and_lets_go_of_the_terminal() -> None:
-    console = Console(file=io.StringIO(), width=120, force_terminal=True)
-    with LiveView("armadillo", console) as view:
+    text = io.StringIO()
+    with LiveView("armadillo", Console(file=text, width=120, force_terminal=True)) as view:
         for event in EVENTS:
             view(event)
-    assert "pick_succeeded" in console.file.getvalue()  # type: ignore[attr-defined]
+    assert "pick_succeeded" in text.getvalue()
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -83,8 +84,9 @@ def test_revisions_are_numbered_and_kept(tmp_path: Path, files: dict[str, bytes]
 def test_a_revision_that_cannot_be_stored_whole_is_not_stored_at_all(tmp_path: Path) -> None:
     catalogue = Catalogue.open(tmp_path / "catalogue.db")
     catalogue.store("p", "d", {"a": b"1"}, (), 1)
+    not_bytes: Any = None
     with pytest.raises(TypeError):
-        catalogue.store("p", "d2", {"a": b"2", "b": None}, (), 2)  # type: ignore[dict-item]
+        catalogue.store("p", "d2", {"a": b"2", "b": not_bytes}, (), 2)
     current = catalogue.current("p")
     assert current is not None
     assert (current.number, current.files) == (1, {"a": b"1"})

@@ -34,8 +34,6 @@ class Message:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Message) and self.__dict__ == other.__dict__
 
-    __hash__ = None  # type: ignore[assignment]
-
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={value!r}" for name, value in self.__dict__.items())
         return f"{type(self).__name__}({fields})"

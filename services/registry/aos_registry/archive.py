@@ -137,16 +137,23 @@ def _in_tar(path: Path) -> Iterator[tuple[_Entry, IO[bytes]]]:
 class _BoundedTarInfo(tarfile.TarInfo):
     """A header that neither leads backwards nor has a long text: some releases of Python hang on these."""
 
-    def _block(self, count: int) -> int:
-        if count < 0:
-            raise tarfile.ReadError("a negative size")
-        return int(super()._block(count))  # type: ignore[misc]
+    @property
+    def size(self) -> int:
+        return self._size
 
-    def _proc_member(self, archive: tarfile.TarFile) -> Self:
-        if self.type in _TAR_RECORDS and not 0 <= self.size <= _MAX_TAR_RECORD_BYTES:
-            raise tarfile.ReadError(f"a header of {self.size} bytes")
-        found: Self = super()._proc_member(archive)  # type: ignore[misc]
-        return found
+    @size.setter
+    def size(self, size_bytes: int) -> None:
+        # Every size comes by here: that of the header itself, and those that records before it give.
+        if size_bytes < 0:
+            raise tarfile.ReadError("a negative size")
+        self._size = size_bytes
+
+    @classmethod
+    def frombuf(cls, buf: bytes | bytearray, encoding: str, errors: str) -> Self:
+        header = super().frombuf(buf, encoding, errors)
+        if header.type in _TAR_RECORDS and header.size > _MAX_TAR_RECORD_BYTES:
+            raise tarfile.ReadError(f"a header of {header.size} bytes")
+        return header
 
 
 def _tar_kind(member: tarfile.TarInfo) -> str:
