@@ -142,7 +142,7 @@ class _Reader:
     # --- paths -----------------------------------------------------------------------------------------
 
     def _path(self, node: tree_sitter.Node, access: Access, assigned: Extent | None = None) -> None:
-        parts, root = self._flatten(node)
+        parts, root = self._flatten(node, access)
         if root is None:
             return
         if node.type == "qualified_identifier" and _is_type(node):
@@ -151,7 +151,9 @@ class _Reader:
             extent, root_extent = self._extent(node), self._extent(root)
             self.mentions.append(Mention(parts, access, extent, root_extent, assigned=assigned))
 
-    def _flatten(self, node: tree_sitter.Node) -> tuple[tuple[str, ...], tree_sitter.Node | None]:
+    def _flatten(
+        self, node: tree_sitter.Node, access: Access = Access.READ
+    ) -> tuple[tuple[str, ...], tree_sitter.Node | None]:
         """The parts of an access path; subscripts, and what an unnamed root is made of, go on the stack."""
         parts: list[str] = []
         current = node
@@ -171,7 +173,7 @@ class _Reader:
                 self._push_template_arguments(current)
                 return (*_names(current), *reversed(parts)), current
             else:
-                self._push([current])
+                self._push([current], access)
                 return (), None
 
     def _push_template_arguments(self, node: tree_sitter.Node | None) -> None:
@@ -215,7 +217,8 @@ class _Reader:
         arguments = _child(node, "arguments")
         named = [child for child in arguments.named_children if child.type != "comment"]
         name = self._called(function, access)
-        is_changing = access is not Access.READ or not _CHANGING_FUNCTIONS.isdisjoint(name)
+        gives_place = access is not Access.READ and function.type != "field_expression"
+        is_changing = gives_place or not _CHANGING_FUNCTIONS.isdisjoint(name)
         self._push(arguments.children, Access.BIND if is_changing else Access.READ)
         self.calls.append(
             Call(name, self._extent(node), self._extent(function), tuple(map(self._extent, named)))
@@ -232,7 +235,7 @@ class _Reader:
             return parts
         target = _child(function, "argument")
         method = _names(function.child_by_field_name("field"))[-1:]
-        parts, root = self._flatten(target)
+        parts, root = self._flatten(target, _method_access("".join(method), access, is_aos=False))
         if root is not None:
             kind = _method_access("".join(method), access, is_aos=parts == ("AOS",))
             path = (*parts, *method) if kind is Access.CALL else parts

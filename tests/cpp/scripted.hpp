@@ -145,6 +145,7 @@ void play() {
     Script none{""};
     json.begin_object().member("meets_precondition", Model::meets_precondition(state, action, none));
     json.member("rollout_weight", Model::rollout_weight(state, action, none));
+    json.member("state_value", Model::state_value(state, none));
     const Step step = Model::step(state, action, draws);
     json.member("reward", step.reward).member("observation", observation_name<Model>(action, step.observation));
     json.key("state");

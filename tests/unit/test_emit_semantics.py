@@ -41,6 +41,8 @@ if (state.level >= state.limit) {
 }
 reward_code:
 if (state.level < 0) __isGoalState = true;
+heuristic_code:
+__heuristicValue = state.level * 2 - 0.5;
 """,
     "raise.sd": """project: test
 parameter: int by
@@ -123,6 +125,11 @@ def test_without_a_response_the_observation_is_the_default(switch: ScriptedModel
 def test_rollout_weights_are_never_negative(switch: ScriptedModel) -> None:
     played = switch.play("raise(by=2)", "raise(by=-1)", "wait")
     assert [step["rollout_weight"] for step in played.steps] == [3.0, 0, 0]
+
+
+def test_a_state_heuristic_values_a_state(switch: ScriptedModel) -> None:
+    played = switch.play("raise(by=1)", "wait", initial="0")
+    assert [step["state_value"] for step in played.steps] == [5.5, 7.5]
 
 
 def test_only_what_code_changes_is_in_the_particle(switch: ScriptedModel) -> None:

@@ -53,6 +53,8 @@ def particle_of(act: str, home: str = "") -> list[str]:
         ("state__.lamp = On; state__.row[1] += 2;", ["lamp", "row"]),
         ("int& counted = state__.count; counted++;", ["count"]),
         ("for (auto& cell : state__.row) cell = 0;", ["row"]),
+        ("state__.row.at(state.count) = 1;", ["row"]),
+        ("state__.row.at(0)++;", ["row"]),
         ("sort(state__.row.begin(), state__.row.end());", ["row"]),
         ("auto set = [&](int& x) { x = 1; }; set(state__.total);", ["total"]),
         ("auto held = std::ref(state__.total); held.get() = 1;", ["total"]),
@@ -135,6 +137,13 @@ def test_names_that_cpp_needs_are_refused_at_their_places() -> None:
     environment = msgspec.structs.replace(project.environment, variables=variables)
     found = errors_of(msgspec.structs.replace(project, environment=environment))
     assert [(d.code, d.span) for d in found] == [("AOS126", variables[-1].span)]
+
+
+def test_a_word_of_the_emitted_file_is_refused_only_where_it_would_be_in_the_way() -> None:
+    kinds = "define_type: Kind\nenum_members: model, ground, main\nstate_variable: Kind model\n"
+    assert lower(project_of("state__.model = ground;", kinds))[0] is not None
+    (refusal,) = errors_of(project_of("", "define_type: model\nvariable: int age\n"))
+    assert (refusal.code, refusal.span.line) == ("AOS126", HOME.count("\n") + 1)
 
 
 def test_code_that_could_leave_its_function_is_refused() -> None:

@@ -12,13 +12,15 @@ from aos_solver.findings import Findings
 __all__ = ["assignments_of", "check_names"]
 
 _OF_THE_LANGUAGE = frozenset({
-    "AOS", "AOSUtils", "EOF", "INFINITY", "NAN", "NULL", "anyValue", "aos", "errno", "main", "model", "state",
-    "state_", "state__", "state___", "std",
+    "AOS", "AOSUtils", "EOF", "INFINITY", "NAN", "NULL", "anyValue", "aos", "errno", "state", "state_",
+    "state__", "state___", "std",
 })  # fmt: skip
+_OF_NAMESPACES = frozenset({"model"})
+"""What no type can be called, and everything else can."""
 _OF_EMITTED_SKILLS = frozenset({
-    "Locals", "Parameters", "Response", "execution_time", "given_observation", "ground", "groundings",
-    "has_text_response", "locals", "next_state", "possible_parameters", "precondition", "read_locals",
-    "response_names", "rollout_policy", "violation_penalty",
+    "Locals", "Parameters", "Response", "execution_time", "given_observation", "groundings",
+    "has_text_response", "locals", "make_groundings", "next_state", "possible_parameters", "precondition",
+    "read_locals", "response_names", "rollout_policy", "violation_penalty",
 })  # fmt: skip
 _OF_EMITTED_ENVIRONMENTS = frozenset({
     "Chosen", "extrinsic_changes", "has_extrinsic_changes", "initial_belief", "is_one_state", "name_of",
@@ -29,8 +31,11 @@ _OF_EMITTED_ENVIRONMENTS = frozenset({
 def check_names(project: Project, findings: Findings) -> None:
     """AOS126 for every declared name that C++ or the emitted model needs for itself."""
     global_names = _OF_EMITTED_SKILLS | _OF_EMITTED_ENVIRONMENTS
-    for name, span in _global_names(project.environment):
-        _check(name, span, findings, global_names)
+    for enum in project.environment.enums:
+        for value in enum.values:
+            _check(value, enum.span, findings, global_names)
+    for name, span in _type_names(project.environment):
+        _check(name, span, findings, global_names | _OF_NAMESPACES)
     for name, span in _member_names(project):
         _check(name, span, findings, frozenset())
     for skill in project.skills:
@@ -48,12 +53,9 @@ def assignments_of(model: SkillModel) -> Iterator[Assignment]:
     yield from model.state_given_observation
 
 
-def _global_names(environment: Environment) -> Iterator[tuple[str, Span]]:
-    for enum in environment.enums:
-        yield enum.name, enum.span
-        yield from ((value, enum.span) for value in enum.values)
-    for compound in environment.compounds:
-        yield compound.name, compound.span
+def _type_names(environment: Environment) -> Iterator[tuple[str, Span]]:
+    yield from ((enum.name, enum.span) for enum in environment.enums)
+    yield from ((compound.name, compound.span) for compound in environment.compounds)
 
 
 def _member_names(project: Project) -> Iterator[tuple[str, Span]]:

@@ -162,7 +162,7 @@ struct skill__navigate : aos::SkillDefaults {
   };
   inline static std::vector<aos::Grounding<Parameters>> groundings;
 
-  static void ground(const Draft& __draft) {
+  static void make_groundings(const Draft& __draft) {
     groundings.clear();
     for (const auto& destination : std::initializer_list<aos::NamedValue<Destination>>{
              {"corridor", __draft.corridor},
@@ -204,7 +204,7 @@ struct skill__observe_arm_outstretched : aos::SkillDefaults {
   static constexpr std::array<const char*, 2> response_names{"outstretched", "not_outstretched"};
   inline static std::vector<aos::Grounding<Parameters>> groundings;
 
-  static void ground(const Draft&) {
+  static void make_groundings(const Draft&) {
     groundings.clear();
     groundings.push_back(
         {aos::action_name("observe_arm_outstretched", {}), {}});
@@ -229,7 +229,7 @@ struct skill__observe_holding : aos::SkillDefaults {
   static constexpr std::array<const char*, 2> response_names{"holding", "not_holding"};
   inline static std::vector<aos::Grounding<Parameters>> groundings;
 
-  static void ground(const Draft&) {
+  static void make_groundings(const Draft&) {
     groundings.clear();
     groundings.push_back(
         {aos::action_name("observe_holding", {}), {}});
@@ -256,7 +256,7 @@ struct skill__pick : aos::SkillDefaults {
   static constexpr double violation_penalty = -10.0;
   inline static std::vector<aos::Grounding<Parameters>> groundings;
 
-  static void ground(const Draft&) {
+  static void make_groundings(const Draft&) {
     groundings.clear();
     groundings.push_back(
         {aos::action_name("pick", {}), {}});
@@ -306,7 +306,7 @@ struct skill__serve : aos::SkillDefaults {
   static constexpr double violation_penalty = -12.0;
   inline static std::vector<aos::Grounding<Parameters>> groundings;
 
-  static void ground(const Draft&) {
+  static void make_groundings(const Draft&) {
     groundings.clear();
     groundings.push_back(
         {aos::action_name("serve", {}), {}});
@@ -445,15 +445,15 @@ struct Model {
     constants = draft;
     start = draft;
     actions.clear();
-    skill__navigate::ground(draft);
+    skill__navigate::make_groundings(draft);
     aos::add_actions(actions, 0, skill__navigate::groundings);
-    skill__observe_arm_outstretched::ground(draft);
+    skill__observe_arm_outstretched::make_groundings(draft);
     aos::add_actions(actions, 1, skill__observe_arm_outstretched::groundings);
-    skill__observe_holding::ground(draft);
+    skill__observe_holding::make_groundings(draft);
     aos::add_actions(actions, 2, skill__observe_holding::groundings);
-    skill__pick::ground(draft);
+    skill__pick::make_groundings(draft);
     aos::add_actions(actions, 3, skill__pick::groundings);
-    skill__serve::ground(draft);
+    skill__serve::make_groundings(draft);
     aos::add_actions(actions, 4, skill__serve::groundings);
     if (actions.empty()) throw aos::ModelFault{"AOS119", "no skill has a grounded action"};
   }

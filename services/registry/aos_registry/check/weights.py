@@ -25,7 +25,7 @@ def check_weights(
     span_of: Callable[[Extent], Span],
     findings: Findings,
 ) -> None:
-    """Checks the literal numbers of a Bernoulli or SampleDiscrete call; expressions are left alone."""
+    """Checks the literal numbers of a call that draws; expressions are left alone."""
     arguments = [code[argument.start : argument.end] for argument in call.arguments]
     if call.name[1] == "Bernoulli" and arguments:
         probability = _number(arguments[0])
@@ -38,6 +38,20 @@ def check_weights(
             size = enum_sizes.get(arguments[0]) if len(arguments) > 1 else None
             span = span_of(call.arguments[-1])
             _check_list(weights, size, span, findings, rounding if call.name[0] == "AOS" else None)
+    elif call.name[1] in ("SampleNormal", "SampleUniform") and len(arguments) == 2:
+        first, second = _number(arguments[0]), _number(arguments[1])
+        if second is not None:
+            _check_distribution(call.name[1], first, second, span_of(call.arguments[1]), findings)
+
+
+def _check_distribution(
+    name: str, first: float | None, second: float, span: Span, findings: Findings
+) -> None:
+    if name == "SampleNormal" and second < 0.0:
+        hint = "It is not negative"
+        findings.error("AOS122", f"{second:g} is no standard deviation", span, hint)
+    elif name == "SampleUniform" and first is not None and second < first:
+        findings.warning("AOS122", f"the upper bound {second:g} lies below the lower one", span)
 
 
 def _check_list(

@@ -1,0 +1,175 @@
+"""Each construct of the languages used wrongly: refused, or warned of, where the mistake is.
+
+docs/constructs.md lists the constructs, with the tests that show each of them at work.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from test_reading_rules import Rule, bundle_of
+
+from aos_registry.load import load_files
+from aos_solver.lower import lower
+
+EXTRINSIC = '"ExtrinsicChangesDynamicModel": []'
+ENDING = '"ExtrinsicChangesDynamicModel": []\n}'
+LAST_RULE = '{"Response": "eLost", "ConditionCodeWithLocalVariables": ""}'
+MISUSES = {
+    "v1.x JSON": Rule("go.json", '"PlpMain"', '"«PlpMian"', "AOS102"),
+    "paper GSDL JSON": Rule(
+        "go.json",
+        '"PlpMain": {"Project": "two rooms", "Name": "go", "Type": "PLP"',
+        '"GsdlMain": {"Project": "two rooms", "Name": "go", "Type": "«GDSL"',
+        "AOS106",
+    ),
+    "SDL 2.0": Rule("room.ef", "horizon: 5", "«horizont: 5", "AOS102"),
+    "enum": Rule(
+        "room.json",
+        '{"TypeName": "tRoom", "Type": "enum", "EnumValues": ["eHall", "eLab"]}',
+        '{"TypeName": "«tRoom", "Type": "enum", "EnumValues": []}',
+        "AOS105",
+    ),
+    "compound type": Rule(
+        "room.json", '"Name": "room", "Type": "tRoom"', '"Name": "room", "Type": "«tRom"', "AOS110"
+    ),
+    "array": Rule("room.ef", "int steps []", "int steps «[2]", "AOS104"),
+    "vector<...>": Rule("room.ef", "int steps []", "«vector<Roof> steps", "AOS110"),
+    "map variable": Rule("room.json", '"IsArray": true,', '"Parameters": ["«(0,3)"],', "AOS106"),
+    "anyValue": Rule(
+        "room.json",
+        '{"Name": "pose", "Type": "anyValue", "UnderlineLocalVariableType": "Pose"}',
+        '{"Name": "«pose", "Type": "anyValue", "UnderlineLocalVariableType": "Pos"}',
+        "AOS110",
+    ),
+    "EnvironmentGlue constant": Rule(
+        "low.json",
+        '"Constants": []',
+        '"Constants": [{"Name": "___p", "Type": "Pose", "InitCode": "___p.x = «(1"}]',
+        "AOS121",
+    ),
+    "temporary variable": Rule(
+        "go.json", '{"IterateNextStateVars": []}', '{"TempVar": {"VarName": "«n", "Type": "it"}}', "AOS110"
+    ),
+    "temporary enum": Rule(
+        "go.json",
+        '{"VarName": "end", "Type": "enum", "EnumName": "tEnd", "EnumValues": ["eWell", "eBadly"]}',
+        '«{"VarName": "end", "Type": "enum", "EnumName": "tEnd", "EnumValues": []}',
+        "AOS105",
+    ),
+    "IteratePreviousStateVars": Rule(
+        "go.json",
+        '{"IterateNextStateVars": []}',
+        '{"IteratePreviousStateVars": [{"Type": "«tDor", "ItemName": "d"}]}',
+        "AOS110",
+    ),
+    "IterateNextStateVars": Rule(
+        "room.json",
+        '"AssignmentName": "start",',
+        '"IterateNextStateVars": [{"Type": "«tDoor", "ItemName": "d"}],',
+        "AOS123",
+    ),
+    "xObjects": Rule("go.json", "if (end == eWell)", "if (state.«tDorObjects.empty())", "AOS110"),
+    "xObjectsForActions": Rule(
+        "go.json", "if (end == eWell)", "if (state.«tDorObjectsForActions.empty())", "AOS110"
+    ),
+    "declared action values": Rule("go.sd", "parameter: Door door", "parameter: Room «door", "AOS119"),
+    "__possibleParameters": Rule(
+        "go.sd",
+        "precondition:",
+        "available_parameters_code:\n«__posibleParameters.push_back({});\nprecondition:",
+        "AOS110",
+    ),
+    "precondition": Rule("go.json", "!state.closed", "!«state__.closed", "AOS123"),
+    "penalty": Rule("go.json", "-2\n", '«"-2"\n', "AOS106"),
+    "rollout policy": Rule(
+        "go.sd", "violate_penalty", "rollout_policy:\n«state.at = Hall;\nviolate_penalty", "AOS123"
+    ),
+    "state heuristic": Rule(
+        "room.ef", "initial_belief:", "heuristic_code:\n«state.at = Lab;\ninitial_belief:", "AOS123"
+    ),
+    "module execution time": Rule(
+        "go.json",
+        '"DynamicModel"',
+        '"ModuleExecutionTimeDynamicModel": [{"AssignmentCode": "«state.at = eLab;"}], "DynamicModel"',
+        "AOS123",
+    ),
+    "special state, condition": Rule("room.json", "state.at == eLab", "«state_.at == eLab", "AOS123"),
+    "special state, code": Rule("room.ef", "if (state.at == Lab)", "if («state__.at == Lab)", "AOS123"),
+    "one-time reward": Rule(
+        "room.json", '"IsGoalState": true', '"IsGoalState": true, "IsOneTimeReward": «3', "AOS106"
+    ),
+    "goal": Rule("room.ef", "__isGoalState", "«__isGoal", "AOS110"),
+    "extrinsic changes": Rule(
+        "room.json",
+        EXTRINSIC,
+        '"ExtrinsicChangesDynamicModel": [{"AssignmentCode": "«state__.at = eLab;"}]',
+        "AOS123",
+    ),
+    "chosen action": Rule(
+        "room.json",
+        EXTRINSIC,
+        '"ExtrinsicChangesDynamicModel": [{"AssignmentCode": "if (go->«oDor.room) return;"}]',
+        "AOS110",
+    ),
+    "string observation": Rule(
+        "go glue.json", '{"ResponseRules"', '{"FromStringLocalVariable": "«txt", "ResponseRules"', "AOS110"
+    ),
+    "state given observation": Rule(
+        "go.json",
+        '"DynamicModel"',
+        '"StateGivenObservationModel": {"Assignments": [{"AssignmentCode": "«state__.at = eLab;"}]},\n'
+        '"DynamicModel"',
+        "AOS123",
+    ),
+    "OneStateModel": Rule("room.ef", "horizon: 5", "horizon: 5\none_state_model: «perhaps", "AOS106"),
+    "print function": Rule(
+        "room.json",
+        EXTRINSIC,
+        EXTRINSIC + ', "PrintStateFunc": [{"AssignmentCode": "«state.at = eLab;"}]',
+        "AOS123",
+    ),
+    "AOS.Bernoulli": Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.Bernoulli(«1.5)", "AOS122"),
+    "AOS.SampleDiscrete": Rule("go.json", "{0.9, 0.1}", "«{0.9, -0.1}", "AOS122"),
+    "AOS.SampleNormal": Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.SampleNormal(0, «-1) > 0", "AOS122"),
+    "AOS.SampleUniform": Rule("room.json", "AOS.Bernoulli(0.5)", "AOS.SampleUniform(2, «1) > 1.5", "AOS122"),
+    "AOSUtils": Rule("room.ef", "AOS.Bernoulli(0.5)", "AOSUtils::«Bernouli(0.5)", "AOS110"),
+    "AOS.SetNull and its like": Rule(
+        "go.json", "if (end == eWell)", "AOS.«SetNul(state__.door.pose); if (end == eWell)", "AOS110"
+    ),
+    "response rules": Rule("go.json", "? eDone : eLost", "? eDone : «eGone", "AOS116"),
+    "local variables": Rule("go glue.json", '"oDoor.pose"', '"«oDoor.where"', "AOS110"),
+}
+
+
+def page_rows(root: Path) -> dict[str, tuple[str, str]]:
+    """The table of docs/constructs.md: the test and the code of each construct."""
+    page = (root / "docs" / "constructs.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([^|]+) \| `([^`|]+)` \| (AOS\d{3}) \|$", page, re.MULTILINE)
+    return {name.replace("`", ""): (test, code) for name, test, code in rows}
+
+
+@pytest.mark.parametrize("construct", MISUSES)
+def test_a_construct_that_is_misused_is_told_at_its_place(construct: str) -> None:
+    rule = MISUSES[construct]
+    files, place = bundle_of(rule)
+    loaded = load_files(files)
+    findings = list(loaded.diagnostics)
+    if loaded.project is not None:
+        findings += lower(loaded.project)[1]
+    told = [f"{each.span} {each.code} {each.message}" for each in findings]
+    assert (rule.code, place) in [(each.code, each.span) for each in findings], told
+
+
+def test_the_page_of_the_constructs_names_every_one_and_tests_that_exist(root: Path) -> None:
+    rows = page_rows(root)
+    assert {name: code for name, (_, code) in rows.items()} == {
+        name: rule.code for name, rule in MISUSES.items()
+    }
+    for test, _ in rows.values():
+        file, _, function = test.rpartition("/")[2].partition("::")
+        folder = test.rpartition("/")[0] or "unit"
+        source = (root / "tests" / folder / f"{file}.py").read_text(encoding="utf-8")
+        assert f"def {function}(" in source, test
