@@ -1,4 +1,7 @@
 // xoshiro256++ (Blackman and Vigna), with the draws that the problems need: no division, no floating point.
+//
+// The engine's generator once more, and on purpose a copy: the baseline is what the engine is measured against, so it
+// must draw at the same price and must not change when the engine does.
 #pragma once
 
 #include <array>

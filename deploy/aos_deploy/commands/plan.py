@@ -77,22 +77,17 @@ def plan(
 
     Prints the value of every action, found by search or exactly.
     """
-    search = Search(simulations=simulations, seed=seed, time_s=time_s, horizon=horizon)
+    search = Search(
+        simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
+    )
+    if policy is not None:
+        search = _by_policy(search, policy)
 
     async def decide(engine: Engine) -> Decision:
         if exact:
             values = (await engine.exact(horizon)).actions
             return _decision([ActionValue(value.action, value.q, 0, 0.0) for value in values], 0)
-        if policy is not None:
-            return _decision(list((await _by_policy(search, policy).run(engine, 1)).actions), 0)
-        found = await engine.plan(
-            simulations=None if time_s is not None else simulations,
-            time_s=time_s,
-            seed=search.seed_of(1),
-            horizon=horizon,
-            planner=planner,
-            threads=threads,
-        )
+        found = await search.run(engine, 1)
         decision = _decision(list(found.actions), found.simulations)
         chosen = {"action": found.best.action, "value": found.best.q}
         return msgspec.structs.replace(decision, planner=found.planner, why=found.why, **chosen)
@@ -145,18 +140,14 @@ def simulate(
         goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
     )
 
+    search = Search(
+        simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
+    )
+    if policy is not None:
+        search = _by_policy(search, policy)
+
     async def run_all(engine: Engine) -> list[SimulatedRun]:
         done: list[SimulatedRun] = []
-        search = Search(
-            simulations=simulations,
-            seed=seed,
-            time_s=time_s,
-            horizon=horizon,
-            planner=planner,
-            threads=threads,
-        )
-        if policy is not None:
-            search = _by_policy(search, policy)
         with typer.progressbar(length=runs, label="missions", file=typer.get_text_stream("stderr")) as bar:
             for run_seed in range(seed, seed + runs):
                 of_run = msgspec.structs.replace(search, seed=run_seed)
@@ -187,7 +178,7 @@ def _by_policy(search: Search, path: Path) -> Search:
     # Numbers take a tenth of a second to import.
     from aos_solver.offline.policy import Policy, PolicySearch
 
-    return PolicySearch(policy=Policy.load(path), **msgspec.structs.asdict(search))
+    return PolicySearch.instead_of(search, Policy.load(path))
 
 
 class Rate(msgspec.Struct):

@@ -9,7 +9,8 @@ from __future__ import annotations
 import hashlib
 import json
 import sqlite3
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
 
@@ -96,41 +97,41 @@ class Catalogue:
     ) -> int:
         """Makes the files the project's next revision and returns its number, from 1.
 
-        `versions` gives the declared version of each file that declares one.
+        `versions` gives the declared version of each file that declares one. StorageError AOS701 if it cannot
+        be written.
         """
+        declared = versions or {}
+        with self._transaction():
+            number = self._newest_number(project) + 1
+            self._db.execute(
+                "INSERT INTO revision VALUES (?, ?, ?, ?, ?)",
+                (project, number, digest, stored_ns, json.dumps(skills)),
+            )
+            for name, data in files.items():
+                content = hashlib.sha256(data).hexdigest()
+                self._db.execute("INSERT OR IGNORE INTO content VALUES (?, ?)", (content, data))
+                row_of_file = (project, number, name, content, declared.get(name, ""))
+                self._db.execute("INSERT INTO file VALUES (?, ?, ?, ?, ?)", row_of_file)
+        return number
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        """All that the block writes, or nothing of it."""
         try:
             self._db.execute("BEGIN IMMEDIATE")
             try:
-                number = self._write(project, digest, files, skills, stored_ns, versions or {})
+                yield
             except BaseException:
                 self._db.execute("ROLLBACK")
                 raise
             self._db.execute("COMMIT")
         except sqlite3.Error as error:
             raise StorageError(f"the catalogue cannot be written: {error}", code="AOS701") from error
-        return number
 
-    def _write(
-        self,
-        project: str,
-        digest: str,
-        files: Mapping[str, bytes],
-        skills: tuple[str, ...],
-        stored_ns: int,
-        versions: Mapping[str, str],
-    ) -> int:
+    def _newest_number(self, project: str) -> int:
+        """The number of the newest revision; 0 if there is none."""
         row = self._db.execute("SELECT max(number) FROM revision WHERE project = ?", (project,)).fetchone()
-        number = int(row[0] or 0) + 1
-        self._db.execute(
-            "INSERT INTO revision VALUES (?, ?, ?, ?, ?)",
-            (project, number, digest, stored_ns, json.dumps(skills)),
-        )
-        for name, data in files.items():
-            content = hashlib.sha256(data).hexdigest()
-            self._db.execute("INSERT OR IGNORE INTO content VALUES (?, ?)", (content, data))
-            row_of_file = (project, number, name, content, versions.get(name, ""))
-            self._db.execute("INSERT INTO file VALUES (?, ?, ?, ?, ?)", row_of_file)
-        return number
+        return int(row[0] or 0)
 
     def remove(self, project: str, stored_ns: int) -> int:
         """Gives a project up: its next revision, whose number is returned, has no files."""
@@ -138,8 +139,7 @@ class Catalogue:
 
     def current(self, project: str) -> Revision | None:
         """The newest revision of a project; None where there is none, or where it was removed."""
-        row = self._db.execute("SELECT max(number) FROM revision WHERE project = ?", (project,)).fetchone()
-        return self.revision(project, int(row[0] or 0))
+        return self.revision(project, self._newest_number(project))
 
     def revision(self, project: str, number: int) -> Revision | None:
         """A revision with its files; None where there is none, or where the project was removed by it."""

@@ -166,8 +166,7 @@ class _Solver:
 
         policy = Policy.load(Path(self._settings.policy))
         policy.check_model(running.digest)
-        budget = {name: getattr(self._search, name) for name in Search.__struct_fields__}
-        return PolicySearch(policy=policy, **budget)
+        return PolicySearch.instead_of(self._search, policy)
 
     async def _mapping_revision(self) -> int:
         """The revision that the middleware runs; 0 while it cannot be asked."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from functools import cached_property
 from pathlib import Path
+from typing import Self
 
 import msgspec
 import numpy as np
@@ -136,6 +137,11 @@ class PolicySearch(Search, frozen=True, kw_only=True):
     """Decides by a policy instead of searching; the budget is not used."""
 
     policy: Policy
+
+    @classmethod
+    def instead_of(cls, search: Search, policy: Policy) -> Self:
+        """Follows the policy where `search` would search."""
+        return cls(policy=policy, **msgspec.structs.asdict(search))
 
     async def think(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""

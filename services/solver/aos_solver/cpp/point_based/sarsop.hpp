@@ -232,20 +232,19 @@ class Sarsop {
   }
 
   double refreshed_lower(const Branch& branch) {
-    double sum = 0;
-    for (const Successor& successor : branch.successors) {
-      graph_.refresh_lower(graph_[successor.node]);
-      sum += successor.probability * graph_[successor.node].lower;
-    }
-    return branch.reward + model_.discount * sum;
+    return backed_up(branch, [this](Node& node) { return graph_.refresh_lower(node), node.lower; });
   }
 
   double refreshed_upper(const Branch& branch) {
+    return backed_up(branch, [this](Node& node) { return graph_.refresh_upper(node), node.upper; });
+  }
+
+  // The branch's value, given that of each node behind it.
+  template <class ValueOf>
+  double backed_up(const Branch& branch, ValueOf value_of) {
     double sum = 0;
-    for (const Successor& successor : branch.successors) {
-      graph_.refresh_upper(graph_[successor.node]);
-      sum += successor.probability * graph_[successor.node].upper;
-    }
+    for (const Successor& successor : branch.successors)
+      sum += successor.probability * value_of(graph_[successor.node]);
     return branch.reward + model_.discount * sum;
   }
 
