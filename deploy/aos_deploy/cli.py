@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, NoReturn
 
@@ -12,7 +13,7 @@ from aos_deploy.exit_codes import exit_code_of_error
 from aos_deploy.faults import print_fault
 from aos_protocol.errors import AosError
 
-__all__ = ["main", "up_main"]
+__all__ = ["aos_app", "main", "up_main"]
 
 _COMMANDS = {
     "up": ("up",),
@@ -41,6 +42,11 @@ _STYLE: dict[str, Any] = {
 
 def main() -> NoReturn:
     """`aos`."""
+    _run(aos_app(sys.argv[1:]), "aos")
+
+
+def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
+    """`aos` with the command that the arguments name, or with all; the faults of commands come out of it."""
     app = typer.Typer(
         name="aos",
         no_args_is_help=True,
@@ -49,9 +55,9 @@ def main() -> NoReturn:
         **_STYLE,
     )
     app.callback()(_no_options)
-    for module in _needed_modules(sys.argv[1:]):
+    for module in _needed_modules(arguments):
         import_module(f"aos_deploy.commands.{module}").register(app)
-    _run(app, "aos")
+    return app
 
 
 def up_main() -> NoReturn:
@@ -61,7 +67,7 @@ def up_main() -> NoReturn:
     _run(app, "aos-up")
 
 
-def _needed_modules(arguments: list[str]) -> list[str]:
+def _needed_modules(arguments: Sequence[str]) -> list[str]:
     """Only the module of the command that is called, so that others' imports cost nothing."""
     called = [module for module, names in _COMMANDS.items() if arguments and arguments[0] in names]
     return called or list(_COMMANDS)

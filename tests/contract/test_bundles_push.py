@@ -11,10 +11,9 @@ from pathlib import Path
 
 import msgspec
 import pytest_asyncio
-import typer
 from typer.testing import CliRunner, Result
 
-from aos_deploy.commands import bundle, documents
+from aos_deploy.cli import aos_app
 from aos_protocol.keys import Keys
 from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
@@ -36,9 +35,7 @@ async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncItera
         async for _, is_alive in presence:
             if is_alive:
                 break
-    app = typer.Typer()
-    bundle.register(app)
-    documents.register(app)
+    app = aos_app()
 
     async def run(*arguments: str) -> Result:
         where = ["--connect", endpoint, "--robot", "test"]

@@ -114,28 +114,38 @@ async def test_a_random_chain_is_followed_as_bayes_rule_says(seed: int, cache_di
             assert [found.get(str(state), 0.0) for state in range(STATES)] == pytest.approx(belief, abs=1e-9)
 
 
-LAMPS = 18
-MANY_STATES = {
-    "lamps.ef": f"""project: lamps
+def row_of_bools(name: str, count: int, odds: str) -> str:
+    """An environment of `count` bools; bool `i` is true with probability `odds`, each for itself."""
+    return f"""project: {name}
 horizon: 5
 discount: 0.95
 
-state_variable: bool lamps []
+state_variable: bool {name} []
 code:
-state.lamps.assign({LAMPS}, false);
+state.{name}.assign({count}, false);
 
 initial_belief:
-for (int i = 0; i < {LAMPS}; i++) state.lamps[i] = AOS.Bernoulli(0.02 + 0.02 * i);
-""",
-    "read.sd": f"""project: lamps
+for (int i = 0; i < {count}; i++) state.{name}[i] = AOS.Bernoulli({odds});
+"""
+
+
+def looking_at_one(project: str, count: int, condition: str) -> str:
+    """A skill that answers whether the condition holds of its parameter, `number`."""
+    return f"""project: {project}
 parameter: int number
 
 available_parameters_code:
-for (int i = 0; i < {LAMPS}; i++) __possibleParameters.push_back(std::make_tuple(i));
+for (int i = 0; i < {count}; i++) __possibleParameters.push_back(std::make_tuple(i));
 
 dynamic_model:
-__moduleResponse = AOS.Bernoulli(state.lamps[number] ? 0.9 : 0.2) ? yes : no;
-""",
+__moduleResponse = {condition} ? yes : no;
+"""
+
+
+LAMPS = 18
+MANY_STATES = {
+    "lamps.ef": row_of_bools("lamps", LAMPS, "0.02 + 0.02 * i"),
+    "read.sd": looking_at_one("lamps", LAMPS, "AOS.Bernoulli(state.lamps[number] ? 0.9 : 0.2)"),
     "read.am": reading("lamps", has_parameter=True),
 }
 """2^18 states, more than a belief holds; each lamp is independent of the others."""
@@ -192,26 +202,8 @@ async def test_a_response_of_one_in_ten_thousand_is_weighted_not_waited_for(cach
 
 CARDS = 40
 DEPLETING = {
-    "cards.ef": f"""project: cards
-horizon: 5
-discount: 0.95
-
-state_variable: bool cards []
-code:
-state.cards.assign({CARDS}, false);
-
-initial_belief:
-for (int i = 0; i < {CARDS}; i++) state.cards[i] = AOS.Bernoulli(0.5);
-""",
-    "turn.sd": f"""project: cards
-parameter: int number
-
-available_parameters_code:
-for (int i = 0; i < {CARDS}; i++) __possibleParameters.push_back(std::make_tuple(i));
-
-dynamic_model:
-__moduleResponse = state.cards[number] ? yes : no;
-""",
+    "cards.ef": row_of_bools("cards", CARDS, "0.5"),
+    "turn.sd": looking_at_one("cards", CARDS, "state.cards[number]"),
     "turn.am": reading("cards", has_parameter=True),
 }
 """2^40 states, of which each activation rules out half: 5,000 particles last for 12 of 40."""

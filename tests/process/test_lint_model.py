@@ -11,7 +11,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from aos_deploy.commands import documents, plan
+from aos_deploy.cli import aos_app
 from aos_protocol.errors import ModelError
 from aos_solver import engine, replay
 
@@ -54,10 +54,7 @@ srv: {skill}
 
 @pytest.fixture(scope="module")
 def app() -> typer.Typer:
-    app = typer.Typer()
-    documents.register(app)
-    plan.register(app)
-    return app
+    return aos_app()
 
 
 @pytest.fixture

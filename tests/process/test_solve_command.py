@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner, Result
 
-from aos_deploy.commands import plan, solve
+from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.program import programs_of_deployment
 from aos_protocol.errors import DeployError, DocumentError, PlanningError
@@ -19,10 +19,7 @@ from aos_solver.offline.policy import Policy
 @pytest.fixture
 def app(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> typer.Typer:
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
-    app = typer.Typer()
-    solve.register(app)
-    plan.register(app)
-    return app
+    return aos_app()
 
 
 @pytest.fixture

@@ -10,16 +10,13 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from aos_deploy.commands import bundle, documents
+from aos_deploy.cli import aos_app
 from aos_protocol.errors import DocumentError
 
 
 @pytest.fixture(scope="module")
 def app() -> typer.Typer:
-    app = typer.Typer()
-    bundle.register(app)
-    documents.register(app)
-    return app
+    return aos_app()
 
 
 @pytest.fixture

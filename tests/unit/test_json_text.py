@@ -8,13 +8,11 @@ import string
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from json_values import plain
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_registry.documents.json_text import (
     JsonArray,
-    JsonConstant,
-    JsonNumber,
-    JsonObject,
     JsonString,
     JsonValue,
     code_snippet,
@@ -30,20 +28,7 @@ def parsed(text: str) -> tuple[JsonValue | None, tuple[Diagnostic, ...]]:
     return parse_json(source, findings), findings.sorted()
 
 
-def plain(value: JsonValue | None) -> object:
-    match value:
-        case JsonObject():
-            return {key.text: plain(item) for key, item in value.members}
-        case JsonArray():
-            return [plain(item) for item in value.items]
-        case JsonString():
-            return value.text
-        case JsonNumber() | JsonConstant():
-            return value.value
-    return None
-
-
-json_values = st.recursive(
+VALUES = st.recursive(
     st.none()
     | st.booleans()
     | st.integers(-(10**15), 10**15)
@@ -55,7 +40,7 @@ json_values = st.recursive(
 
 
 @settings(max_examples=150, deadline=None)
-@given(json_values, st.booleans())
+@given(VALUES, st.booleans())
 def test_whatever_is_json_reads_as_the_standard_library_reads_it(value: object, ascii_only: bool) -> None:
     text = json.dumps(value, ensure_ascii=ascii_only, indent=1)
     result, findings = parsed(text)

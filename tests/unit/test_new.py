@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner, Result
 
-from aos_deploy.commands import documents, new, plan
+from aos_deploy.cli import aos_app
 from aos_registry.convert import without_origins
 from aos_registry.load import load_bundle
 
@@ -18,10 +18,7 @@ from aos_registry.load import load_bundle
 def aos(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
-    app = typer.Typer()
-    for module in (new, documents, plan):
-        module.register(app)
-    return app
+    return aos_app()
 
 
 def run(app: typer.Typer, line: str) -> Result:

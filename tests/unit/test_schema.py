@@ -11,37 +11,18 @@ from typing import Any
 
 import jsonschema
 import pytest
+from json_values import plain
 from ruamel.yaml import YAML
 
 from aos_deploy.schemas import SCHEMAS
 from aos_registry.documents.json_document import read_json
 from aos_registry.documents.json_record import Record
-from aos_registry.documents.json_text import (
-    JsonArray,
-    JsonNumber,
-    JsonObject,
-    JsonString,
-    JsonValue,
-    parse_json,
-)
+from aos_registry.documents.json_text import JsonObject, parse_json
 from aos_registry.documents.source import Findings, Source, open_source
 from aos_registry.load import load_files
 
 EXAMPLE = re.compile(r"^```json ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 DIALECTS = {"PlpMain": "plp", "GsdlMain": "gsdl"}
-
-
-def plain(value: JsonValue) -> Any:
-    match value:
-        case JsonObject():
-            return {key.text: plain(item) for key, item in value.members}
-        case JsonArray():
-            return [plain(item) for item in value.items]
-        case JsonString():
-            return value.text
-        case JsonNumber():
-            return value.value
-    return value.value
 
 
 def examples(root: Path) -> dict[str, Any]:

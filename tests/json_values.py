@@ -1,0 +1,30 @@
+"""What the JSON reader has read, as Python's own values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aos_registry.documents.json_text import (
+    JsonArray,
+    JsonConstant,
+    JsonNumber,
+    JsonObject,
+    JsonString,
+    JsonValue,
+)
+
+__all__ = ["plain"]
+
+
+def plain(value: JsonValue | None) -> Any:
+    """As `json.loads` would give it; None also where nothing could be read."""
+    match value:
+        case JsonObject():
+            return {key.text: plain(item) for key, item in value.members}
+        case JsonArray():
+            return [plain(item) for item in value.items]
+        case JsonString():
+            return value.text
+        case JsonNumber() | JsonConstant():
+            return value.value
+    return None
