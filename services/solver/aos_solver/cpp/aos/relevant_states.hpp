@@ -3,8 +3,8 @@
 // Documents keep in a state what the robot has learnt, for their rollout policies; somebody who sees the state has no use
 // for it, and without it far fewer states differ. No variable matters at first. In states on the way, values of the others
 // are tried that random walks have come across; where a state then earns something else, or leads elsewhere, the variable
-// matters from then on, and the states are told apart anew. It is tried in the first thousands of states and in some of
-// the later ones, so what hardly ever matters can be missed.
+// matters from then on, and the states are told apart anew. It is tried in the first thousands of states, in fewer where
+// steps have many outcomes, and in some of the later ones, so what hardly ever matters can be missed.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,8 @@ namespace aos {
 inline constexpr std::size_t most_relevant_states = 400'000;
 inline constexpr std::size_t most_relevant_bytes = std::size_t{100} << 20;  // of states
 inline constexpr std::size_t most_relevant_branches = 8'000'000;
-inline constexpr std::size_t most_relevant_work = 20'000'000;  // about a second's
+inline constexpr std::size_t most_relevant_work = 30'000'000;  // about a second's
+inline constexpr std::size_t most_trying_work = 5'000'000;     // of it for trying other values, each time states are told apart
 inline constexpr std::size_t tried_states = 2000;
 inline constexpr std::size_t first_tried_states = 16;
 inline constexpr int walked_states = 2000;
@@ -181,10 +182,12 @@ class RelevantStates {
   // Returns false where states had to be told apart.
   bool explore() {
     Enumerator draws;
+    trying_work_ = 0;
     for (std::size_t number = rewards_.size() / actions(); number < states_.size(); ++number) {
       // Early, too, since what is known to matter need not be tried again.
       if ((number == first_tried_states || number == tried_states) && tell_apart()) return false;
-      if (number < tried_states || number % tried_states == 0) try_variables(states_[number]);
+      const bool is_early = number < tried_states && trying_work_ < most_trying_work;
+      if (is_early || number % tried_states == 0) try_variables(states_[number]);
       for (std::size_t action = 0; action < actions(); ++action) {
         double reward = 0;
         const std::size_t first = branches_.size();
@@ -207,7 +210,7 @@ class RelevantStates {
   // Before a step: what it takes, in draws. A large state costs as much to copy.
   void count_path(const Enumerator& path) {
     constexpr std::size_t bytes_per_draw = 64;
-    work_ += 1 + path.draws() + sizeof(State) / bytes_per_draw;
+    work_ += 1 + path.draws() + Model::state_bytes() / bytes_per_draw;
     if (work_ > most_relevant_work) throw NotEnumerable{"too many outcomes"};
   }
 
@@ -246,6 +249,7 @@ class RelevantStates {
   }
 
   void try_variables(const State& state) {
+    const std::size_t before = work_;
     const Signature signature = signature_of(state);
     for (Variable& variable : variables_) {
       for (std::size_t i = 0; i < variable.examples.size() && !variable.matters; ++i) {
@@ -255,6 +259,7 @@ class RelevantStates {
         variable.matters = makes_difference(exchanged, signature);
       }
     }
+    trying_work_ += work_ - before;
   }
 
   // By the variables that have been found to matter; returns whether there are new ones.
@@ -283,6 +288,7 @@ class RelevantStates {
   std::array<std::size_t, std::tuple_size_v<Key>> word_{};
   std::size_t words_ = 0;
   std::size_t work_ = 0;
+  std::size_t trying_work_ = 0;
   Enumerator comparing_;
   std::vector<State> states_;
   std::vector<Key> keys_;
