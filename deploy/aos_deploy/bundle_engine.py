@@ -12,6 +12,7 @@ from aos_deploy.program import cache_dir
 from aos_protocol.diagnostics import render
 from aos_protocol.errors import DocumentError
 from aos_registry.load import load_bundle
+from aos_solver.build import BuildKind
 from aos_solver.engine import Engine
 from aos_solver.hot_plug import build_project
 
@@ -19,8 +20,11 @@ __all__ = ["engine_of_bundle"]
 
 
 @asynccontextmanager
-async def engine_of_bundle(bundle: Path, seed: int) -> AsyncIterator[Engine]:
-    """The engine of a bundle, compiled if need be; the bundle's mistakes as one DocumentError."""
+async def engine_of_bundle(bundle: Path, seed: int, *, kind: BuildKind = "quick") -> AsyncIterator[Engine]:
+    """The engine of a bundle, compiled if need be.
+
+    The bundle's mistakes come as one DocumentError.
+    """
     loaded = load_bundle(bundle)
     if loaded.project is None:
         raise DocumentError(
@@ -29,7 +33,10 @@ async def engine_of_bundle(bundle: Path, seed: int) -> AsyncIterator[Engine]:
     for diagnostic in loaded.diagnostics:
         typer.echo(render(diagnostic), err=True)
     built = await build_project(
-        loaded.project, cache_dir(), lambda remark: typer.echo(f"aos: {remark}", err=True)
+        loaded.project,
+        cache_dir(),
+        lambda remark: typer.echo(f"aos: {remark}", err=True),
+        kind=kind,
     )
     engine = await Engine.start(built, seed=seed)
     try:

@@ -190,7 +190,8 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
     (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)
     objects = []
     for more in ([], ["-I", str(engine)]):
-        command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *more, "-H")
+        options = [*build_module._OPTIONS["quick"], *more, "-H"]
+        command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *options)
         done = await asyncio.to_thread(
             subprocess.run, command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=60
         )
@@ -211,7 +212,7 @@ def text_of(path: Path) -> str:
 async def answers(built: BuiltModel) -> dict[str, Any]:
     """What the engine says about itself when it starts."""
     child = await asyncio.create_subprocess_exec(
-        built.executable, "/dev/null", "1", "widen",
+        built.executable, "/dev/null", "/dev/null", "1", "widen",
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE,
     )  # fmt: skip
     async with asyncio.timeout(20):

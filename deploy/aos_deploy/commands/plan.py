@@ -15,6 +15,7 @@ from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.printing import print_json
 from aos_deploy.views.tables import print_runs, print_values
 from aos_protocol.messages import ActionValue
+from aos_solver.build import BuildKind
 from aos_solver.endings import MissionLimits
 from aos_solver.engine import Engine, Planner
 from aos_solver.search import Search
@@ -205,7 +206,7 @@ def rate(
         counts = [await engine.rate(seconds, seed + turn) for turn in range(RATE_REPETITIONS)]
         return [count.samples / count.seconds for count in counts]
 
-    rates = _with_engine(bundle, seed, measure)
+    rates = _with_engine(bundle, seed, measure, kind="thorough")
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
     if as_json:
         print_json(result)
@@ -213,9 +214,11 @@ def rate(
         typer.echo(f"{result.mean:,.0f} samples/s (sd {result.sd:,.0f}, {RATE_REPETITIONS} x {seconds:g} s)")
 
 
-def _with_engine(bundle: Path, seed: int, ask: Callable[[Engine], Awaitable[T]]) -> T:
+def _with_engine(
+    bundle: Path, seed: int, ask: Callable[[Engine], Awaitable[T]], *, kind: BuildKind = "quick"
+) -> T:
     async def run() -> T:
-        async with engine_of_bundle(bundle, seed) as engine:
+        async with engine_of_bundle(bundle, seed, kind=kind) as engine:
             return await ask(engine)
 
     return asyncio.run(run())

@@ -3,6 +3,9 @@
 The model is compiled for itself. The engine is compiled once for all models whose states have up to so many
 bytes, and linked to it: it is four times as much code, and models change while a robot waits. What models
 include is compiled with the engine, too: reading it is a quarter of the time that a model takes.
+
+There are two builds of a model, which decide alike. The quick one is there sooner. In the thorough one steps
+are faster, searches hardly: most of a search is the engine.
 """
 
 from __future__ import annotations
@@ -12,7 +15,7 @@ import re
 import time
 from collections.abc import Callable, Coroutine
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 
@@ -23,7 +26,7 @@ from aos_solver.compiler_messages import read_messages, without_line_directives
 from aos_solver.compiler_run import LIMIT_HINT, internal_error, run_compiler
 from aos_solver.emit import MODEL_FILE, EmittedModel
 
-__all__ = ["SOURCES", "BuiltModel", "build", "build_engine"]
+__all__ = ["SOURCES", "BuildKind", "BuiltModel", "build", "build_engine"]
 
 SOURCES = Path(__file__).parent / "cpp"
 """The engine, and what emitted models stand on."""
@@ -33,6 +36,15 @@ STATE_BYTES = (64, 256, 1024, 4096, 16384, 65536, 262144, 1048576)
 
 _SUPPORT = "aos/model_support.hpp"
 """What every emitted model includes first."""
+
+BuildKind = Literal["quick", "thorough", "unoptimized"]
+"""How a model is compiled; unoptimized code keeps its order."""
+
+_OPTIONS: dict[BuildKind, tuple[str, ...]] = {
+    "quick": ("-O1", "-DAOS_QUICK"),
+    "thorough": (),
+    "unoptimized": ("-O0", "-DAOS_QUICK"),
+}
 
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
@@ -63,23 +75,28 @@ async def build(
     compiler: Compiler | None = None,
     on_progress: Callable[[str], None] = lambda text: None,
     deadline_s: float | None = None,
-    is_optimized: bool = True,
+    kind: BuildKind = "quick",
 ) -> BuiltModel:
-    """The executable of a model, from the cache or compiled now. Without optimisation code keeps its order.
+    """The executable of a model, from the cache or compiled now.
 
+    A thorough build that is in the cache is taken for a quick one.
     ModelError AOS201 carries the compiler's errors as diagnostics at the documents' places, or names the
     emitted file where an error is not in document code; AOS202 when the compiler ran out of time or memory;
     AOS203 without a compiler.
     """
     compiler = compiler or await find_compiler()
     cache = BuildCache(cache_dir)
-    options = [] if is_optimized else ["-O0"]
-    name = f"model-{digest_of([emitted.cpp, *options, *_circumstances(compiler)])}"
-    if (entry := cache.find(name)) is not None:
-        return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
-    work = _Build(emitted, cache, compiler, on_progress, deadline_s or compiler.deadline_s, options)
+    circumstances = _circumstances(compiler)
+    names = {
+        known: f"model-{digest_of([emitted.cpp, *options, *circumstances])}"
+        for known, options in _OPTIONS.items()
+    }
+    for known in ("thorough", "quick") if kind == "quick" else (kind,):
+        if (entry := cache.find(names[known])) is not None:
+            return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
+    work = _Build(emitted, cache, compiler, on_progress, deadline_s or compiler.deadline_s, _OPTIONS[kind])
     started_s = time.monotonic()
-    entry = await cache.fill(name, work.make)
+    entry = await cache.fill(names[kind], work.make)
     seconds = time.monotonic() - started_s
     on_progress(f"compiled {emitted.project} in {seconds:.1f} s")
     return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=False, compile_s=seconds)
@@ -107,7 +124,9 @@ async def build_engine(
             compiler.compilation(str((SOURCES / part).with_suffix(".cpp")), part, str(SOURCES), *more)
             for part, more in zip(_ENGINE_OBJECTS, options, strict=True)
         ]
-        if state_bytes == STATE_BYTES[0] and (command := compiler.precompilation(_SUPPORT, str(SOURCES))):
+        if state_bytes == STATE_BYTES[0] and (
+            command := compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"])
+        ):
             (staging / _SUPPORT).parent.mkdir()
             commands.append(command)
         deadline_s = compiler.deadline_s
@@ -133,7 +152,7 @@ class _Build:
         compiler: Compiler,
         on_progress: Callable[[str], None],
         deadline_s: float,
-        options: list[str],
+        options: tuple[str, ...],
     ) -> None:
         self._emitted = emitted
         self._cache = cache
@@ -165,8 +184,8 @@ class _Build:
     async def _compile(self, staging: Path) -> None:
         (staging / MODEL_FILE).write_text(self._emitted.cpp)
         (staging / _SOURCE).write_text(without_line_directives(self._emitted.cpp))
-        more = [*self._precompiled, *self._options]
-        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *more)
+        options = [*self._options, *self._precompiled]
+        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
         output, status = await self._run(compilation, staging)
         if status != 0:
             raise self._failure(output, status)
@@ -174,9 +193,9 @@ class _Build:
 
     @property
     def _precompiled(self) -> list[str]:
-        """Where to search first for what models include, if that is compiled already."""
+        """Where to search first for what quick builds include, if that is compiled already."""
         entry = self._cache.find(_engine_name(self._compiler, STATE_BYTES[0]))
-        return [] if entry is None else ["-I", str(entry)]
+        return [] if entry is None or self._options != _OPTIONS["quick"] else ["-I", str(entry)]
 
     def _state_bytes(self, model: Path) -> int:
         """The smallest size of engine that takes the model's states."""

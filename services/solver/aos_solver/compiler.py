@@ -55,20 +55,23 @@ class Compiler(msgspec.Struct, frozen=True):
             own += [*(["-fno-sanitize=all"] if self.family == "zig" else [])]
         return [*self.command, *common, *own, *more, "-I", include, "-c", source, "-o", output]
 
-    def precompilation(self, header: str, include: str) -> list[str] | None:
+    def precompilation(self, header: str, include: str, *more: str) -> list[str] | None:
         """The command that reads a header for all files that include it first; None if it would not help.
 
-        The result is called `header`.gch below the directory where the command runs. A compilation that
-        searches that directory before `include` uses it, and reads the header itself where it does not fit.
+        The result is called `header`.gch below the directory where the command runs. A compilation that has
+        the same options and searches that directory before `include` uses it, and reads the header itself
+        where it does not fit.
         """
         if self.family != "gcc":
             # Clang uses one only where it is named in place of the inclusion.
             return None
-        return self.compilation(f"{include}/{header}", f"{header}.gch", include, "-x", "c++-header")
+        return self.compilation(f"{include}/{header}", f"{header}.gch", include, *more, "-x", "c++-header")
 
     def linking(self, objects: list[str], output: str) -> list[str]:
-        """The command that links object files into an executable."""
-        return [*self.command, *objects, "-o", output]
+        """The command that links object files into an executable, with the quickest linker that is there."""
+        is_gold_there = self.family == "gcc" and shutil.which("ld.gold") is not None
+        quickest = ["-fuse-ld=gold"] if is_gold_there else []
+        return [*self.command, *quickest, *objects, "-o", output]
 
     @property
     def deadline_s(self) -> float:

@@ -3,6 +3,9 @@
 A revision is built and started in the background. At a decision boundary the mission takes the newest
 model that is ready on both sides, here and in the middleware, and the belief moves over. That works
 between models with the same state layout; others are refused before they are stored (AOS112).
+
+What is used at once is a quick build. A thorough one is made meanwhile, for the next start: within a mission
+it would win less than is lost with the search tree, which does not move over.
 """
 
 from __future__ import annotations
@@ -18,8 +21,8 @@ from aos_protocol.diagnostics import Diagnostic, Severity, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import ProjectRevision
-from aos_solver.build import BuiltModel, build
-from aos_solver.emit import emit
+from aos_solver.build import BuildKind, BuiltModel, build
+from aos_solver.emit import EmittedModel, emit
 from aos_solver.engine import Engine
 from aos_solver.lower import lower
 
@@ -40,7 +43,13 @@ class RunningModel(msgspec.Struct, frozen=True):
         return self.built.emitted.digest
 
 
-async def build_project(project: Project, cache_dir: Path, on_progress: Callable[[str], None]) -> BuiltModel:
+async def build_project(
+    project: Project,
+    cache_dir: Path,
+    on_progress: Callable[[str], None],
+    *,
+    kind: BuildKind = "quick",
+) -> BuiltModel:
     """Lower, emit and compile; ModelError with all diagnostics if the documents have mistakes."""
     program, diagnostics = lower(project)
     if program is None or has_errors(diagnostics):
@@ -49,7 +58,7 @@ async def build_project(project: Project, cache_dir: Path, on_progress: Callable
             hint="Mend the places named above",
             diagnostics=tuple(diagnostics),
         )
-    return await build(emit(program), cache_dir=cache_dir, on_progress=on_progress)
+    return await build(emit(program), cache_dir=cache_dir, on_progress=on_progress, kind=kind)
 
 
 class ModelShelf:
@@ -71,6 +80,7 @@ class ModelShelf:
         self._changed = asyncio.Condition()
         self._newest_revision = 0
         self._building = asyncio.Lock()
+        self._thorough: asyncio.Task[None] | None = None
 
     async def make(self, revision: ProjectRevision) -> None:
         """Build a revision and start its engine; a fault is kept for `first` and changes nothing else."""
@@ -96,6 +106,16 @@ class ModelShelf:
             self._changed.notify_all()
         if outdated is not None:
             await outdated.engine.close()
+        if self._thorough is not None:
+            self._thorough.cancel()
+        self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
+
+    async def _build_thoroughly(self, emitted: EmittedModel) -> None:
+        """Into the cache; the running mission needs none, so a fault is told and no more."""
+        try:
+            await build(emitted, cache_dir=self._cache_dir, kind="thorough")
+        except AosError as error:
+            log.warning("%s was not built thoroughly: %s", emitted.project, error)
 
     async def first(self) -> RunningModel:
         """The first model that runs; raises what kept it from running."""
@@ -135,6 +155,9 @@ class ModelShelf:
         return ()
 
     async def close(self) -> None:
+        if self._thorough is not None:
+            self._thorough.cancel()
+            await asyncio.wait({self._thorough})
         if self._ready is not None:
             await self._ready.engine.close()
             self._ready = None

@@ -50,7 +50,7 @@ async def at_its_statement(
     if not trace.has_later_statements(built.emitted.snippets.index(place) + 1):
         return fault
     try:
-        slow = await build(trace.emitted, cache_dir=built.cache_dir, is_optimized=False)
+        slow = await build(trace.emitted, cache_dir=built.cache_dir, kind="unoptimized")
         span = await _Replay(fault.code, place, trace, slow, start).statement(commands)
     except AosError as error:
         log.info("the statement of a fault was not found: %s", error)

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "aos/inlining.hpp"
 #include "aos/random.hpp"
 #include "aos/step.hpp"
 
@@ -56,7 +57,7 @@ int rollout_action(const typename Model::State& state, double* sums, int count, 
 
 // The discounted return of at most `horizon` steps from `start` on.
 template <class Model>
-[[gnu::flatten]] double rollout(const typename Model::State& start, int horizon, Sampler& random) {
+AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon, Sampler& random) {
   thread_local std::vector<double> sums_of_weights;
   const int count = Model::action_count();
   if constexpr (Model::has_rollout_policy) sums_of_weights.resize(static_cast<std::size_t>(count));

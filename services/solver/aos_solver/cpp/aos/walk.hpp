@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "aos/inlining.hpp"
 #include "aos/random.hpp"
 #include "aos/step.hpp"
 
@@ -90,7 +91,7 @@ struct Walked {
 
 // At least so many steps.
 template <class Model>
-[[gnu::flatten]] Walked walk(std::uint64_t steps, Sampler& random) {
+AOS_INLINING_ALL Walked walk(std::uint64_t steps, Sampler& random) {
   Sampler draws = random;  // what nothing else points to, a compiler keeps in registers
   Walks<Model> walks{draws};
   Walked walked;

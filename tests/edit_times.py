@@ -1,0 +1,93 @@
+"""How long it takes from an edited document to a decision of its model, on this machine, now.
+
+    python tests/edit_times.py [BUNDLE] [--times N] [--simulations N]
+
+The environment document of a copy of BUNDLE gets another discount and is put back, again and again, in one
+process that has everything imported, as the solver service has. Each row has the median milliseconds of what
+happens until the decision: `edited` compiles the model, `put back` finds it in the cache. The engine is
+compiled before, as set-up leaves it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import itertools
+import os
+import random
+import re
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from aos_deploy.program import cache_dir
+from aos_registry.load import load_bundle
+from aos_solver.build import build, build_engine
+from aos_solver.compiler import find_compiler
+from aos_solver.emit import emit
+from aos_solver.engine import Engine
+from aos_solver.lower import lower
+
+ROOT = Path(__file__).resolve().parents[1]
+STAGES = ("read", "lower", "emit", "find compiler", "build", "start engine", "decide")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("bundle", nargs="?", default=str(ROOT / "deploy" / "bundles" / "armadillo-finer"))
+    parser.add_argument("--times", type=int, default=5)
+    parser.add_argument("--simulations", type=int, default=100_000)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        bundle = Path(shutil.copytree(options.bundle, Path(folder) / "bundle"))
+        document = next(iter(sorted(bundle.glob("*.ef"))))
+        measure(document, options.times, options.simulations)
+
+
+def measure(document: Path, times: int, simulations: int) -> None:
+    asyncio.run(build_engine(cache_dir()))
+    bundle = document.parent
+    original = document.read_text()
+    asyncio.run(one_decision(bundle, simulations))  # The model as it is goes into the cache.
+    rows: dict[str, list[list[float]]] = {"edited": [], "put back": []}
+    for _ in range(times):
+        document.write_text(re.sub(r"(?m)^discount:.*", f"discount: {random.uniform(0.95, 0.99)}", original))
+        rows["edited"].append(asyncio.run(one_decision(bundle, simulations)))
+        document.write_text(original)
+        rows["put back"].append(asyncio.run(one_decision(bundle, simulations)))
+    sys.stdout.write(f"{'ms':10}{''.join(f'{stage:>15}' for stage in (*STAGES, 'sum'))}\n")
+    for name, decisions in rows.items():
+        medians = [statistics.median(column) for column in zip(*decisions, strict=True)]
+        sums = statistics.median(map(sum, decisions))
+        sys.stdout.write(f"{name:10}{''.join(f'{1000 * value:15.0f}' for value in (*medians, sums))}\n")
+    sys.stdout.write(f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores\n")
+
+
+async def one_decision(bundle: Path, simulations: int) -> list[float]:
+    """Seconds for each stage."""
+    marks = [time.monotonic()]
+    project = load_bundle(bundle).project
+    assert project is not None, bundle
+    marks.append(time.monotonic())
+    program, _ = lower(project)
+    assert program is not None, bundle
+    marks.append(time.monotonic())
+    emitted = emit(program)
+    marks.append(time.monotonic())
+    compiler = await find_compiler()
+    marks.append(time.monotonic())
+    built = await build(emitted, cache_dir=cache_dir(), compiler=compiler)
+    marks.append(time.monotonic())
+    engine = await Engine.start(built, seed=1)
+    marks.append(time.monotonic())
+    await engine.plan(simulations=simulations, seed=1)
+    marks.append(time.monotonic())
+    await engine.close()
+    return [after - before for before, after in itertools.pairwise(marks)]
+
+
+if __name__ == "__main__":
+    main()

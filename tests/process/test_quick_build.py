@@ -1,0 +1,37 @@
+"""The two builds of a model, quick and thorough."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from scripted_models import bundle_project, lowered
+
+from aos_solver.answers import BeliefUpdate, Plan
+from aos_solver.build import BuiltModel, build
+from aos_solver.engine import Engine
+
+
+async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_is_there(
+    bundles: Path, cache_dir: Path
+) -> None:
+    armadillo, _ = lowered(bundle_project(bundles / "armadillo-finer"))
+    emitted = msgspec.structs.replace(armadillo, cpp=f"{armadillo.cpp}// Of this test alone.\n")
+    quick = await build(emitted, cache_dir=cache_dir)
+    thorough = await build(emitted, cache_dir=cache_dir, kind="thorough")
+    assert quick.executable != thorough.executable
+    assert (await build(emitted, cache_dir=cache_dir)).executable == thorough.executable
+    assert await decided(quick) == await decided(thorough)
+
+
+async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
+    """What an engine says that depends on neither time nor machine: plans, and a belief between them."""
+    engine = await Engine.start(built, seed=7)
+    try:
+        before = await engine.plan(simulations=5000, seed=3)
+        update = await engine.update(before.actions[before.index].action, "DefaultObservation")
+        after = await engine.plan(simulations=5000, seed=4)
+    finally:
+        await engine.close()
+    return [msgspec.structs.replace(before, seconds=0, cpu_seconds=0), update,
+            msgspec.structs.replace(after, seconds=0, cpu_seconds=0)]  # fmt: skip
