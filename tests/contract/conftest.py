@@ -1,4 +1,4 @@
-"""A real bus for contract tests: one router process for each test module."""
+"""A real bus for contract tests, one router process for each test module, and services on it."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from pathlib import Path
 import msgspec
 import pytest
 import pytest_asyncio
+from middleware_system import System, running_system
 
 from aos_protocol.keys import Keys
 from aos_runtime.bus import Bus
@@ -59,3 +60,12 @@ async def other(endpoint: str) -> AsyncIterator[Bus]:
     """A second client, named `other`: what services are on the bus for."""
     async with await Bus.open(endpoint, sender="other") as client:
         yield client
+
+
+@pytest_asyncio.fixture
+async def system(
+    bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path, bundles: Path
+) -> AsyncIterator[System]:
+    """A middleware process that has our armadillo, and a skill that listens; `other` surrounds it."""
+    async with running_system(bus, other, keys, tmp_path, endpoint, bundles / "armadillo-finer") as running:
+        yield running

@@ -37,7 +37,7 @@ CATCH_UP_S = 0.5
 
 _REPLY_GRACE_S = 0.5
 _CANCEL_S = 1.0
-_SURELY_NOT_STARTED_S = 0.2
+SURELY_NOT_STARTED_S = 0.2
 """An adapter that is not there is known at once; one that is lost later may have moved something."""
 
 _BATCH = 256
@@ -230,7 +230,7 @@ def _timed_out(path: str, limit_s: float) -> SkillError:
 
 
 def _no_adapter(path: str, after_s: float) -> SkillError:
-    if after_s < _SURELY_NOT_STARTED_S:
+    if after_s < SURELY_NOT_STARTED_S:
         return SkillError(
             f"no adapter answers calls of {path}",
             code="AOS505",

@@ -1,0 +1,191 @@
+"""A middleware process on the real bus, between a scripted registry and a scripted adapter."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import msgspec
+from mapping_documents import project_in, skill_of
+
+from aos_middleware.settings import Settings
+from aos_protocol.documents import Project
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    Activate,
+    ActivationId,
+    Cancel,
+    Cancelled,
+    MappingQuery,
+    MappingState,
+    Outcome,
+    ProjectQuery,
+    ProjectRevision,
+    SkillCall,
+    SkillResult,
+    TopicMessage,
+)
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+from aos_runtime.told_state import state_when
+
+__all__ = ["SENSE", "Adapter", "Registry", "System", "running_system", "succeed"]
+
+PATIENCE_S = 20.0
+
+SENSE = """\
+project: armadillo
+response: heard
+response_rule: level > 3
+response: quiet
+response_rule: level <= 3
+module_activation: skill
+path: /sense
+max_duration: 0.5
+local_variable: level
+topic: /level
+message_type: Level
+initial_value: 0
+code:
+return __input.data
+"""
+
+
+class Registry:
+    """Answers for one project, and announces its revisions."""
+
+    def __init__(self, bus: Bus, keys: Keys, project: Project) -> None:
+        self._bus = bus
+        self._keys = keys
+        self.current = ProjectRevision(1, "digest 1", project)
+
+    async def answer(self, query: ProjectQuery, _: str) -> ProjectRevision:
+        assert query.project == "armadillo"
+        return self.current
+
+    def announce(self, project: Project) -> None:
+        number = self.current.revision + 1
+        self.current = ProjectRevision(number, f"digest {number}", project)
+        self._bus.tell(self._keys.announced, self.current)
+
+
+class Adapter:
+    """Answers calls as the test says, and remembers them."""
+
+    def __init__(self, bus: Bus, keys: Keys) -> None:
+        self._bus = bus
+        self._keys = keys
+        self._sent: dict[str, int] = {}
+        self.calls: list[SkillCall] = []
+        self.cancelled: list[str] = []
+        self.is_called = asyncio.Event()
+
+    async def serve(self, path: str, answer: Callable[[SkillCall], Awaitable[dict[str, Any]]]) -> None:
+        async def run(call: SkillCall, _: str) -> SkillResult:
+            self.calls.append(call)
+            self.is_called.set()
+            return SkillResult(call.id, await answer(call), dict(self._sent))
+
+        await self._bus.answer(self._keys.call(path), SkillCall, run)
+
+    async def serve_cancel(self) -> None:
+        async def cancel(request: Cancel, _: str) -> Cancelled:
+            self.cancelled.append(request.reason)
+            return Cancelled()
+
+        await self._bus.answer(self._keys.cancel, Cancel, cancel)
+
+    def publish(self, topic: str, fields: dict[str, Any]) -> None:
+        self._sent[topic] = self._sent.get(topic, 0) + 1
+        self._bus.tell(self._keys.topic(topic), TopicMessage(self._sent[topic], fields))
+
+
+class System:
+    """A middleware process with its surroundings, and how the solver speaks to it."""
+
+    def __init__(self, bus: Bus, keys: Keys, run_dir: Path, registry: Registry, adapter: Adapter) -> None:
+        self.bus = bus
+        self.keys = keys
+        self.run_dir = run_dir
+        self.registry = registry
+        self.adapter = adapter
+        self.child: Child | None = None
+
+    async def start(self, endpoint: str, **settings: Any) -> None:
+        """Starts the service; returns when it answers."""
+        values = Settings(
+            robot=self.keys.robot,
+            service="middleware",
+            endpoint=endpoint,
+            run_dir=str(self.run_dir),
+            project="armadillo",
+            **settings,
+        )
+        path = self.run_dir / "middleware.json"
+        path.write_bytes(msgspec.json.encode(values))
+        with (self.run_dir / "middleware.log").open("ab") as log:
+            self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=log)
+        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.live("middleware")) as present:
+            async for _, is_alive in present:
+                if is_alive:
+                    return
+
+    async def stop(self) -> None:
+        if self.child is not None:
+            await self.child.stop(5.0)
+
+    async def state(self, revision: int) -> MappingState:
+        """The state of the mappings once they are those of a revision."""
+        return await self._state_when(lambda state: state.revision >= revision)
+
+    async def refusal(self, revision: int) -> MappingState:
+        """The state of the mappings once a revision is refused."""
+        return await self._state_when(lambda state: state.refused >= revision)
+
+    async def _state_when(self, holds: Callable[[MappingState], bool]) -> MappingState:
+        return await state_when(
+            self.bus, self.keys.mapping_state, MappingQuery(), MappingState, holds, timeout_s=PATIENCE_S
+        )
+
+    async def activate(
+        self,
+        skill: str,
+        step: int = 1,
+        parameters: dict[str, Any] | None = None,
+        deadline_s: float = 10.0,
+        revision: int = 0,
+    ) -> Outcome:
+        request = Activate(ActivationId("m", 1, step), skill, parameters or {}, deadline_s, revision=revision)
+        return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=PATIENCE_S)
+
+    @property
+    def log(self) -> str:
+        """What the service has logged."""
+        return (self.run_dir / "middleware.log").read_text()
+
+
+@asynccontextmanager
+async def running_system(
+    bus: Bus, other: Bus, keys: Keys, run_dir: Path, endpoint: str, bundle: Path
+) -> AsyncIterator[System]:
+    """A middleware that has taken over the bundle's project and `SENSE`, and ends with the block."""
+    project = project_in(bundle)
+    sense = skill_of(SENSE, "sense.am")
+    project = msgspec.structs.replace(project, skills=(*project.skills, sense))
+    registry = Registry(other, keys, project)
+    await other.answer(keys.project, ProjectQuery, registry.answer)
+    system = System(bus, keys, run_dir, registry, Adapter(other, keys))
+    try:
+        await system.start(endpoint)
+        await system.state(1)
+        yield system
+    finally:
+        await system.stop()
+
+
+async def succeed(_: SkillCall) -> dict[str, Any]:
+    return {"success": True}

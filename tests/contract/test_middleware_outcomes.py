@@ -1,0 +1,181 @@
+"""What the middleware makes of a call and its result: a defined outcome, whatever goes wrong."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+from mapping_documents import skill_of
+from middleware_system import SENSE, System, succeed
+
+from aos_protocol.errors import SkillError
+from aos_protocol.messages import ActivationId, SkillCall
+
+
+async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(system: System) -> None:
+    await system.adapter.serve("/navigate", succeed)
+    parameters = {"destination": {"place": "Corridor", "x": 4.0, "y": 0.0, "yaw": 0.5}}
+    outcome = await system.activate("navigate", parameters=parameters)
+    (call,) = system.adapter.calls
+    assert (call.path, call.fields) == ("/navigate", {"x": 4.0, "y": 0.0, "yaw": 0.5})
+    assert call.id == outcome.id == ActivationId("m", 1, 1)
+    assert 0 < call.deadline_s <= 10.0
+    assert (outcome.status, outcome.response, outcome.fault) == ("observed", "arrived", None)
+    assert outcome.local_variables["success"] == "true"
+    assert 0 < outcome.started_ns <= outcome.ended_ns
+
+
+async def test_only_messages_of_the_activation_count_and_all_of_them(system: System) -> None:
+    async def publish_many(_: SkillCall) -> dict[str, Any]:
+        for level in range(200):
+            system.adapter.publish("/level", {"data": 0 if level < 199 else 9})
+        return {}
+
+    await system.adapter.serve("/sense", publish_many)
+    system.adapter.publish("/level", {"data": 7})
+    assert (await system.activate("sense", 1)).local_variables == {"level": "9"}
+    system.adapter.publish("/level", {"data": 7})
+    assert (await system.activate("sense", 2)).response == "heard"
+
+
+async def test_a_silent_topic_has_its_initial_value_not_that_of_the_last_activation(system: System) -> None:
+    async def publish_once(call: SkillCall) -> dict[str, Any]:
+        if call.id.step == 1:
+            system.adapter.publish("/level", {"data": 9})
+        return {}
+
+    await system.adapter.serve("/sense", publish_once)
+    assert (await system.activate("sense", 1)).response == "heard"
+    assert (await system.activate("sense", 2)).response == "quiet"
+
+
+async def test_holding_is_decided_from_the_published_gap_and_forces(system: System) -> None:
+    async def squeeze(call: SkillCall) -> dict[str, Any]:
+        force_n = 4.0 if call.id.step == 1 else 0.0
+        fields = {"gap_m": 0.06, "left_force_n": force_n, "right_force_n": 4.0}
+        system.adapter.publish("/gripper", fields)
+        return {}
+
+    await system.adapter.serve("/sense", squeeze)
+    assert (await system.activate("observe_holding", 1)).response == "holding"
+    assert (await system.activate("observe_holding", 2)).response == "not_holding"
+
+
+async def test_an_unknown_skill_is_refused_with_the_nearest_name(system: System) -> None:
+    with pytest.raises(SkillError, match="did you mean navigate") as refusal:
+        await system.activate("navigat")
+    assert refusal.value.code == "AOS501"
+
+
+async def test_a_path_without_adapter_fails_and_says_what_to_bind(system: System) -> None:
+    outcome = await system.activate("pick")
+    assert (outcome.status, outcome.response) == ("failed", "")
+    assert outcome.fault is not None
+    assert outcome.fault.code == "AOS505"
+    assert "/pick" in outcome.fault.message
+    assert "bind:" in outcome.fault.hint
+
+
+@pytest.mark.parametrize(
+    ("code", "status"),
+    [
+        ("AOS502", "failed"),
+        ("AOS503", "timed_out"),
+        ("AOS504", "unknown"),
+        ("AOS506", "failed"),
+        ("AOS507", "cancelled"),
+    ],
+)
+async def test_an_adapters_error_becomes_a_defined_outcome(system: System, code: str, status: str) -> None:
+    async def refuse(_: SkillCall) -> dict[str, Any]:
+        raise SkillError("no", code=code, hint="why")
+
+    await system.adapter.serve("/pick", refuse)
+    outcome = await system.activate("pick")
+    assert (outcome.status, outcome.response) == (status, "")
+    assert outcome.fault is not None
+    assert (outcome.fault.code, outcome.fault.message, outcome.fault.hint) == (code, "no", "why")
+
+
+async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System) -> None:
+    never = asyncio.Event()
+
+    async def hang(_: SkillCall) -> dict[str, Any]:
+        await never.wait()
+        return {}
+
+    await system.adapter.serve("/sense", hang)
+    await system.adapter.serve_cancel()
+    outcome = await system.activate("sense")
+    (call,) = system.adapter.calls
+    assert call.deadline_s == 0.5
+    assert outcome.status == "timed_out"
+    assert outcome.fault is not None
+    assert outcome.fault.code == "AOS503"
+    assert system.adapter.cancelled == ["sense did not end within 0.5 s"]
+
+
+async def test_the_activations_deadline_counts_where_it_is_shorter(system: System) -> None:
+    await system.adapter.serve("/pick", lambda _: asyncio.sleep(30, {}))
+    outcome = await system.activate("pick", deadline_s=0.4)
+    assert outcome.status == "timed_out"
+    assert 0 < system.adapter.calls[0].deadline_s <= 0.4
+
+
+async def test_a_result_that_no_rule_covers_is_a_failure_with_the_values(system: System) -> None:
+    project = system.registry.current.project
+    text = SENSE.replace("level <= 3", "level < 0")
+    system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
+    await system.state(2)
+    await system.adapter.serve("/sense", lambda _: asyncio.sleep(0, {}))
+    outcome = await system.activate("sense")
+    assert outcome.status == "failed"
+    assert outcome.local_variables == {"level": "0"}
+    assert outcome.fault is not None
+    assert outcome.fault.code == "AOS402"
+    assert "level=0" in outcome.fault.message
+    assert outcome.fault.diagnostics[0].span.file == "sense.am"
+
+
+async def test_mapping_code_that_raises_is_a_failure_at_the_documents_line(
+    system: System, bundles: Path
+) -> None:
+    await system.adapter.serve("/pick", lambda _: asyncio.sleep(0, {"sucess": True}))
+    outcome = await system.activate("pick")
+    assert outcome.status == "failed"
+    assert outcome.fault is not None
+    assert outcome.fault.code == "AOS401"
+    source = (bundles / "armadillo-finer" / "pick.am").read_text().splitlines()
+    line = source.index("success = __input.success") + 1
+    assert f"pick.am:{line}:11" in outcome.fault.message
+    assert "did you mean 'sucess'" in outcome.fault.message
+
+
+async def test_mapping_code_that_fails_during_the_call_does_not_end_the_call(system: System) -> None:
+    ended = asyncio.Event()
+
+    async def publish_wrong(_: SkillCall) -> dict[str, Any]:
+        system.adapter.publish("/level", {"wrong": 1})
+        await asyncio.sleep(0.2)
+        ended.set()
+        return {}
+
+    await system.adapter.serve("/sense", publish_wrong)
+    outcome = await system.activate("sense")
+    assert ended.is_set()
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == ("failed", "AOS401")
+
+
+async def test_parameters_that_the_mapping_does_not_find_are_a_failure_without_a_call(
+    system: System,
+) -> None:
+    await system.adapter.serve("/navigate", succeed)
+    outcome = await system.activate("navigate", parameters={"destination": {"x": 1.0}})
+    assert outcome.fault is not None
+    assert (outcome.status, outcome.fault.code) == ("failed", "AOS401")
+    assert "navigate.am" in outcome.fault.message
+    assert system.adapter.calls == []
