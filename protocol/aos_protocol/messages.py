@@ -355,10 +355,7 @@ class MappingQuery(Message, frozen=True):
 
 
 class MappingState(Message, frozen=True):
-    """The newest revision that the middleware runs, and the skills it has mappings for; 0 before the first.
-
-    `refused` is the newest revision whose mappings it could not use; its log says why.
-    """
+    """The newest revision whose mappings run (0 before the first), its skills, and the newest one refused."""
 
     revision: int
     skills: tuple[str, ...]

@@ -57,7 +57,6 @@ class DeclarationKind(StrEnum):
     PARAMETER = "parameter"
     ENUM = "enum"
     ENUMERATOR = "enumerator"
-    TYPE = "type"
 
 
 class Declaration(msgspec.Struct, frozen=True):

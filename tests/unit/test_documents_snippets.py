@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from aos_runtime.cpp_tokens import cut
 from aos_runtime.snippets import (
     Access,
     DeclarationKind,
     FaultKind,
-    bracket_faults,
     read_cpp,
     read_cpp_expression,
     strip_comments,
@@ -124,7 +124,7 @@ def test_places_count_characters_also_behind_wide_ones() -> None:
     ],
 )
 def test_what_could_leave_the_function_is_found(code: str, kind: FaultKind, line: int, column: int) -> None:
-    fault = bracket_faults(code)[0]
+    fault = cut(code).faults[0]
     assert (fault.kind, fault.extent.line, fault.extent.column) == (kind, line, column)
 
 
@@ -140,7 +140,7 @@ def test_what_could_leave_the_function_is_found(code: str, kind: FaultKind, line
     ],
 )
 def test_brackets_in_literals_and_comments_do_not_count(code: str) -> None:
-    assert bracket_faults(code) == ()
+    assert cut(code).faults == ()
 
 
 def test_comments_are_blanked_and_offsets_stay() -> None:
