@@ -33,7 +33,7 @@ from aos_runtime.lifecycle import ServiceSettings, root_cause
 __all__ = ["MissionRun", "run_until_interrupted"]
 
 _END_NOTICE_S = 5.0
-_CAUSE_NOTICE_S = 0.5
+CAUSE_NOTICE_S = 0.5
 _BUILD_TIMEOUT_S = 600.0
 """The first build with a compiler that has to build its own library takes a minute on a quick machine."""
 
@@ -111,7 +111,7 @@ class MissionRun:
                     await supervisor.until_one_ended(timeout_s=_END_NOTICE_S)
                 elif self._state is not None and self._state.ending == "fault":
                     # A service that is killed leaves the bus before its process counts as ended.
-                    await supervisor.until_one_ended(timeout_s=_CAUSE_NOTICE_S)
+                    await supervisor.until_one_ended(timeout_s=CAUSE_NOTICE_S)
         except BaseExceptionGroup as group:
             raise root_cause(group) from group
         if self._state is None or not self._has_ended:
