@@ -5,51 +5,18 @@ The module runs in this process; tests/process runs it where it belongs.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from mapping_documents import emitted, project_in
+from mapping_runs import HEAD, fields, loaded, observed
 
-from aos_middleware.emit import EmittedMapping
-from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised, Take
 from aos_middleware.mappings import emit_project
 from aos_middleware.worker import LoadedMapping
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import LowLevelConstant, LowLevelDocument, Snippet
 
 VALVES = Path(__file__).parents[1] / "golden" / "python" / "valves"
-
-HEAD = """\
-project: garden
-module_activation: skill
-path: /look
-"""
-
-Messages = Iterable[tuple[str, dict[str, Any]]]
-
-
-def loaded(mapping: EmittedMapping, allowed_imports: tuple[str, ...] | None = None) -> LoadedMapping:
-    return LoadedMapping(Load(mapping.python, mapping.file_name, 60.0, 60.0, allowed_imports))
-
-
-def fields(mapping: LoadedMapping, parameters: dict[str, Any]) -> dict[str, Any]:
-    answer = mapping.answer(Begin(parameters))
-    assert isinstance(answer, Begun), answer
-    return answer.fields
-
-
-def observed(
-    mapping: LoadedMapping, parameters: dict[str, Any], messages: Messages, result: dict[str, Any]
-) -> Observed:
-    """The outcome of a whole activation that raises nothing."""
-    fields(mapping, parameters)
-    taken = mapping.answer(Take(list(messages)))
-    assert not isinstance(taken, Raised), taken
-    answer = mapping.answer(Finish(result))
-    assert isinstance(answer, Observed), answer
-    return answer
 
 
 def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
@@ -314,85 +281,6 @@ def test_an_import_that_the_deployment_does_not_allow_is_refused_and_nothing_sta
     with pytest.raises(Exception, match="does not allow mappings to import socket"):
         loaded(mapping, allowed_imports=("math",))
     loaded(mapping, allowed_imports=("socket",))
-
-
-# --- faults ---------------------------------------------------------------------------------------------
-
-
-def test_an_exception_is_placed_at_the_innermost_line_of_the_mapping() -> None:
-    emission = emitted(
-        HEAD
-        + """\
-local_variable: level
-topic: /level
-message_type: Level
-code:
-def of(value):
-    return value.levle
-return of(__input)
-"""
-    )
-    mapping = loaded(emission)
-    fields(mapping, {})
-    answer = mapping.answer(Take([("/level", {"level": 1})]))
-    assert isinstance(answer, Raised)
-    assert answer.error == "AttributeError: no field 'levle'; did you mean 'level'?"
-    assert str(emission.locate(answer.line, answer.column)) == "look.am:9:12"
-
-
-def test_columns_count_characters_not_bytes() -> None:
-    emission = emitted(HEAD + "parameter: a\ncode:\n'äöü' + nothing\n")
-    answer = loaded(emission).answer(Begin({}))
-    assert isinstance(answer, Raised)
-    assert str(emission.locate(answer.line, answer.column)) == "look.am:6:9"
-
-
-def test_a_rule_over_a_silent_topic_says_which_variable_has_no_value() -> None:
-    mapping = loaded(
-        emitted(
-            HEAD
-            + """\
-response: high
-response_rule: level > 3
-local_variable: level
-topic: /level
-message_type: Level
-code:
-return __input.data
-"""
-        )
-    )
-    fields(mapping, {})
-    answer = mapping.answer(Finish({}))
-    assert isinstance(answer, Raised)
-    assert answer.unset == ("level",)
-    assert answer.local_variables == {"level": "null"}
-
-
-def test_a_service_variable_that_is_never_assigned_is_an_error_at_its_place() -> None:
-    emission = emitted(
-        HEAD
-        + """\
-local_variable: success
-from_ros_service_response: true
-code:
-succes = __input.success
-"""
-    )
-    mapping = loaded(emission)
-    fields(mapping, {})
-    answer = mapping.answer(Finish({"success": True}))
-    assert isinstance(answer, Raised)
-    assert "success" in answer.error
-    assert emission.locate(answer.line).line == 4
-
-
-def test_leaving_the_program_ends_only_the_evaluation() -> None:
-    mapping = loaded(emitted(HEAD + "parameter: a\ncode:\n__import__('sys').exit(3)\n"))
-    for _ in range(2):
-        answer = mapping.answer(Begin({}))
-        assert isinstance(answer, Raised)
-        assert answer.error == "SystemExit: 3"
 
 
 # --- original bundles -----------------------------------------------------------------------------------

@@ -1,0 +1,44 @@
+"""One activation of a generated mapping, in this process."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from aos_middleware.emit import EmittedMapping
+from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised, Take
+from aos_middleware.worker import LoadedMapping
+
+__all__ = ["HEAD", "fields", "loaded", "observed"]
+
+HEAD = """\
+project: garden
+module_activation: skill
+path: /look
+"""
+
+Messages = Iterable[tuple[str, dict[str, Any]]]
+
+
+def loaded(mapping: EmittedMapping, allowed_imports: tuple[str, ...] | None = None) -> LoadedMapping:
+    """The module, ready for activations."""
+    return LoadedMapping(Load(mapping.python, mapping.file_name, 60.0, 60.0, allowed_imports))
+
+
+def fields(mapping: LoadedMapping, parameters: dict[str, Any]) -> dict[str, Any]:
+    """The fields of the call, for an activation that begins with these parameters."""
+    answer = mapping.answer(Begin(parameters))
+    assert isinstance(answer, Begun), answer
+    return answer.fields
+
+
+def observed(
+    mapping: LoadedMapping, parameters: dict[str, Any], messages: Messages, result: dict[str, Any]
+) -> Observed:
+    """The outcome of a whole activation that raises nothing."""
+    fields(mapping, parameters)
+    taken = mapping.answer(Take(list(messages)))
+    assert not isinstance(taken, Raised), taken
+    answer = mapping.answer(Finish(result))
+    assert isinstance(answer, Observed), answer
+    return answer
