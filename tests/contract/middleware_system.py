@@ -30,7 +30,7 @@ from aos_protocol.messages import (
     TopicMessage,
 )
 from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.children import PIPE, Child
 from aos_runtime.told_state import state_when
 
 __all__ = ["SENSE", "Adapter", "Registry", "System", "running_system", "succeed"]
@@ -114,6 +114,9 @@ class System:
         self.registry = registry
         self.adapter = adapter
         self.child: Child | None = None
+        self._log = ""
+        self._has_logged = asyncio.Condition()
+        self._reading: asyncio.Task[None] | None = None
 
     async def start(self, endpoint: str, **settings: Any) -> None:
         """Starts the service; returns when it answers."""
@@ -127,16 +130,17 @@ class System:
         )
         path = self.run_dir / "middleware.json"
         path.write_bytes(msgspec.json.encode(values))
-        with (self.run_dir / "middleware.log").open("ab") as log:
-            self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=log)
+        self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=PIPE)
+        self._reading = asyncio.create_task(self._read_log(self.child))
         async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.live("middleware")) as present:
             async for _, is_alive in present:
                 if is_alive:
                     return
 
     async def stop(self) -> None:
-        if self.child is not None:
+        if self.child is not None and self._reading is not None:
             await self.child.stop(5.0)
+            await self._reading
 
     async def state(self, revision: int) -> MappingState:
         """The state of the mappings once they are those of a revision."""
@@ -162,10 +166,16 @@ class System:
         request = Activate(ActivationId("m", 1, step), skill, parameters or {}, deadline_s, revision=revision)
         return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=PATIENCE_S)
 
-    @property
-    def log(self) -> str:
-        """What the service has logged."""
-        return (self.run_dir / "middleware.log").read_text()
+    async def logged(self, text: str) -> None:
+        """Returns once the service has logged a text."""
+        async with asyncio.timeout(PATIENCE_S), self._has_logged:
+            await self._has_logged.wait_for(lambda: text in self._log)
+
+    async def _read_log(self, child: Child) -> None:
+        while line := await child.stderr.readline():
+            async with self._has_logged:
+                self._log += line.decode()
+                self._has_logged.notify_all()
 
 
 @asynccontextmanager

@@ -185,6 +185,7 @@ class _Activation:
                     )
                 except AosError as error:
                     self._fault = error
+                    _log.warning("%s goes on, but its mapping failed: %s", self._request.skill, error)
             for key, message in batch:
                 self._seen[key] = message.number
             self._has_seen.set()
