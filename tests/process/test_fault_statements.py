@@ -84,14 +84,14 @@ def line_of(text: str, mark: str) -> int:
 
 
 def in_json(sdl: str) -> str:
-    """The skill in the other dialect, its code as arrays of lines."""
+    """The skill `trip`, which does the same, in the other dialect: its code as arrays of lines."""
     parameters, _, effect = sdl.partition("available_parameters_code:\n")[2].partition("\ndynamic_model:\n")
     blocks = [
         [{"AssignmentName": "code", "AssignmentCode": code.splitlines()}] for code in (parameters, effect)
     ]
     return json.dumps(
         {
-            "PlpMain": {"Project": "ward", "Name": "slip", "Type": "PLP", "Version": 1},
+            "PlpMain": {"Project": "ward", "Name": "trip", "Type": "PLP", "Version": 1},
             "GlobalVariableModuleParameters": [{"Name": "fault", "Type": "tFault"}],
             "PossibleParametersValue": blocks[0],
             "DynamicModel": {"NextStateAssignments": blocks[1]},
@@ -100,28 +100,27 @@ def in_json(sdl: str) -> str:
     )
 
 
-DOCUMENTS = {"slip.sd": SLIP, "slip.json": in_json(SLIP)}
+DOCUMENTS = {"slip.sd": SLIP, "trip.json": in_json(SLIP)}
+BUNDLE = {"ward.ef": WARD, **DOCUMENTS, "slip.am": ANSWERING, "trip.am": ANSWERING}
 
 
-async def fault_of(built: BuiltModel, name: str) -> ModelError:
+async def fault_of(built: BuiltModel, skill: str, name: str) -> ModelError:
     """The fault of a mission whose second action is the faulty one."""
     async with engine_of(built) as running:
         actions = [action.name for action in running.description.actions]
         await running.reset_world(1)
-        await running.step_world(actions.index("slip(fault=eNone)"))
+        await running.step_world(actions.index(f"{skill}(fault=eNone)"))
         with pytest.raises(ModelError) as caught:
-            await running.step_world(actions.index(f"slip(fault={name})"))
+            await running.step_world(actions.index(f"{skill}(fault={name})"))
     return caught.value
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
 @pytest.mark.parametrize("name", FAULTS)
 async def test_a_fault_is_told_at_its_statement(name: str, document: str, cache_dir: Path) -> None:
-    text = DOCUMENTS[document]
-    built = await built_text({"ward.ef": WARD, document: text, "slip.am": ANSWERING}, cache_dir)
-    fault = await fault_of(built, name)
+    fault = await fault_of(await built_text(BUNDLE, cache_dir), document.partition(".")[0], name)
     (diagnostic,) = fault.diagnostics
     code, message = FAULTS[name]
-    assert (diagnostic.span.file, diagnostic.span.line) == (document, line_of(text, name))
+    assert (diagnostic.span.file, diagnostic.span.line) == (document, line_of(DOCUMENTS[document], name))
     assert fault.code == code
     assert message in fault.message
