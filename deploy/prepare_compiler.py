@@ -14,8 +14,8 @@ from pathlib import Path
 
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import AosError
-from aos_solver.build import build_engine
-from aos_solver.compiler import Compiler, find_compiler
+from aos_solver.building.build import build_engine
+from aos_solver.building.compiler import Compiler, find_compiler
 
 PROGRAM = "#include <vector>\nint main() { return std::vector<int>(3).size() == 3 ? 0 : 1; }\n"
 LIMIT_S = 900

@@ -25,11 +25,11 @@ from pathlib import Path
 
 from aos_deploy.program import cache_dir
 from aos_registry.load import load_bundle
-from aos_solver.build import build, build_engine
-from aos_solver.compiler import find_compiler
-from aos_solver.emit import emit
-from aos_solver.engine import Engine
-from aos_solver.lower import lower
+from aos_solver.building.build import build, build_engine
+from aos_solver.building.compiler import find_compiler
+from aos_solver.child.engine import Engine
+from aos_solver.emission.emit import emit
+from aos_solver.emission.lower import lower
 
 ROOT = Path(__file__).resolve().parents[1]
 STAGES = ("read", "lower", "emit", "find compiler", "build", "start engine", "decide")

@@ -16,10 +16,10 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_registry.load import load_bundle, load_files
-from aos_solver.build import SOURCES
-from aos_solver.compiler import find_compiler
-from aos_solver.emit import EmittedModel, emit
-from aos_solver.lower import lower
+from aos_solver.building.build import SOURCES
+from aos_solver.building.compiler import find_compiler
+from aos_solver.emission.emit import EmittedModel, emit
+from aos_solver.emission.lower import lower
 
 __all__ = [
     "Played",

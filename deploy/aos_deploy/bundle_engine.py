@@ -10,10 +10,10 @@ import typer
 
 from aos_deploy.program import cache_dir
 from aos_protocol.diagnostics import render
-from aos_protocol.errors import DocumentError
-from aos_registry.load import load_bundle
-from aos_solver.build import BuildKind
-from aos_solver.engine import Engine
+from aos_protocol.errors import DocumentError, ModelError
+from aos_registry.load import load_bundle, read_bundle_files, with_excerpts
+from aos_solver.building.build import BuildKind
+from aos_solver.child.engine import Engine
 from aos_solver.hot_plug import build_project
 
 __all__ = ["engine_of_bundle"]
@@ -23,7 +23,7 @@ __all__ = ["engine_of_bundle"]
 async def engine_of_bundle(bundle: Path, seed: int, *, kind: BuildKind = "quick") -> AsyncIterator[Engine]:
     """The engine of a bundle, compiled if need be.
 
-    The bundle's mistakes come as one DocumentError.
+    The bundle's mistakes come as one DocumentError; faults of its model show the line of the document.
     """
     loaded = load_bundle(bundle)
     if loaded.project is None:
@@ -32,14 +32,18 @@ async def engine_of_bundle(bundle: Path, seed: int, *, kind: BuildKind = "quick"
         )
     for diagnostic in loaded.diagnostics:
         typer.echo(render(diagnostic), err=True)
-    built = await build_project(
-        loaded.project,
-        cache_dir(),
-        lambda remark: typer.echo(f"aos: {remark}", err=True),
-        kind=kind,
-    )
-    engine = await Engine.start(built, seed=seed)
     try:
-        yield engine
-    finally:
-        await engine.close()
+        built = await build_project(
+            loaded.project,
+            cache_dir(),
+            lambda remark: typer.echo(f"aos: {remark}", err=True),
+            kind=kind,
+        )
+        engine = await Engine.start(built, seed=seed)
+        try:
+            yield engine
+        finally:
+            await engine.close()
+    except ModelError as error:
+        error.diagnostics = with_excerpts(error.diagnostics, read_bundle_files(bundle)[0])
+        raise

@@ -11,7 +11,8 @@ __all__ = ["print_fault"]
 
 
 def print_fault(command: str, error: AosError) -> None:
-    """On stderr: every diagnostic with its place, then what it comes to."""
+    """On stderr: every diagnostic with its place, then what it comes to, unless that is the same again."""
     for diagnostic in error.diagnostics:
         typer.echo(render(diagnostic), err=True)
-    typer.echo(f"{command}: {error}", err=True)
+    if not any(diagnostic.message in error.message for diagnostic in error.diagnostics):
+        typer.echo(f"{command}: {error}", err=True)

@@ -7,8 +7,8 @@
 #include <initializer_list>
 #include <string>
 
-#include "aos/json.hpp"
-#include "aos/support.hpp"
+#include "aos/base/json.hpp"
+#include "aos/model/support.hpp"
 
 namespace aos {
 

@@ -20,8 +20,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from aos_registry.load import load_files, read_bundle_files
-from aos_solver.emit import emit
-from aos_solver.lower import lower
+from aos_solver.emission.emit import emit
+from aos_solver.emission.lower import lower
 
 __all__ = ["Findings", "bundles_below", "fuzz"]
 

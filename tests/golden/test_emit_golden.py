@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from scripted_models import bundle_project
 
-from aos_solver.emit import emit
-from aos_solver.lower import lower
-from aos_solver.outline import outline
+from aos_solver.emission.emit import emit
+from aos_solver.emission.lower import lower
+from aos_solver.emission.outline import outline
 
 GOLDEN = Path(__file__).parent / "cpp"
 

@@ -14,7 +14,7 @@ from models import built_bundle, engine_of
 
 from aos_deploy.bench.baseline import PROBLEMS, Baselines
 from aos_deploy.bench.rows import figure, with_ratios
-from aos_solver.compiler import find_compiler
+from aos_solver.building.compiler import find_compiler
 
 AOS = Path(sys.executable).parent / "aos"
 

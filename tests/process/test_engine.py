@@ -11,8 +11,8 @@ from models import built_bundle, built_text, engine_of
 from processes import descendants, until_ended
 
 from aos_protocol.errors import ModelError
+from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
-from aos_solver.engine import Engine
 from aos_solver.search import Search
 from aos_solver.simulation import simulate_mission
 

@@ -12,10 +12,10 @@ from models import built_text, engine_of
 
 from aos_protocol.errors import ModelError
 from aos_registry.load import load_files
-from aos_solver.build import BuiltModel
-from aos_solver.engine import Engine
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.engine import Engine
+from aos_solver.child.printed import PRINT_LIMIT_BYTES
 from aos_solver.hot_plug import ModelShelf, RunningModel
-from aos_solver.printed import PRINT_LIMIT_BYTES
 
 LAMP = {
     "lamp.ef": """project: lamp

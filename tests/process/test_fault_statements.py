@@ -9,7 +9,7 @@ import pytest
 from models import built_text, engine_of
 
 from aos_protocol.errors import ModelError
-from aos_solver.build import BuiltModel
+from aos_solver.building.build import BuiltModel
 
 WARD = """project: ward
 horizon: 4

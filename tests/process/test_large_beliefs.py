@@ -11,8 +11,8 @@ import pytest
 from models import built_text, engine_of
 from processes import descendants, until_ended
 
-from aos_solver.engine import Engine
-from aos_solver.engine_child import ANSWER_LIMIT_BYTES
+from aos_solver.child.engine import Engine
+from aos_solver.child.engine_child import ANSWER_LIMIT_BYTES
 
 LAMPS, CELLS = 17, 40
 ENVIRONMENT = f"""project: lamps

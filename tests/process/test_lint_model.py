@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
 from aos_protocol.errors import ModelError
-from aos_solver import engine, replay
+from aos_solver.child import engine, replay
 
 HALL = """project: hall
 horizon: 4

@@ -10,7 +10,7 @@ from models import built_bundle, engine_of
 
 from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, MissionState, Outcome
 from aos_runtime.clock import SystemClock
-from aos_solver.build import BuiltModel
+from aos_solver.building.build import BuiltModel
 from aos_solver.endings import MissionLimits
 from aos_solver.hot_plug import RunningModel
 from aos_solver.mission import MAX_LOST_ACTIVATIONS, Mission

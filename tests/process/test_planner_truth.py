@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from models import built_bundle, built_text, engine_of
 
-from aos_solver.answers import Plan
-from aos_solver.build import BuiltModel
-from aos_solver.engine import Engine
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import Plan
+from aos_solver.child.engine import Engine
 
 WORLDS = 5
 STATES = 3

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from models import built_bundle, built_text, engine_of
 
-from aos_solver.answers import Plan
-from aos_solver.build import BuiltModel
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import Plan
+from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
-from aos_solver.engine import Engine
 from aos_solver.search import Search
 from aos_solver.simulation import simulate_mission
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import msgspec
 from scripted_models import bundle_project, lowered
 
-from aos_solver.answers import BeliefUpdate, Plan
-from aos_solver.build import BuiltModel, build
-from aos_solver.engine import Engine
+from aos_solver.building.build import BuiltModel, build
+from aos_solver.child.answers import BeliefUpdate, Plan
+from aos_solver.child.engine import Engine
 
 
 async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_is_there(

@@ -14,7 +14,7 @@ import pytest
 from models import built_bundle, built_text, engine_of
 
 from aos_protocol.errors import ModelError, PlanningError
-from aos_solver.compiler import find_compiler
+from aos_solver.building.compiler import find_compiler
 from aos_solver.endings import MissionLimits
 from aos_solver.offline.enumeration import Enumeration, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief

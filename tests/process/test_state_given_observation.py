@@ -9,9 +9,9 @@ import pytest
 from models import built_bundle, built_text, engine_of
 
 from aos_protocol.messages import BeliefSummary
-from aos_solver.build import BuiltModel
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
-from aos_solver.engine import Engine
 from aos_solver.search import Search
 from aos_solver.simulation import simulate_mission
 
@@ -268,7 +268,7 @@ async def test_a_fault_of_the_code_is_told_at_its_place_and_leaves_the_belief_to
     engine: Engine,
 ) -> None:
     update = await engine.update("drive", "arrived", {**SEEN, "distances": "[1,2,3]"})
-    assert update.remark.endswith("drive.sd:9:1: element 5 of a vector of 3")
+    assert update.remark.endswith("drive.sd:12:27: element 5 of a vector of 3")
     assert values(update.summary, "at") == pytest.approx({"Hill": 0.5, "Lake": 0.5})
 
 

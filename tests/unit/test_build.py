@@ -14,11 +14,11 @@ import pytest
 from scripted_models import bundle_project, json_text, lowered, mapping_text, text_project
 
 from aos_protocol.errors import ModelError
-from aos_solver import build as build_module
-from aos_solver.build import SOURCES, BuiltModel, build, build_engine
-from aos_solver.build_cache import BuildCache
-from aos_solver.compiler import find_compiler
-from aos_solver.emit import EmittedModel
+from aos_solver.building import build as build_module
+from aos_solver.building.build import SOURCES, BuiltModel, build, build_engine
+from aos_solver.building.build_cache import BuildCache
+from aos_solver.building.compiler import find_compiler
+from aos_solver.emission.emit import EmittedModel
 
 HOME = """project: test
 horizon: 3
@@ -186,7 +186,7 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
     if compiler.precompilation("a.hpp", "/include") is None:
         pytest.skip(f"{compiler.version} includes no precompiled headers by themselves")
     engine = await build_engine(cache_dir)
-    assert (engine / "aos/model_support.hpp.gch").is_file()
+    assert (engine / "aos/model/model_support.hpp.gch").is_file()
     (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)
     objects = []
     for more in ([], ["-I", str(engine)]):

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from aos_protocol.errors import ModelError
-from aos_solver import compiler as compiler_module
-from aos_solver.compiler import Compiler, find_compiler
-from aos_solver.compiler_run import run_compiler
+from aos_solver.building import compiler as compiler_module
+from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.compiler_run import run_compiler
 
 
 def fake(directory: Path, name: str, text: str, status: int = 0) -> None:

@@ -12,7 +12,7 @@ import pytest
 from test_reading_rules import Rule, bundle_of
 
 from aos_registry.load import load_files
-from aos_solver.lower import lower
+from aos_solver.emission.lower import lower
 
 EXTRINSIC = '"ExtrinsicChangesDynamicModel": []'
 ENDING = '"ExtrinsicChangesDynamicModel": []\n}'

@@ -8,10 +8,10 @@ from scripted_models import json_text, mapping_text, text_project
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
-from aos_solver.emit import emit
-from aos_solver.lower import lower
-from aos_solver.outline import outline
-from aos_solver.program import Program
+from aos_solver.emission.emit import emit
+from aos_solver.emission.lower import lower
+from aos_solver.emission.outline import outline
+from aos_solver.emission.program import Program
 
 HOME = """project: test
 horizon: 3

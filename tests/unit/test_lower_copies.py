@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from scripted_models import mapping_text, text_project
 
-from aos_solver.lower_copies import Copies, copies_of
+from aos_solver.emission.lower_copies import Copies, copies_of
 
 HOME = """project: test
 horizon: 3

@@ -7,8 +7,8 @@ import pytest
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
 from aos_runtime.snippets import read_cpp
-from aos_solver.program import Piece
-from aos_solver.rewrite import Rewriting, rewrite
+from aos_solver.emission.program import Piece
+from aos_solver.emission.rewrite import Rewriting, rewrite
 
 NAMES = Rewriting(
     frozenset({"tBox"}), {"tColour": None, "Odd": ("Odd::three", "Odd::seven")}, frozenset({"eRed"})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from aos_runtime.snippets import read_cpp
-from aos_solver.lower_rooms import GROWING_ROOM, TOLD_ROOM, Rooms
+from aos_solver.emission.lower_rooms import GROWING_ROOM, TOLD_ROOM, Rooms
 
 
 def rooms_of(*snippets: str) -> Rooms:

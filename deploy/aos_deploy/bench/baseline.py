@@ -11,7 +11,7 @@ import msgspec
 from aos_deploy.bench.problems import CHECKOUT
 from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child
-from aos_solver.compiler import Compiler
+from aos_solver.building.compiler import Compiler
 
 __all__ = ["NAME", "PROBLEMS", "WITHOUT_KNOWLEDGE", "BaselineFigure", "Baselines"]
 

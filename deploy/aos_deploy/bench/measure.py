@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from aos_deploy.bench.problems import Problem
+from aos_solver.child.engine import Engine, Planner
 from aos_solver.endings import MissionLimits
-from aos_solver.engine import Engine, Planner
 from aos_solver.search import Search
 from aos_solver.simulation import simulate_mission
 

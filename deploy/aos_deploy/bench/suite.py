@@ -21,8 +21,8 @@ from aos_deploy.bench.rows import OURS, Report, Row, Skipped, figure, this_machi
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError
 from aos_registry.load import load_bundle
-from aos_solver.compiler import find_compiler
-from aos_solver.engine import Engine, Planner
+from aos_solver.building.compiler import find_compiler
+from aos_solver.child.engine import Engine, Planner
 from aos_solver.hot_plug import build_project
 
 __all__ = ["METRICS", "Effort", "Suite"]

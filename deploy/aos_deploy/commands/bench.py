@@ -14,7 +14,7 @@ from aos_deploy.bench.suite import METRICS, Effort, Suite
 from aos_deploy.printing import print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.views.bench import markdown, print_report
-from aos_solver.engine import Planner
+from aos_solver.child.engine import Planner
 
 __all__ = ["register"]
 

@@ -93,8 +93,8 @@ def _model_findings(path: Path, project: Project) -> tuple[Diagnostic, ...]:
     import asyncio  # These would make the other commands start slower.
 
     from aos_deploy.program import cache_dir
+    from aos_solver.emission.lower import lower
     from aos_solver.hot_plug import build_project
-    from aos_solver.lower import lower
     from aos_solver.reachability import reachability_findings
 
     async def findings() -> tuple[Diagnostic, ...]:
@@ -145,8 +145,8 @@ def _python_modules(project: Project, only: str) -> str:
 
 
 def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:
-    from aos_solver.emit import emit  # As above.
-    from aos_solver.lower import lower
+    from aos_solver.emission.emit import emit  # As above.
+    from aos_solver.emission.lower import lower
 
     program, diagnostics = lower(project)
     if program is None:

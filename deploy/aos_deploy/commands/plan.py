@@ -15,9 +15,9 @@ from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.printing import print_json
 from aos_deploy.views.tables import print_runs, print_values
 from aos_protocol.messages import ActionValue
-from aos_solver.build import BuildKind
+from aos_solver.building.build import BuildKind
+from aos_solver.child.engine import Engine, Planner
 from aos_solver.endings import MissionLimits
-from aos_solver.engine import Engine, Planner
 from aos_solver.search import Search
 from aos_solver.simulation import SimulatedRun, simulate_mission
 
@@ -78,6 +78,8 @@ def plan(
 
     Prints the value of every action, found by search or exactly.
     """
+    if exact and policy is not None:
+        raise typer.BadParameter("it excludes --exact", param_hint="--policy")
     search = Search(
         simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
     )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import DocumentError
 from aos_registry.load import load_bundle
-from aos_solver.engine import Engine
+from aos_solver.child.engine import Engine
 from aos_solver.hot_plug import build_project
 
 __all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes"]

@@ -10,7 +10,7 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_registry.documents.sdl_sections import GRAMMARS
 from aos_registry.documents.source import Findings, open_source
 from aos_registry.load import load_files, read_bundle_files, with_excerpts
-from aos_solver.lower import lower
+from aos_solver.emission.lower import lower
 
 __all__ = ["check_folder", "end_column", "lines_of"]
 

@@ -15,6 +15,10 @@ from aos_solver.simulation import SimulatedRun
 __all__ = ["print_runs", "print_states", "print_values"]
 
 BAR_WIDTH = 30
+LONGEST_ACTION = 48
+"""In letters; what is longer takes several lines."""
+NUMBERS_WIDTH = 38
+"""Of all but the action and the bar, with the lines between."""
 
 
 def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
@@ -22,7 +26,11 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
     tried = [value.q for value in values if value.n or not simulations]
     lowest, highest = min(tried), max(tried)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
-    table.add_column("action")
+    console = Console()
+    # Bars give way first: actions often differ in their last letters only.
+    action_width = min(max(len(value.action) for value in values), LONGEST_ACTION)
+    bar_width = max(min(BAR_WIDTH, console.width - action_width - NUMBERS_WIDTH), 1)
+    table.add_column("action", overflow="fold", min_width=action_width)
     table.add_column("value", justify="right")
     if simulations:
         table.add_column("stderr", justify="right")
@@ -33,8 +41,8 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
         if simulations:
             row += [f"{value.stderr:.3f}", f"{value.n:,}"]
         size = max(highest - lowest, 1e-9)
-        table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=BAR_WIDTH, color="cyan"))
-    Console().print(table)
+        table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=bar_width, color="cyan"))
+    console.print(table)
 
 
 def print_states(run: SimulatedRun) -> None:

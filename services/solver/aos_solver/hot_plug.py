@@ -21,10 +21,10 @@ from aos_protocol.diagnostics import Diagnostic, Severity, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import ProjectRevision
-from aos_solver.build import BuildKind, BuiltModel, build
-from aos_solver.emit import EmittedModel, emit
-from aos_solver.engine import Engine
-from aos_solver.lower import lower
+from aos_solver.building.build import BuildKind, BuiltModel, build
+from aos_solver.child.engine import Engine
+from aos_solver.emission.emit import EmittedModel, emit
+from aos_solver.emission.lower import lower
 
 __all__ = ["ModelShelf", "RunningModel", "build_project"]
 

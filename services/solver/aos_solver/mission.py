@@ -23,7 +23,7 @@ from aos_protocol.messages import (
     Outcome,
 )
 from aos_runtime.clock import Clock
-from aos_solver.answers import BeliefUpdate, Plan
+from aos_solver.child.answers import BeliefUpdate, Plan
 from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
 from aos_solver.hot_plug import RunningModel
 from aos_solver.search import Search

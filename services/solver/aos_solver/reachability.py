@@ -5,10 +5,10 @@ from __future__ import annotations
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
 from aos_protocol.errors import ModelError
-from aos_solver.answers import Reach
-from aos_solver.build import BuiltModel
-from aos_solver.engine import Engine
-from aos_solver.findings import Findings
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import Reach
+from aos_solver.child.engine import Engine
+from aos_solver.emission.findings import Findings
 
 __all__ = ["reachability_findings"]
 

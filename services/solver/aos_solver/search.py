@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import msgspec
 
-from aos_solver.answers import Plan
-from aos_solver.engine import Engine, Planner
+from aos_solver.child.answers import Plan
+from aos_solver.child.engine import Engine, Planner
 
 __all__ = ["Search"]
 

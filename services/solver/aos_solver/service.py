@@ -32,9 +32,9 @@ from aos_protocol.messages import (
 from aos_runtime.journal import Journal
 from aos_runtime.lifecycle import Service
 from aos_runtime.told_state import state_when
-from aos_solver.build import BuiltModel
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
-from aos_solver.engine import Engine
 from aos_solver.hot_plug import ModelShelf, RunningModel
 from aos_solver.mission import Mission
 from aos_solver.search import Search

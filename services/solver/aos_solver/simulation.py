@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_solver.child.engine import Engine
 from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
-from aos_solver.engine import Engine
 from aos_solver.search import Search
 
 __all__ = ["SimulatedRun", "simulate_mission"]

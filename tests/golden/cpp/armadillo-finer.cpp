@@ -2,7 +2,7 @@
 // Emitted by aos 0.1.0 from the documents of digest 5797713c31908468. Change the documents, not this file;
 // `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 
-#include "aos/model_support.hpp"
+#include "aos/model/model_support.hpp"
 
 namespace model {
 

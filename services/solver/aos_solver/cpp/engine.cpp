@@ -1,6 +1,6 @@
 // The engine for models whose states have up to AOS_STATE_BYTES bytes; linked with one of them.
-#include "aos/child.hpp"
-#include "aos/erased_model.hpp"
-#include "aos/support.hpp"
+#include "aos/child/child.hpp"
+#include "aos/model/erased_model.hpp"
+#include "aos/model/support.hpp"
 
 int main(int argc, char** argv) { return aos::run_child<aos::ErasedModel<AOS_STATE_BYTES>>(argc, argv); }

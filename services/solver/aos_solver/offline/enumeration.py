@@ -8,8 +8,8 @@ import msgspec
 import numpy as np
 
 from aos_protocol.errors import ModelError
-from aos_solver.answers import Explored
-from aos_solver.engine import Engine
+from aos_solver.child.answers import Explored
+from aos_solver.child.engine import Engine
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
 
 __all__ = ["ENDED", "MOST_STATES", "Enumeration", "Extent", "enumerate_model"]

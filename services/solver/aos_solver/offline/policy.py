@@ -16,8 +16,8 @@ import numpy as np
 
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue
-from aos_solver.answers import ExportedBelief, Plan
-from aos_solver.engine import Engine
+from aos_solver.child.answers import ExportedBelief, Plan
+from aos_solver.child.engine import Engine
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionVectors
 from aos_solver.offline.explicit_model import Floats
 from aos_solver.search import Search

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from aos_solver.build import SOURCES
-from aos_solver.build_cache import BuildCache, digest_of
-from aos_solver.compiler import Compiler, find_compiler
-from aos_solver.compiler_run import internal_error, run_compiler
+from aos_solver.building.build import SOURCES
+from aos_solver.building.build_cache import BuildCache, digest_of
+from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.compiler_run import internal_error, run_compiler
 
 __all__ = ["build_solver"]
 
 _SOURCE = Path(__file__).parent / "cpp" / "sarsop.cpp"
-_SHARED = (SOURCES / "aos" / "json.hpp", *sorted((SOURCES / "point_based").iterdir()))
+_SHARED = (SOURCES / "aos/base/json.hpp", *sorted((SOURCES / "point_based").iterdir()))
 _OBJECT = "sarsop.o"
 _EXECUTABLE = "sarsop"
 

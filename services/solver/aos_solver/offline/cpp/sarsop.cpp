@@ -11,7 +11,7 @@
 #include <ctime>
 #include <exception>
 
-#include "aos/json.hpp"
+#include "aos/base/json.hpp"
 #include "flat_file.hpp"
 #include "point_based/flat_model.hpp"
 #include "point_based/regions.hpp"

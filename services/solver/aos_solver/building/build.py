@@ -1,0 +1,259 @@
+"""From the emitted C++ to an executable, through a cache.
+
+The model is compiled for itself. The engine is compiled once for all models whose states have up to so many
+bytes, and linked to it: it is four times as much code, and models change while a robot waits. What models
+include is compiled with the engine, too: reading it is a quarter of the time that a model takes.
+
+There are two builds of a model, which decide alike. The quick one is there sooner. In the thorough one steps
+are faster, searches hardly: most of a search is the engine.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import time
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from aos_protocol.errors import ModelError
+from aos_solver.building.build_cache import BuildCache, digest_of
+from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.compiler_messages import read_messages, without_line_directives
+from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, run_compiler
+from aos_solver.emission.emit import MODEL_FILE, EmittedModel
+
+__all__ = ["SOURCES", "BuildKind", "BuiltModel", "build", "build_engine"]
+
+SOURCES = Path(__file__).parents[1] / "cpp"
+"""The engine, and what emitted models stand on."""
+
+STATE_BYTES = (64, 256, 1024, 4096, 16384, 65536, 262144, 1048576)
+"""The sizes of states that engines are compiled for; most models fit the first."""
+
+_SUPPORT = "aos/model/model_support.hpp"
+"""What every emitted model includes first."""
+
+BuildKind = Literal["quick", "thorough", "unoptimized"]
+"""How a model is compiled; unoptimized code keeps its order."""
+
+_OPTIONS: dict[BuildKind, tuple[str, ...]] = {
+    "quick": ("-O1", "-DAOS_QUICK"),
+    "thorough": (),
+    "unoptimized": ("-O0", "-DAOS_QUICK"),
+}
+
+_SOURCE = "compiled.cpp"
+_OBJECT = "part.o"
+_ENGINE_OBJECTS = ("engine.o", "point_based.o")
+"""Each from the source of its name; point-based search is mostly loops over numbers."""
+_EXECUTABLE = "model"
+_STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
+
+
+class BuiltModel(msgspec.Struct, frozen=True):
+    """An executable with the emitted text, which stands beside it as `model.cpp`."""
+
+    emitted: EmittedModel
+    executable: Path
+    is_from_cache: bool
+    compile_s: float = 0.0
+
+    @property
+    def cache_dir(self) -> Path:
+        """The cache that it is an entry of."""
+        return self.executable.parent.parent
+
+
+async def build(
+    emitted: EmittedModel,
+    *,
+    cache_dir: Path,
+    compiler: Compiler | None = None,
+    on_progress: Callable[[str], None] = lambda text: None,
+    deadline_s: float | None = None,
+    kind: BuildKind = "quick",
+) -> BuiltModel:
+    """The executable of a model, from the cache or compiled now.
+
+    A thorough build that is in the cache is taken for a quick one.
+    ModelError AOS201 carries the compiler's errors as diagnostics at the documents' places, or names the
+    emitted file where an error is not in document code; AOS202 when the compiler ran out of time or memory;
+    AOS203 without a compiler.
+    """
+    compiler = compiler or await find_compiler()
+    cache = BuildCache(cache_dir)
+    circumstances = _circumstances(compiler)
+    names = {
+        known: f"model-{digest_of([emitted.cpp, *options, *circumstances])}"
+        for known, options in _OPTIONS.items()
+    }
+    for known in ("thorough", "quick") if kind == "quick" else (kind,):
+        if (entry := cache.find(names[known])) is not None:
+            return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
+    work = _Build(emitted, cache, compiler, on_progress, deadline_s or compiler.deadline_s, _OPTIONS[kind])
+    started_s = time.monotonic()
+    entry = await cache.fill(names[kind], work.make)
+    seconds = time.monotonic() - started_s
+    on_progress(f"compiled {emitted.project} in {seconds:.1f} s")
+    return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=False, compile_s=seconds)
+
+
+async def build_engine(
+    cache_dir: Path,
+    *,
+    compiler: Compiler | None = None,
+    on_progress: Callable[[str], None] = lambda text: None,
+    state_bytes: int = STATE_BYTES[0],
+) -> Path:
+    """The directory of the engine's object files for states of up to `state_bytes`; errors as in `build`.
+
+    Setting up a machine may call it, so that its first model is compiled as quickly as the later ones.
+    """
+    compiler = compiler or await find_compiler()
+
+    async def make(staging: Path) -> None:
+        on_progress(f"compiling the engine with {compiler.version}, once for all models")
+        if compiler.family == "zig":
+            on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
+        options = ((f"-DAOS_STATE_BYTES={state_bytes}",), ("-O3",))
+        commands = [
+            compiler.compilation(str((SOURCES / part).with_suffix(".cpp")), part, str(SOURCES), *more)
+            for part, more in zip(_ENGINE_OBJECTS, options, strict=True)
+        ]
+        if state_bytes == STATE_BYTES[0] and (
+            command := compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"])
+        ):
+            (staging / _SUPPORT).parent.mkdir(parents=True)
+            commands.append(command)
+        deadline_s = compiler.deadline_s
+        runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
+        for output, status in await _together(runs):
+            if status != 0:
+                raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
+
+    return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make)
+
+
+def _engine_name(compiler: Compiler, state_bytes: int) -> str:
+    return f"engine-{state_bytes}-{digest_of(_circumstances(compiler))}"
+
+
+class _Build:
+    """One model on its way into the cache."""
+
+    def __init__(
+        self,
+        emitted: EmittedModel,
+        cache: BuildCache,
+        compiler: Compiler,
+        on_progress: Callable[[str], None],
+        deadline_s: float,
+        options: tuple[str, ...],
+    ) -> None:
+        self._emitted = emitted
+        self._cache = cache
+        self._compiler = compiler
+        self._on_progress = on_progress
+        self._deadline_s = deadline_s
+        self._options = options
+
+    async def make(self, staging: Path) -> None:
+        self._on_progress(f"compiling {self._emitted.project} with {self._compiler.version}")
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                usual_engine = tasks.create_task(self._engine(STATE_BYTES[0]))
+                await self._compile(staging)
+        except ExceptionGroup as errors:
+            raise errors.exceptions[0] from None
+        state_bytes = self._state_bytes(staging / _OBJECT)
+        engine = usual_engine.result() if state_bytes == STATE_BYTES[0] else await self._engine(state_bytes)
+        await self._link(staging, engine)
+
+    async def _engine(self, state_bytes: int) -> Path:
+        return await build_engine(
+            self._cache.directory,
+            compiler=self._compiler,
+            on_progress=self._on_progress,
+            state_bytes=state_bytes,
+        )
+
+    async def _compile(self, staging: Path) -> None:
+        (staging / MODEL_FILE).write_text(self._emitted.cpp)
+        (staging / _SOURCE).write_text(without_line_directives(self._emitted.cpp))
+        options = [*self._options, *self._precompiled]
+        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
+        output, status = await self._run(compilation, staging)
+        if status != 0:
+            raise self._failure(output, status)
+        (staging / _SOURCE).unlink()
+
+    @property
+    def _precompiled(self) -> list[str]:
+        """Where to search first for what quick builds include, if that is compiled already."""
+        entry = self._cache.find(_engine_name(self._compiler, STATE_BYTES[0]))
+        return [] if entry is None or self._options != _OPTIONS["quick"] else ["-I", str(entry)]
+
+    def _state_bytes(self, model: Path) -> int:
+        """The smallest size of engine that takes the model's states."""
+        mark = _STATE_BYTES_MARK.search(model.read_bytes())
+        needed = int(mark[1]) if mark is not None else 0
+        for state_bytes in STATE_BYTES:
+            if needed <= state_bytes:
+                return state_bytes
+        message = f"a state of {self._emitted.project} takes {needed} bytes; {STATE_BYTES[-1]} is the limit"
+        raise ModelError(message, hint="Use smaller vectors and maps for state variables")
+
+    async def _link(self, staging: Path, engine: Path) -> None:
+        model = staging / _OBJECT
+        objects = [str(model), *(str(engine / part) for part in _ENGINE_OBJECTS)]
+        linking = self._compiler.linking(objects, _EXECUTABLE)
+        output, status = await self._run(linking, staging)
+        if status != 0:
+            raise internal_error(self._emitted.project, output, status, self._kept_source())
+        model.unlink()
+
+    async def _run(self, command: list[str], staging: Path) -> tuple[str, int]:
+        return await run_compiler(
+            self._compiler, command, staging, self._deadline_s, self._emitted.project, LIMIT_HINT
+        )
+
+    def _failure(self, output: str, status: int) -> ModelError:
+        project = self._emitted.project
+        report = read_messages(output, _SOURCE, self._emitted)
+        if report.diagnostics:
+            return ModelError(
+                f"the model code of {project} does not compile",
+                hint="Mend the places named",
+                diagnostics=report.diagnostics,
+            )
+        if status < 0 or status > 128 or "memory exhausted" in output or "out of memory" in output:
+            message = f"the compiler ran out of time or memory on {project}"
+            return ModelError(message, code="AOS202", hint=LIMIT_HINT)
+        return internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
+
+    def _kept_source(self) -> Path:
+        """The emitted file at a place where it can be looked at."""
+        kept = self._cache.directory / f"failed-{self._emitted.digest[:16]}.cpp"
+        kept.write_text(self._emitted.cpp)
+        return kept
+
+
+def _circumstances(compiler: Compiler) -> list[str]:
+    """What decides about a result besides the model's text."""
+    files = sorted(path for path in SOURCES.rglob("*") if path.suffix in (".hpp", ".cpp"))
+    texts = [part for path in files for part in (str(path.relative_to(SOURCES)), path.read_text())]
+    return [compiler.version, *compiler.compilation("", "", ""), *texts]
+
+
+async def _together(runs: list[Coroutine[Any, Any, tuple[str, int]]]) -> list[tuple[str, int]]:
+    """The results of all; if one fails, the others are stopped and its error is raised."""
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            started = [tasks.create_task(run) for run in runs]
+    except ExceptionGroup as errors:
+        raise errors.exceptions[0] from None
+    return [task.result() for task in started]

@@ -1,0 +1,103 @@
+"""From what the compiler says to diagnostics at the documents' places."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_solver.emission.emit import EmittedModel
+
+__all__ = ["CompilerReport", "read_messages", "without_line_directives"]
+
+_PLACE = re.compile(
+    r"(?P<file>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+):\s+"
+    r"(?P<kind>fatal error|error|warning|note|required)\b:?\s*(?P<text>.*)"
+)
+_FAULTS = ("error", "fatal error")
+
+
+class CompilerReport(msgspec.Struct, frozen=True):
+    """Errors at document places, and the lines about code that no document gave."""
+
+    diagnostics: tuple[Diagnostic, ...]
+    outside: tuple[str, ...]
+
+
+class _Message(msgspec.Struct):
+    file: str
+    line: int
+    column: int
+    text: str
+    related: list[tuple[str, int, int]]
+
+
+def without_line_directives(cpp: str) -> str:
+    """The same lines with the #line directives as comments.
+
+    The directives are for those who compile or debug the file themselves. Through them a compiler could not
+    tell two lines of a JSON string apart, nor give columns; so our own builds map the file's places back.
+    """
+    return re.sub(r"^#line", "//ne", cpp, flags=re.MULTILINE)
+
+
+def read_messages(output: str, source_name: str, emitted: EmittedModel) -> CompilerReport:
+    """What g++ and clang write as text, for the emitted file compiled as `source_name`."""
+    diagnostics: list[Diagnostic] = []
+    outside: list[str] = []
+    for message in _messages(output):
+        places = [(message.file, message.line, message.column), *message.related]
+        spans = (_document_place(place, source_name, emitted) for place in places)
+        span = next((span for span in spans if span is not None), None)
+        if span is None:
+            outside.append(f"{message.file}:{message.line}:{message.column}: {message.text}")
+            continue
+        text, hint = _plain(message.text)
+        diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
+        diagnostics.append(diagnostic)
+    return CompilerReport(tuple(_without_repeats(diagnostics)), tuple(outside))
+
+
+def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """Each complaint once for a line: a template is complained about for every use of it."""
+    first: dict[tuple[str, int, str], Diagnostic] = {}
+    for diagnostic in diagnostics:
+        first.setdefault((diagnostic.span.file, diagnostic.span.line, diagnostic.message), diagnostic)
+    return list(first.values())
+
+
+def _messages(output: str) -> list[_Message]:
+    """Errors with the places that led to them: before them for g++, after them for clang."""
+    messages: list[_Message] = []
+    led_by: list[tuple[str, int, int]] = []
+    for line in output.splitlines():
+        match = _PLACE.match(line)
+        if match is None:
+            continue
+        place = (match["file"], int(match["line"]), int(match["column"]))
+        if match["kind"] == "required":
+            led_by.append(place)
+        elif match["kind"] in _FAULTS:
+            messages.append(_Message(*place, match["text"], led_by))
+            led_by = []
+        elif match["kind"] == "note" and messages:
+            messages[-1].related.append(place)
+    return messages
+
+
+def _document_place(place: tuple[str, int, int], source_name: str, emitted: EmittedModel) -> Span | None:
+    file, line, column = place
+    return emitted.locate(line, column) if file.rsplit("/", 1)[-1] == source_name else None
+
+
+def _plain(text: str) -> tuple[str, str]:
+    """The message in the documents' terms, and the compiler's suggestion as a hint."""
+    text = re.sub(r"\bmodel::(?:skill__\w+::)?", "", text)
+    text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
+    text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
+    text = text.replace("was not declared in this scope", "was not declared")
+    message, separator, suggestion = text.partition("; ")
+    if separator and suggestion.startswith("did you mean"):
+        return message, suggestion[0].upper() + suggestion[1:]
+    return text, ""

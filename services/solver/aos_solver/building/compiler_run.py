@@ -1,0 +1,72 @@
+"""One run of the compiler: as a child with a deadline, with limits to its memory, its files and its words."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+from aos_protocol.errors import ModelError
+from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_solver.building.compiler import Compiler
+
+__all__ = ["LIMIT_HINT", "internal_error", "run_compiler"]
+
+LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
+"""What to do about a compiler that runs out of time or memory over a model."""
+
+_OUR_LIMIT_HINT = "The machine is too busy or too small for it; try again when less runs"
+"""The same over our own sources."""
+
+_ADDRESS_SPACE_BYTES = 4 << 30
+_FILE_BYTES = 512 << 20
+_OUTPUT_LIMIT_BYTES = 4 << 20
+
+
+async def run_compiler(
+    compiler: Compiler,
+    command: list[str],
+    directory: Path,
+    deadline_s: float,
+    what: str,
+    hint: str = _OUR_LIMIT_HINT,
+) -> tuple[str, int]:
+    """What the command says in `directory`, and its status.
+
+    ModelError AOS202 with the `hint`, which names `what` is compiled, if it takes longer than `deadline_s`.
+    """
+    memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
+    # The deadline is of the wall clock; this is for what outlives even the guard's end. Zig has threads.
+    limits = Limits(address_space_bytes=memory, cpu_s=int(deadline_s * 4) + 1, file_bytes=_FILE_BYTES)
+    child = await Child.start(
+        guarded(command, limits),
+        cwd=directory,
+        env={"LC_ALL": "C"},
+        stdout=PIPE,
+        stderr=asyncio.subprocess.STDOUT,
+    )
+    try:
+        async with asyncio.timeout(deadline_s):
+            output = await _read(child)
+            return output, await child.wait()
+    except TimeoutError as error:
+        message = f"the compiler did not finish {what} within {deadline_s:g} s"
+        raise ModelError(message, code="AOS202", hint=hint) from error
+    finally:
+        await child.stop()
+
+
+def internal_error(what: str, output: str, status: int, source: Path) -> ModelError:
+    """The error for C++ that is wrong although no document is; `source` is where it can be looked at."""
+    reason = next(iter(output.strip().splitlines()), f"status {status}")
+    return ModelError(
+        f"the C++ of {what} does not compile: {reason}",
+        hint=f"This is not a mistake in the documents; please report it with {source}",
+    )
+
+
+async def _read(child: Child) -> str:
+    """All that the compiler says; what exceeds the limit is read and dropped."""
+    kept = bytearray()
+    while chunk := await child.stdout.read(65536):
+        kept += chunk[: _OUTPUT_LIMIT_BYTES - len(kept)]
+    return kept.decode(errors="replace")

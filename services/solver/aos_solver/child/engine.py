@@ -1,0 +1,328 @@
+"""The engine child of one model: started, asked, killed and started again.
+
+The service survives whatever model code does: every question has a deadline; a crash, a hang and an exit
+become a ModelError that names the document line; the next question starts a new child with the belief that
+the old one had.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import re
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from typing import Literal, Self, TypeVar
+
+import msgspec
+
+from aos_protocol.errors import AosError, ModelError
+from aos_protocol.messages import BeliefSummary
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import (
+    BeliefUpdate,
+    EngineDescription,
+    EngineFault,
+    ExactValues,
+    Explored,
+    ExportedBelief,
+    Plan,
+    Prediction,
+    Reach,
+    SampleCount,
+    Worlds,
+    WorldStart,
+    WorldState,
+    WorldStep,
+    WorldSteps,
+)
+from aos_solver.child.engine_child import EngineChild, EngineStart, ImpossiblePolicy, KilledError
+from aos_solver.child.local_values import UnusableLocals, local_values_line
+from aos_solver.child.replay import at_its_statement
+from aos_solver.child.shared_memory import SharedMemory
+
+__all__ = ["Engine", "ImpossiblePolicy", "Planner"]
+
+Planner = Literal["pomcp", "despot", "sarsop", "auto"]
+
+log = logging.getLogger(__name__)
+
+A = TypeVar("A")
+
+_PARAMETER = re.compile(r"(\w+)=(\w+)")
+"""In the name of an action whose parameters are values of state variables, which are in it by name."""
+
+ANSWER_DEADLINE_S = 30.0
+PLANNING_DEADLINE_S = 120.0
+"""For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
+EXACT_TIME_S = 300.0
+EXACT_BELIEF_BUDGET = 20_000_000
+
+
+class _Done(msgspec.Struct, frozen=True):
+    """The answer that says nothing more."""
+
+
+class Engine:
+    """Owns the child process of one built model. Questions are asked one at a time."""
+
+    def __init__(self, built: BuiltModel, seed: int, impossible_observation: ImpossiblePolicy) -> None:
+        self._built = built
+        self._seed = seed
+        self._policy = impossible_observation
+        self._child: EngineChild | None = None
+        self._beliefs: SharedMemory | None = None
+        self._changes = 0
+        self._world: list[str] = []
+        self._asking = asyncio.Lock()
+        self.description: EngineDescription
+
+    @classmethod
+    async def start(
+        cls,
+        built: BuiltModel,
+        *,
+        seed: int,
+        impossible_observation: ImpossiblePolicy = "widen",
+        keeps_belief: bool = True,
+    ) -> Self:
+        """Starts the child on the initial belief; ModelError if the model cannot even begin.
+
+        A child that is started again gets the belief, of which each child keeps a copy in our memory; or,
+        without `keeps_belief`, the initial one.
+        """
+        engine = cls(built, seed, impossible_observation)
+        if keeps_belief:
+            engine._beliefs = SharedMemory.create("aos-beliefs")
+        try:
+            await engine._start_child()
+        except BaseException:
+            await engine.close()
+            raise
+        return engine
+
+    async def close(self) -> None:
+        """Ends the child. A closed engine is not asked again."""
+        await self._drop_child()
+        if self._beliefs is not None:
+            self._beliefs.close()
+            self._beliefs = None
+
+    @property
+    def model_digest(self) -> str:
+        """The digest of the model that is asked."""
+        return self._built.emitted.digest
+
+    @property
+    def pid(self) -> int | None:
+        """The guarded child's process id; None while there is no child."""
+        return self._child.pid if self._child else None
+
+    # --- questions -----------------------------------------------------------------------------------
+
+    async def summary(self) -> BeliefSummary:
+        return await self._ask("summary", BeliefSummary)
+
+    async def reset_belief(self) -> BeliefSummary:
+        """Back to the initial belief."""
+        return await self._change_belief("reset_belief", BeliefSummary)
+
+    async def plan(
+        self,
+        *,
+        seed: int,
+        simulations: int | None = None,
+        time_s: float | None = None,
+        horizon: int | None = None,
+        planner: Planner = "pomcp",
+        threads: int = 1,
+    ) -> Plan:
+        """Searches from the current belief within the budget; `horizon` None takes the document's.
+
+        With the planner `auto` the model's size decides, and the plan says why. POMCP can use
+        several threads.
+        """
+        deadline_s = PLANNING_DEADLINE_S if time_s is None else time_s + ANSWER_DEADLINE_S
+        command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}\t{planner}\t{threads}"
+        return await self._ask(command, Plan, deadline_s=deadline_s)
+
+    async def think(self, index: int, *, seed: int, time_s: float, threads: int = 1) -> None:
+        """Begins to search below an action that is carried out now, so that the next plan starts with it.
+
+        Returns at once. It goes on for `time_s`, or until something else is asked.
+        """
+        await self._ask(f"think\t0\t{time_s}\t{seed}\t{index}\t{threads}", _Done)
+
+    async def count_processor_time(self, counts: bool) -> None:
+        """Whether this child's budgets in seconds are of processor time, for measurements."""
+        await self._ask(f"count_processor_time\t{int(counts)}", _Done)
+
+    async def exact(self, horizon: int | None = None) -> ExactValues:
+        """Finite-horizon values by enumeration; ModelError AOS220 where that is not tractable, and why."""
+        command = f"exact\t{horizon or 0}\t{EXACT_BELIEF_BUDGET}\t{EXACT_TIME_S}"
+        return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
+
+    async def reach(self, time_s: float) -> Reach:
+        """Which states the actions can lead to from the current belief, looked at for so long at most."""
+        return await self._ask(f"reach\t{time_s}", Reach, deadline_s=time_s + ANSWER_DEADLINE_S)
+
+    async def explore(self, *, is_new: bool, time_s: float) -> Explored:
+        """A piece of the model as numbers, from the current belief on; ModelError AOS220 if it has no end."""
+        command = f"explore\t{int(is_new)}\t{time_s}"
+        return await self._ask(command, Explored, deadline_s=time_s + ANSWER_DEADLINE_S)
+
+    async def predict(self, index: int) -> Prediction:
+        """What may be observed after an action."""
+        return await self._ask(f"predict\t{index}", Prediction)
+
+    async def update(
+        self, action: str, response: str, local_variables: Mapping[str, str] | None = None
+    ) -> BeliefUpdate:
+        """Bayes' rule after an action and its observation.
+
+        The local variables of a real outcome, as text, correct the belief where the skill's documents say so;
+        where they cannot, the belief is that of the response alone, and the update's remark says why.
+        """
+        if any(mark in response for mark in "\t\n"):
+            raise ModelError(f"the response {response!r} has a tab or a line end in it", code="AOS310")
+        index = self._index(action)
+        command = f"update\t{index}\t{response}"
+        wanted = self._built.emitted.locals.get(self.description.actions[index].skill)
+        if wanted is None or local_variables is None:
+            return await self._change_belief(command, BeliefUpdate)
+        try:
+            command += f"\t{local_values_line(wanted, local_variables)}"
+        except UnusableLocals as reason:
+            update, why = await self._change_belief(command, BeliefUpdate), str(reason)
+        else:
+            before = self._changes
+            update = await self._change_belief(command, BeliefUpdate)
+            if update.uncorrected is None:
+                return update
+            why = (await self._correction_fault(update.uncorrected, command, before)).message
+        remark = f"the local variables of {action} do not correct the belief: {why}"
+        log.warning("%s", remark)
+        return msgspec.structs.replace(update, remark=remark)
+
+    async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> ModelError:
+        """Why local variables did not correct the belief that was there after so many changes."""
+        assert self._child is not None
+        error = self._child.fault(fault.code, fault.text, fault.piece)
+        commands = [*self._restoration(before), command]
+        return await at_its_statement(error, self._built, self._start, commands)
+
+    async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
+        """The mixture of "it ran" and "it did not"."""
+        command = f"update_without_observation\t{self._index(action)}\t{ran_probability}"
+        return await self._change_belief(command, BeliefUpdate)
+
+    async def export_belief(self) -> ExportedBelief:
+        """The whole belief, however many pieces it takes; nobody changes it meanwhile."""
+        belief = await self._ask("export_belief\t0", ExportedBelief)
+        particles = list(belief.particles)
+        while len(particles) < belief.states:
+            piece = await self._ask(f"export_belief\t{len(particles)}", ExportedBelief)
+            particles += piece.particles
+        return msgspec.structs.replace(belief, particles=tuple(particles))
+
+    async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
+        """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
+        return await self._change_belief("\t".join(("import_belief", *belief.fields())), BeliefSummary)
+
+    async def reset_world(self, seed: int) -> WorldStart:
+        """Starts a hidden state, drawn from the initial belief, for missions without a robot."""
+        start = await self._ask(f"reset_world\t{seed}", WorldStart)
+        self._world = [f"reset_world\t{seed}"]
+        return start
+
+    async def step_world(self, index: int) -> WorldStep:
+        """Runs an action on the hidden state, by the model."""
+        step = await self._ask(f"step_world\t{index}", WorldStep)
+        self._world.append(f"step_world\t{index}")
+        return step
+
+    async def world_state(self) -> str:
+        """The hidden state as text for people."""
+        return (await self._ask("show_world", WorldState)).state
+
+    async def reset_worlds(self, seeds: Sequence[int]) -> Worlds:
+        """Starts a hidden state for each seed, to be acted in side by side."""
+        return await self._ask("\t".join(("reset_worlds", *map(str, seeds))), Worlds)
+
+    async def step_worlds(self, indices: bytes) -> WorldSteps:
+        """Runs an action in each world, by the bytes of an int32 for each; -1 starts a world anew."""
+        return await self._ask(f"step_worlds\t{b64encode(indices).decode()}", WorldSteps)
+
+    async def rate(self, seconds: float, seed: int) -> SampleCount:
+        """Draws samples with random actions for so long."""
+        return await self._ask(
+            f"rate\t{seconds}\t{seed}", SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S
+        )
+
+    def variables_of(self, action: str) -> dict[str, str]:
+        """The state variables that parameters of the action stand for; computed parameters stand for none."""
+        skill = self.description.actions[self._index(action)].skill
+        return dict(_PARAMETER.findall(action)) if skill in self._built.emitted.choosing_skills else {}
+
+    # --- the child -----------------------------------------------------------------------------------
+
+    def _index(self, action: str) -> int:
+        for index, grounded in enumerate(self.description.actions):
+            if grounded.name == action:
+                return index
+        raise ModelError(f"there is no action {action}", code="AOS501")
+
+    async def _change_belief(self, command: str, kind: type[A]) -> A:
+        answer = await self._ask(command, kind)
+        self._changes += 1
+        return answer
+
+    async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
+        async with self._asking:
+            if self._child is None or not self._child.is_running:
+                await self._restart_child()
+            assert self._child is not None
+            try:
+                return await self._child.ask(command, kind, deadline_s)
+            except KilledError as error:
+                log.warning("asking again: %s", error)
+                await self._restart_child()
+                return await self._child.ask(command, kind, deadline_s)
+            except ModelError as error:
+                raise await self._located(error, command) from None
+
+    async def _located(self, fault: ModelError, command: str) -> ModelError:
+        """The fault at its statement, if a replay of the command finds it."""
+        commands = [*self._restoration(self._changes), *self._world, command]
+        return await at_its_statement(fault, self._built, self._start, commands)
+
+    async def _start_child(self) -> None:
+        try:
+            self._child = await EngineChild.start(self._built, self._start)
+        except ModelError as error:
+            raise await at_its_statement(error, self._built, self._start, []) from None
+        self.description = self._child.description
+
+    @property
+    def _start(self) -> EngineStart:
+        return EngineStart(self._seed, self._policy, "" if self._beliefs is None else self._beliefs.path)
+
+    async def _restart_child(self) -> None:
+        await self._drop_child()
+        await self._start_child()
+        assert self._child is not None
+        try:
+            for command in self._restoration(self._changes):
+                await self._child.ask(command, _Done, ANSWER_DEADLINE_S)
+        except AosError:
+            await self._drop_child()
+            raise
+
+    def _restoration(self, changes: int) -> list[str]:
+        """What brings a new child to the belief after so many changes, the last or the one before it."""
+        return [f"restore_belief\t{changes}"] if changes > 0 and self._beliefs is not None else []
+
+    async def _drop_child(self) -> None:
+        child, self._child = self._child, None
+        if child is not None:
+            await child.close()

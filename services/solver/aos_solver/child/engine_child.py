@@ -1,0 +1,185 @@
+"""The process that runs one built model: a line of text there, a line of JSON back.
+
+Every question has a deadline; a crash, a hang and an exit become a ModelError that names the document place
+that ran.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+from typing import Literal, Self, TypeVar
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity
+from aos_protocol.errors import ModelError
+from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import EngineDescription, EngineFault
+from aos_solver.child.blame_page import new_blame_page, running_piece
+from aos_solver.child.printed import pass_on
+from aos_solver.child.shared_memory import SharedMemory
+
+__all__ = ["EngineChild", "EngineStart", "ImpossiblePolicy", "KilledError"]
+
+ImpossiblePolicy = Literal["hold", "widen", "reset"]
+
+A = TypeVar("A")
+
+START_DEADLINE_S = 20.0
+EXIT_DEADLINE_S = 2.0
+ADDRESS_SPACE_BYTES = 8 * 1024**3
+ANSWER_LIMIT_BYTES = 32 * 1024**2
+"""Of one answer; what may be longer comes in pieces."""
+
+
+class _FaultAnswer(msgspec.Struct, frozen=True):
+    fault: EngineFault | None = None
+
+
+class EngineStart(msgspec.Struct, frozen=True):
+    """What a child is started with. It keeps its beliefs in the file of that path, or nowhere."""
+
+    seed: int
+    policy: ImpossiblePolicy
+    beliefs: str = ""
+
+
+class KilledError(ModelError):
+    """The child was ended by SIGKILL: from outside, not by model code, so asking again is right."""
+
+
+class EngineChild:
+    """A running child. After an error it may be gone (`is_running`); nobody asks two things at once."""
+
+    description: EngineDescription
+
+    def __init__(self, built: BuiltModel, blame: SharedMemory, child: Child) -> None:
+        self._built = built
+        self._child = child
+        self._blame: SharedMemory | None = blame
+        self._printed = asyncio.create_task(pass_on(child.stderr, sys.stderr.buffer))
+
+    @classmethod
+    async def start(cls, built: BuiltModel, start: EngineStart) -> Self:
+        """A child on the initial belief; ModelError if the model cannot even begin."""
+        engine = await cls.launch(built, start)
+        try:
+            await engine.begin(START_DEADLINE_S)
+        except BaseException:
+            await engine.close()
+            raise
+        return engine
+
+    @classmethod
+    async def launch(cls, built: BuiltModel, start: EngineStart) -> Self:
+        """A child of which nobody knows yet whether it can `begin`."""
+        blame = new_blame_page()
+        arguments = [blame.path, start.beliefs, str(start.seed), start.policy]
+        try:
+            child = await Child.start(
+                guarded([str(built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)),
+                name="engine",
+                stdin=PIPE,
+                stdout=PIPE,
+                stderr=PIPE,
+                stream_limit_bytes=ANSWER_LIMIT_BYTES,
+            )
+        except BaseException:
+            blame.close()
+            raise
+        return cls(built, blame, child)
+
+    async def begin(self, deadline_s: float) -> None:
+        """Waits for the initial belief; ModelError if the model has none."""
+        self.description = await self._exchange(None, EngineDescription, deadline_s)
+
+    @property
+    def pid(self) -> int:
+        """The guarded child's process id."""
+        return self._child.pid
+
+    @property
+    def is_running(self) -> bool:
+        return self._blame is not None and self._child.returncode is None
+
+    @property
+    def running_piece(self) -> int:
+        """The number of the document code that runs now or ran last, 0 for none; of threads, the first's."""
+        return 0 if self._blame is None else running_piece(self._blame)
+
+    async def ask(self, command: str, kind: type[A], deadline_s: float) -> A:
+        """The answer to a command; ModelError for a fault of model code."""
+        return await self._exchange(command, kind, deadline_s)
+
+    async def close(self) -> None:
+        """Ends the child; closing twice does nothing."""
+        self._child.kill()
+        await self._child.wait()
+        await asyncio.wait({self._printed}, timeout=EXIT_DEADLINE_S)
+        self._printed.cancel()
+        if self._blame is not None:
+            self._blame.close()
+            self._blame = None
+
+    def fault(self, code: str, message: str, piece: int) -> ModelError:
+        """The error of model code, at the document place of that number if it is one."""
+        spans = self._built.emitted.snippets
+        if not 0 < piece <= len(spans):
+            return ModelError(message, code=code)
+        span = spans[piece - 1]
+        hint = "Look at this piece of the document"
+        diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)
+        return ModelError(f"{span}: {message}", code=code, hint=hint, diagnostics=(diagnostic,))
+
+    async def _exchange(self, command: str | None, kind: type[A], deadline_s: float) -> A:
+        """One line there and one back; `command` None only waits for the answer."""
+        child = self._child
+        try:
+            async with asyncio.timeout(deadline_s):
+                if command is not None:
+                    child.stdin.write(command.encode() + b"\n")
+                    await child.stdin.drain()
+                line = await child.stdout.readline()
+        except TimeoutError:
+            raise await self._lost("AOS211", f"the model did not finish within {deadline_s:.0f} s") from None
+        except (ConnectionError, ValueError):
+            line = b""
+        if not line.endswith(b"\n"):
+            raise await self._lost("AOS210", "model code ended the engine")
+        return self._decoded(line, kind)
+
+    def _decoded(self, line: bytes, kind: type[A]) -> A:
+        try:
+            fault = msgspec.json.decode(line, type=_FaultAnswer).fault
+            if fault is None:
+                return msgspec.json.decode(line, type=kind)
+        except msgspec.MsgspecError as error:
+            raise ModelError(f"the engine's answer makes no sense: {error}", code="AOS213") from error
+        raise self.fault(fault.code, fault.text, fault.piece)
+
+    async def _lost(self, code: str, message: str) -> ModelError:
+        """The error for a child that is gone or has to go; the blame page tells what ran last."""
+        piece = self.running_piece
+        status = None if code == "AOS211" else await self._status()
+        await self.close()
+        if status == -signal.SIGKILL:
+            return KilledError("the engine was killed", code="AOS213")
+        if status is not None:
+            message = f"{message} ({_status_text(status)})"
+            code = code if piece else "AOS213"
+        return self.fault(code, message, piece)
+
+    async def _status(self) -> int | None:
+        """How a child that has closed its output ended; None if it lingers."""
+        try:
+            async with asyncio.timeout(EXIT_DEADLINE_S):
+                return await self._child.wait()
+        except TimeoutError:
+            return None
+
+
+def _status_text(returncode: int) -> str:
+    return f"signal {-returncode}" if returncode < 0 else f"exit status {returncode}"

@@ -1,0 +1,150 @@
+"""Which statement failed: what failed is run again by a build of the model that tells of every statement.
+
+A running model tells only the piece of document code that runs. After a fault the model is built once more,
+traced and without optimisation, and asked the same from the same belief; if that goes well, random actions
+are tried. The fault stays where it was told if it does not come again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import Coroutine, Sequence
+from typing import Any, TypeVar
+
+import msgspec
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.errors import AosError, ModelError
+from aos_solver.building.build import BuiltModel, build
+from aos_solver.child.answers import BeliefUpdate
+from aos_solver.child.engine_child import EngineChild, EngineStart
+from aos_solver.emission.trace import TracedModel, traced
+
+__all__ = ["at_its_statement"]
+
+log = logging.getLogger(__name__)
+
+A = TypeVar("A")
+
+REPLAY_DEADLINE_S = 12.0
+HANG_DEADLINE_S = 4.0
+_RANDOM_ACTIONS_S = 2.0
+_SAMPLE_PERIOD_S = 0.02
+_LAST_SAMPLES = 20
+_FOUND = ("AOS210", "AOS211", "AOS214", "AOS215")
+
+
+async def at_its_statement(
+    fault: ModelError, built: BuiltModel, start: EngineStart, commands: Sequence[str]
+) -> ModelError:
+    """The fault at the document place of its statement, or as it is if that cannot be found.
+
+    `commands` are what a new child was asked until it failed; without any it failed to start.
+    """
+    if fault.code not in _FOUND or not fault.diagnostics:
+        return fault
+    place = fault.diagnostics[0].span
+    trace = traced(built.emitted)
+    if not trace.has_later_statements(built.emitted.snippets.index(place) + 1):
+        return fault
+    try:
+        slow = await build(trace.emitted, cache_dir=built.cache_dir, kind="unoptimized")
+        span = await _Replay(fault.code, place, trace, slow, start).statement(commands)
+    except AosError as error:
+        log.info("the statement of a fault was not found: %s", error)
+        return fault
+    return fault if span is None else _moved(fault, span)
+
+
+def _moved(fault: ModelError, span: Span) -> ModelError:
+    (told,) = fault.diagnostics
+    hint = "Look at this statement"
+    diagnostic = msgspec.structs.replace(told, span=span, hint=hint)
+    return ModelError(f"{span}: {told.message}", code=fault.code, hint=hint, diagnostics=(diagnostic,))
+
+
+class _Replay:
+    """The same once more, with the traced model."""
+
+    def __init__(
+        self,
+        code: str,
+        place: Span,
+        trace: TracedModel,
+        built: BuiltModel,
+        start: EngineStart,
+    ) -> None:
+        self._code = code
+        self._trace = trace
+        self._spans = trace.emitted.snippets
+        self._piece = self._spans.index(place) + 1
+        self._built = built
+        self._start = start
+        self._samples: deque[int] = deque(maxlen=_LAST_SAMPLES)
+
+    async def statement(self, commands: Sequence[str]) -> Span | None:
+        """Where the same fault comes again."""
+        told = await self._fault_of([_with_one_thread(command) for command in commands])
+        if told is None:
+            told = await self._fault_of([f"rate\t{_RANDOM_ACTIONS_S}\t{self._start.seed}"])
+            if told is not None and not self._is_in_the_piece(told):
+                return None
+        return told
+
+    async def _fault_of(self, commands: Sequence[str]) -> Span | None:
+        child = await EngineChild.launch(self._built, self._start)
+        try:
+            await self._watched(child, child.begin(self._deadline_s))
+            for command in commands:
+                await self._asked(child, command)
+        except ModelError as error:
+            return self._span_of(error)
+        finally:
+            await child.close()
+        return None
+
+    async def _asked(self, child: EngineChild, command: str) -> None:
+        if not command.startswith("update\t"):
+            await self._watched(child, child.ask(command, dict, self._deadline_s))
+            return
+        update = await self._watched(child, child.ask(command, BeliefUpdate, self._deadline_s))
+        if (fault := update.uncorrected) is not None:
+            raise child.fault(fault.code, fault.text, fault.piece)
+
+    @property
+    def _deadline_s(self) -> float:
+        return HANG_DEADLINE_S if self._code == "AOS211" else REPLAY_DEADLINE_S
+
+    async def _watched(self, child: EngineChild, question: Coroutine[Any, Any, A]) -> A:
+        """The answer; what runs until then is looked at."""
+        asking = asyncio.create_task(question)
+        while not asking.done():
+            self._samples.append(child.running_piece)
+            await asyncio.wait({asking}, timeout=_SAMPLE_PERIOD_S)
+        return asking.result()
+
+    def _span_of(self, error: ModelError) -> Span | None:
+        if error.code != self._code or not error.diagnostics:
+            return None
+        if error.code != "AOS211":
+            return error.diagnostics[0].span
+        # What never ends is the first of the statements that still run in the end: the head of its loop.
+        if not self._samples or any(not self._is_number_in_the_piece(number) for number in self._samples):
+            return None
+        return self._spans[min(self._samples) - 1]
+
+    def _is_number_in_the_piece(self, number: int) -> bool:
+        return number > 0 and self._trace.pieces[number - 1] == self._piece
+
+    def _is_in_the_piece(self, span: Span) -> bool:
+        return self._is_number_in_the_piece(self._spans.index(span) + 1)
+
+
+def _with_one_thread(command: str) -> str:
+    """Of several threads it would not be known which one failed, nor would they meet the fault again."""
+    if not command.startswith("plan\t"):
+        return command
+    without_threads, _, _ = command.rpartition("\t")
+    return f"{without_threads}\t1"

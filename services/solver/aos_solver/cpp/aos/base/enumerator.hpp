@@ -1,0 +1,159 @@
+// Model code over every combination of its discrete draws, each with its probability.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "aos/base/random.hpp"
+
+namespace aos {
+
+// A draw that has no finite set of outcomes, or more combinations than the budget: sampling has to do.
+struct NotEnumerable {
+  const char* reason;
+};
+
+inline constexpr int path_budget = 4096;
+
+// Replays model code. One run follows one path: known choices are repeated, new ones take their first outcome. Outcomes
+// of probability zero are never walked.
+//
+// Where a step has too many paths, or a continuous draw, the first draws of a path can be left to chance, and the last
+// ones, which usually decide what is observed, enumerated.
+class Enumerator : public Draws<Enumerator> {
+ public:
+  // Of the path; given the draws that were left to chance.
+  double probability() const { return probability_; }
+
+  // How many choices are known of the path: all of the one before it that it shares.
+  std::size_t draws() const { return choices_.size(); }
+
+  bool flag(double probability) {
+    if (probability <= 0) return false;
+    if (probability >= 1) return true;
+    const double weights[] = {1 - probability, probability};
+    return choose(weights, 2, 1.0) == 1;
+  }
+
+  int choose(const double* weights, int count, double total);
+  double uniform();
+
+  // Calls `run(enumerator)` once for each path; after it, `probability()` is the path's. Throws NotEnumerable.
+  template <class Run>
+  void for_each_path(Run&& run, int most = path_budget) {
+    start(nullptr, 0);
+    int paths = 0;
+    do {
+      if (++paths > most) throw NotEnumerable{"there are more combinations of draws than can be walked"};
+      run_once(run);
+    } while (advance());
+  }
+
+  // One path at random, of probability 1.
+  template <class Run>
+  void draw_path(Sampler& chance, Run&& run) {
+    start(&chance, all_draws);
+    run_once(run);
+  }
+
+  // How many paths there were if all had as many alternatives as the one that was just drawn; on average this is right
+  // (Knuth, 1975). Infinite where a draw is continuous.
+  double combinations() const {
+    double product = 1;
+    for (const Choice& choice : choices_) {
+      if (choice.alternatives == no_alternatives) return std::numeric_limits<double>::infinity();
+      product *= choice.alternatives;
+    }
+    return product;
+  }
+
+  // How many draws of the path that was just drawn come before those that have at most `most` combinations together.
+  std::size_t draws_before_last(int most) const {
+    std::size_t first = choices_.size();
+    for (long combinations = 1; first > 0; --first) {
+      const int alternatives = choices_[first - 1].alternatives;
+      if (alternatives == no_alternatives || (combinations *= alternatives) > most) break;
+    }
+    return first;
+  }
+
+  // Calls `run(enumerator)` once for each path that agrees with `by_chance` first draws, which are left to chance. Gives
+  // up after `most` paths, and then returns false.
+  template <class Run>
+  bool for_each_completion(Sampler& chance, std::size_t by_chance, int most, Run&& run) {
+    start(&chance, by_chance);
+    int paths = 0;
+    do {
+      if (++paths > most) return false;
+      run_once(run);
+    } while (advance());
+    return true;
+  }
+
+  // One path at random that agrees with the last one in its `by_chance` first draws.
+  template <class Run>
+  void redraw_after(std::size_t by_chance, Run&& run) {
+    if (choices_.size() > by_chance) choices_.resize(by_chance);
+    by_chance_ = all_draws;
+    run_once(run);
+  }
+
+ private:
+  static constexpr int none = -1;
+  static constexpr int no_alternatives = 0;
+  static constexpr std::size_t all_draws = static_cast<std::size_t>(-1);
+
+  struct Choice {
+    int taken;
+    int following;
+    int alternatives;  // of a draw left to chance: itself and the others that can happen
+    double value = 0;  // of a continuous draw
+  };
+
+  // The first outcome at or after `from` that can happen; -1 if there is none.
+  static int next_outcome(const double* weights, int count, int from) {
+    for (int i = from; i < count; ++i) {
+      if (weights[i] > 0) return i;
+    }
+    return none;
+  }
+
+  int choose_by_chance(const double* weights, int count, double total) {
+    if (depth_ == choices_.size()) {
+      int alternatives = 0;
+      for (int i = 0; i < count; ++i) alternatives += weights[i] > 0 ? 1 : 0;
+      choices_.push_back({chance_->choose(weights, count, total), none, alternatives});
+    }
+    return choices_[depth_++].taken;
+  }
+
+  void start(Sampler* chance, std::size_t by_chance) {
+    chance_ = chance;
+    by_chance_ = by_chance;
+    choices_.clear();
+  }
+
+  template <class Run>
+  void run_once(Run& run) {
+    depth_ = 0;
+    probability_ = 1;
+    run(*this);
+  }
+
+  bool advance() {
+    choices_.resize(depth_);
+    while (!choices_.empty() && choices_.back().following < 0) choices_.pop_back();
+    if (choices_.empty()) return false;
+    choices_.back().taken = choices_.back().following;
+    return true;
+  }
+
+  std::vector<Choice> choices_;
+  std::size_t depth_ = 0;
+  double probability_ = 1;
+  Sampler* chance_ = nullptr;
+  std::size_t by_chance_ = 0;
+};
+
+}  // namespace aos

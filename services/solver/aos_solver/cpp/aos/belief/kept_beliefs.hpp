@@ -1,0 +1,99 @@
+// Beliefs that outlive a process, in a file that its parent holds open. Each change of the belief has a number, and the
+// parent counts those that it was told of. The file has room for two beliefs: when a process ends amid a change, the one
+// before it is whole.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "aos/belief/belief.hpp"
+
+namespace aos {
+
+template <class Model>
+class KeptBeliefs {
+ public:
+  // An empty path keeps nothing.
+  explicit KeptBeliefs(const char* path) : file_(*path == '\0' ? -1 : ::open(path, O_RDWR | O_CLOEXEC)) {}
+  KeptBeliefs(const KeptBeliefs&) = delete;
+  KeptBeliefs& operator=(const KeptBeliefs&) = delete;
+  ~KeptBeliefs() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+  // The belief after one more change. A file without room for it keeps none.
+  void keep(const Belief<Model>& belief) {
+    ++changes_;
+    if (file_ < 0) return;
+    const auto& particles = belief.particles();
+    const std::size_t bytes = particles.size() * sizeof(Particle);
+    const Head none{};
+    const Head head{changes_, particles.size(), belief.error_bound(), belief.is_drawn()};
+    if (!write(&none, sizeof none, 0) || !write(particles.data(), bytes, sizeof head)) return;
+    write(&head, sizeof head, 0);
+  }
+
+  // The belief after the change of this number, from which counting goes on; nothing where it was not kept.
+  std::optional<Belief<Model>> restore(std::uint64_t change) {
+    changes_ = change;
+    Head head;
+    if (file_ < 0 || !read(&head, sizeof head, 0) || head.change != change || head.particles == 0) return std::nullopt;
+    std::vector<Particle> particles(head.particles);
+    if (!read(particles.data(), particles.size() * sizeof(Particle), sizeof head)) return std::nullopt;
+    return Belief<Model>::of(particles, head.error_bound, head.is_drawn);
+  }
+
+ private:
+  using Particle = aos::Particle<Model>;
+  static_assert(std::is_trivially_copyable_v<Particle>);
+
+  struct Head {
+    std::uint64_t change;
+    std::uint64_t particles;
+    double error_bound;
+    bool is_drawn;
+  };
+
+  // Far apart, in a file that takes memory only for what is written.
+  off_t begin() const { return static_cast<off_t>(changes_ % 2) << 36; }
+
+  bool write(const void* bytes, std::size_t count, std::size_t offset) const {
+    const auto* next = static_cast<const char*>(bytes);
+    off_t place = begin() + static_cast<off_t>(offset);
+    while (count > 0) {
+      const ssize_t written = ::pwrite(file_, next, count, place);
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) return false;
+      next += written;
+      place += written;
+      count -= static_cast<std::size_t>(written);
+    }
+    return true;
+  }
+  bool read(void* bytes, std::size_t count, std::size_t offset) const {
+    auto* next = static_cast<char*>(bytes);
+    off_t place = begin() + static_cast<off_t>(offset);
+    while (count > 0) {
+      const ssize_t taken = ::pread(file_, next, count, place);
+      if (taken < 0 && errno == EINTR) continue;
+      if (taken <= 0) return false;
+      next += taken;
+      place += taken;
+      count -= static_cast<std::size_t>(taken);
+    }
+    return true;
+  }
+
+  int file_;
+  std::uint64_t changes_ = 0;
+};
+
+}  // namespace aos

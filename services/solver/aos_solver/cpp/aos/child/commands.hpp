@@ -1,0 +1,393 @@
+// What an engine child can be asked, one method for each command; answers are JSON objects.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "aos/base/base64.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/base/clock.hpp"
+#include "aos/model/correction.hpp"
+#include "aos/planning/exact.hpp"
+#include "aos/child/exploration.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/base/json.hpp"
+#include "aos/belief/kept_beliefs.hpp"
+#include "aos/planning/planner.hpp"
+#include "aos/child/reachability.hpp"
+#include "aos/model/state_text.hpp"
+#include "aos/model/walk.hpp"
+#include "aos/child/worlds.hpp"
+
+namespace aos {
+
+// A command that cannot be carried out as it was given.
+struct BadCommand {
+  std::string text;
+};
+
+template <class Model>
+class Engine {
+ public:
+  using State = typename Model::State;
+  using Corrected = CorrectedModel<Model>;
+  static_assert(std::is_trivially_copyable_v<State>);
+
+  // `kept_beliefs` is the path of the file for KeptBeliefs.
+  Engine(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs)
+      : random_(seed), policy_(policy), belief_(Belief<Model>::initial(random_)), kept_(kept_beliefs), hidden_() {}
+
+  void describe(JsonWriter& json) const {
+    json.begin_object().member("project", Model::project).member("horizon", Model::horizon);
+    json.member("discount", Model::discount).key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      const int skill = Model::skill_of(action);
+      json.begin_object().member("name", Model::action_name(action)).member("skill", Model::skill_name(skill));
+      Model::write_parameters(action, json.key("parameters"));
+      json.end_object();
+    }
+    json.end_array().key("responses").begin_object();
+    for (int skill = 0; skill < Model::skill_count; ++skill) {
+      json.key(Model::skill_name(skill)).begin_array();
+      for (int response = 0; response < Model::response_count(skill); ++response) {
+        json.value(Model::response_name(skill, response));
+      }
+      json.end_array();
+    }
+    json.end_object().end_object();
+  }
+
+  void reset_belief(JsonWriter& json) {
+    become(json, Belief<Model>::initial(random_), [&] { search_.start_over(); });
+  }
+
+  void summary(JsonWriter& json) const { belief_.write_summary(json); }
+
+  void plan(JsonWriter& json, Budget budget, std::uint64_t seed, int horizon, PlannerKind planner) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto processor_start = processor_time();
+    if (horizon <= 0) horizon = Model::horizon;
+    if (horizon != planned_horizon_) search_.forget();
+    planned_horizon_ = horizon;
+    Sampler random{seed};
+    const std::uint64_t known = search_.known_simulations();
+    const std::uint64_t simulations = search_.search(planner, belief_, budget, horizon, random);
+    const auto estimates = search_.estimates(belief_);
+    const int best = search_.choice(estimates);
+    json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
+    json.member("known_simulations", known);
+    json.member("planner", search_.name()).member("why", search_.why());
+    json.key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      const auto& estimate = estimates[static_cast<std::size_t>(action)];
+      json.begin_object().member("action", Model::action_name(action)).member("q", estimate.q);
+      json.member("n", estimate.n).member("stderr", estimate.standard_error).end_object();
+    }
+    json.end_array().key("predicted");
+    write_predicted(json, best);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    json.member("seconds", spent.count()).member("cpu_seconds", seconds_since(processor_start)).end_object();
+  }
+
+  // Begins to think about what may come after an action that is carried out now; `go_on_thinking` does it.
+  void think(JsonWriter& json, Budget budget, std::uint64_t seed, int action) {
+    thought_ = {.action = checked(action), .budget = budget, .seed = seed};
+    json.begin_object().end_object();
+  }
+
+  // Until the budget is used up or `is_over()`. A fault is left to the next search that meets it.
+  template <class IsOver>
+  void go_on_thinking(IsOver&& is_over) {
+    if (!thought_ || planned_horizon_ == 0) return;
+    const Thought thought = *std::exchange(thought_, std::nullopt);
+    Sampler random{thought.seed};
+    try {
+      search_.think_about(thought.action, belief_, thought.budget, planned_horizon_, random, is_over);
+    } catch (...) {
+      search_.forget();
+      blame::at(0);
+    }
+  }
+
+  // Budgets in seconds are of processor time from now on, or of real time again.
+  void count_processor_time(JsonWriter& json, bool counts) {
+    PlanningClock::counts_processor_time = counts;
+    json.begin_object().end_object();
+  }
+
+  void exact(JsonWriter& json, int horizon, std::uint64_t belief_budget, double seconds) const {
+    ExactEvaluation<Model> evaluation{belief_budget, seconds};
+    const auto values = evaluation.action_values(belief_, horizon > 0 ? horizon : Model::horizon);
+    json.begin_object().key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      json.begin_object().member("action", Model::action_name(action));
+      json.member("q", values[static_cast<std::size_t>(action)]).end_object();
+    }
+    json.end_array().member("beliefs", evaluation.beliefs()).member("states", evaluation.states()).end_object();
+  }
+
+  void reach(JsonWriter& json, double seconds) const {
+    const Reachability<Model> reached{belief_, seconds};
+    json.begin_object().member("has_goal", reached.has_goal()).key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      json.begin_object().member("name", Model::action_name(action));
+      json.member("skill", Model::skill_name(Model::skill_of(action))).member("is_met", reached.is_met(action)).end_object();
+    }
+    json.end_array().member("states", reached.states()).member("depth", reached.depth());
+    json.member("limit", reached.limit()).end_object();
+  }
+
+  // `locals`, where given, are the values of the mapping's local variables, and the belief is corrected with them; a fault
+  // in that is told with the answer, which is then that of the response alone.
+  void update(JsonWriter& json, int action, std::string_view response, std::optional<std::string_view> locals) {
+    const Observation observation = observation_of(checked(action), response);
+    Uncorrected uncorrected;
+    auto [posterior, probability] = locals ? corrected_posterior(action, observation, *locals, uncorrected)
+                                           : belief_.posterior(action, observation, random_);
+    const bool is_impossible = posterior.particles().empty();
+    json.begin_object().member("probability", probability).member("is_impossible", is_impossible);
+    if (!uncorrected.code.empty()) {
+      json.key("uncorrected").begin_object().member("code", uncorrected.code).member("text", uncorrected.text);
+      json.member("piece", uncorrected.piece).end_object();
+    }
+    json.key("summary");
+    if (is_impossible) {
+      become(json, after_impossible(action));
+    } else {
+      become(json, std::move(posterior), [&] { search_.move_to(action, observation); });
+    }
+    json.end_object();
+  }
+
+  // Nobody knows whether the action ran.
+  void update_without_observation(JsonWriter& json, int action, double ran_probability) {
+    json.begin_object().member("probability", 1.0).member("is_impossible", false);
+    become(json.key("summary"), belief_.mixed_with(belief_.predicted(checked(action), random_), ran_probability));
+    json.end_object();
+  }
+
+  // The model as numbers from the current belief on: `is_new` begins, each further call goes on for about so long.
+  void explore(JsonWriter& json, bool is_new, double seconds) {
+    if (is_new || !exploration_) exploration_.emplace(belief_);
+    exploration_->go_on(json, seconds, [](int action, Observation seen) { return response_text(action, seen); });
+  }
+
+  // How likely each observation is after an action.
+  void predict(JsonWriter& json, int action) {
+    json.begin_object().key("predicted");
+    write_predicted(json, checked(action));
+    json.end_object();
+  }
+
+  // The particles from number `first` on, as many as fit one answer, each as its weight and its state as text; what is the
+  // same in all states only with the first of them.
+  void export_belief(JsonWriter& json, std::size_t first) const {
+    const auto& particles = belief_.particles();
+    const SavedConstants constants = first == 0 ? Model::save_constants() : SavedConstants{};
+    json.begin_object().member("error_bound", belief_.error_bound()).member("is_drawn", belief_.is_drawn());
+    json.member("states", particles.size()).key("constants").begin_object();
+    for (const auto& [name, text] : constants.texts()) json.member(name, text);
+    json.end_object().key("particles").begin_array();
+    const std::size_t most_bytes = json.text().size() + most_answer_bytes;
+    for (std::size_t number = first; number < particles.size() && json.text().size() < most_bytes; ++number) {
+      json.begin_array().value(particles[number].weight).value(Model::save_state(particles[number].state)).end_array();
+    }
+    json.end_array().end_object();
+  }
+
+  // The fields are as many pairs of a constant's name and text as there are constants, then pairs of weight and state.
+  void import_belief(JsonWriter& json, double error_bound, bool is_drawn, std::size_t constants,
+                     const std::vector<std::string_view>& fields) {
+    SavedConstants saved;
+    std::vector<typename Belief<Model>::Particle> particles;
+    for (std::size_t i = 0; i + 1 < fields.size(); i += 2) {
+      if (i < 2 * constants) {
+        saved.add_text(fields[i], fields[i + 1]);
+        continue;
+      }
+      State state{};
+      Model::load_state(state, fields[i + 1], saved);
+      particles.push_back({state, std::stod(std::string{fields[i]})});
+    }
+    if (particles.empty()) throw BadCommand{"an empty belief"};
+    become(json, Belief<Model>::of(particles, error_bound, is_drawn));
+  }
+
+  // After the change of this number, of an engine before this one.
+  void restore_belief(JsonWriter& json, std::uint64_t change) {
+    auto kept = kept_.restore(change);
+    if (!kept) throw BadCommand{"that belief was not kept"};
+    belief_ = *std::move(kept);
+    search_.forget();
+    json.begin_object().end_object();
+  }
+
+  // Worlds for somebody who learns.
+  void reset_worlds(JsonWriter& json, const std::vector<std::uint64_t>& seeds) { worlds_.reset(json, seeds); }
+
+  // The actions are 32-bit numbers in base64.
+  void step_worlds(JsonWriter& json, std::string_view text) {
+    const auto actions = from_base64<std::int32_t>(text);
+    if (!actions || actions->size() != worlds_.count()) throw BadCommand{"not one action for each world"};
+    for (const std::int32_t action : *actions) checked(std::max(action, 0));
+    worlds_.step(json, *actions);
+  }
+
+  // A world of its own, stepped by the model, for missions without a robot.
+  void reset_world(JsonWriter& json, std::uint64_t seed) {
+    world_random_ = Sampler{seed};
+    hidden_ = State{};
+    Model::initial(hidden_, world_random_);
+    json.begin_object().member("ending", ending_text(hidden_)).end_object();
+  }
+
+  void step_world(JsonWriter& json, int action) {
+    const Step step = Model::step(hidden_, checked(action), world_random_);
+    json.begin_object().member("reward", step.reward);
+    json.member("response", response_text(action, step.observation)).member("ending", ending_text(hidden_)).end_object();
+  }
+
+  // The hidden state as text for people.
+  void show_world(JsonWriter& json) const {
+    json.begin_object().member("state", Model::state_text(hidden_)).end_object();
+  }
+
+  // Samples of (next state, observation, reward) for random actions, from initial states: see walk.hpp.
+  void rate(JsonWriter& json, double seconds, std::uint64_t seed) const {
+    Sampler random{seed};
+    const auto start = std::chrono::steady_clock::now();
+    const auto processor_start = processor_time();
+    std::chrono::duration<double> spent{};
+    std::uint64_t samples = 0;
+    double rewards = 0;
+    for (std::uint64_t steps = 64; spent.count() < seconds; steps = std::min<std::uint64_t>(2 * steps, 1 << 16)) {
+      const Walked walked = Model::walk(steps, random);
+      samples += walked.steps;
+      rewards += walked.rewards;
+      spent = std::chrono::steady_clock::now() - start;
+    }
+    json.begin_object().member("samples", samples).member("seconds", spent.count());
+    json.member("cpu_seconds", seconds_since(processor_start));
+    json.member("mean_reward", rewards / static_cast<double>(samples)).end_object();
+  }
+
+ private:
+  static constexpr std::size_t most_answer_bytes = std::size_t{16} << 20;  // about
+
+  struct Thought {
+    int action;
+    Budget budget;
+    std::uint64_t seed;
+  };
+
+  // Why an observation did not correct the belief; no code where it did.
+  struct Uncorrected {
+    std::string code;
+    std::string text;
+    std::uint32_t piece = 0;
+  };
+
+  std::pair<Belief<Model>, double> corrected_posterior(int action, Observation observation, std::string_view locals,
+                                                       Uncorrected& uncorrected) {
+    try {
+      Model::read_locals(action, locals);
+      Corrected::made = observation;
+      const auto [posterior, probability] =
+          belief_.template as<Corrected>().posterior(action, observation, random_);
+      return {posterior.template as<Model>(), probability};
+    } catch (const ModelFault& fault) {
+      uncorrected = {fault.code, fault.text, blame::piece()};
+    } catch (const std::exception& error) {
+      uncorrected = {"AOS215", error.what(), blame::piece()};
+    }
+    return belief_.posterior(action, observation, random_);
+  }
+
+  // Takes over a belief and tells it. Nothing changes where it cannot be told.
+  void become(JsonWriter& json, Belief<Model> belief) {
+    become(json, std::move(belief), [&] { search_.forget(); });
+  }
+  template <class Follow>
+  void become(JsonWriter& json, Belief<Model> belief, Follow&& follow) {
+    belief.write_summary(json);
+    belief_ = std::move(belief);
+    kept_.keep(belief_);
+    follow();
+  }
+
+  static double seconds_since(std::chrono::nanoseconds processor_start) {
+    return std::chrono::duration<double>{processor_time() - processor_start}.count();
+  }
+
+  static int checked(int action) {
+    if (action < 0 || action >= Model::action_count()) throw BadCommand{"there is no such action"};
+    return action;
+  }
+
+  static const char* ending_text(const State& state) {
+    switch (Model::ending(state)) {
+      case Ending::running: return "";
+      case Ending::goal: return "goal";
+      case Ending::failure: return "failure";
+    }
+    return "";
+  }
+
+  static std::string response_text(int action, Observation observation) {
+    if (observation >= 0) return Model::response_name(Model::skill_of(action), static_cast<int>(observation));
+    if (observation == default_observation) return default_observation_text;
+    return std::string{observation_text(observation)};
+  }
+
+  static Observation observation_of(int action, std::string_view response) {
+    const int skill = Model::skill_of(action);
+    for (int number = 0; number < Model::response_count(skill); ++number) {
+      if (response == Model::response_name(skill, number)) return number;
+    }
+    if (response == default_observation_text) return default_observation;
+    return text_observation(response);
+  }
+
+  void write_predicted(JsonWriter& json, int action) {
+    json.begin_array();
+    for (const auto& [observation, probability] : belief_.observations(action, random_)) {
+      json.begin_object().member("response", response_text(action, observation));
+      json.member("probability", probability).end_object();
+    }
+    json.end_array();
+  }
+
+  // hold: what the action does is believed, what was seen is not. widen: the same, but half of the belief goes back to
+  // what it was before and to the initial belief, in equal shares. reset: the initial belief.
+  Belief<Model> after_impossible(int action) {
+    const Belief<Model> initial = Belief<Model>::initial(random_);
+    if (policy_ == ImpossiblePolicy::reset) return initial;
+    const Belief<Model> predicted = belief_.predicted(action, random_);
+    if (policy_ == ImpossiblePolicy::hold) return predicted;
+    return predicted.mixed_with(belief_.mixed_with(initial, 0.5), 0.5);
+  }
+
+  Sampler random_;
+  ImpossiblePolicy policy_;
+  Belief<Model> belief_;
+  KeptBeliefs<Model> kept_;
+  Planner<Model> search_;
+  int planned_horizon_ = 0;
+  std::optional<Thought> thought_;
+  State hidden_;
+  Sampler world_random_{0};
+  Worlds<Model> worlds_;
+  std::optional<Exploration<Model>> exploration_;
+};
+
+}  // namespace aos

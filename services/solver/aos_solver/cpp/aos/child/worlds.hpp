@@ -1,0 +1,109 @@
+// Many hidden states side by side, each with its own stream of random numbers: worlds that somebody outside acts in, to
+// learn. What is observed is told as numbers: 0 for nothing, then the responses of all skills in their order; responses
+// of the same name are the same observation. Text responses are told as texts.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aos/base/base64.hpp"
+#include "aos/base/json.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+template <class Model>
+class Worlds {
+ public:
+  using State = typename Model::State;
+
+  Worlds() {
+    names_.push_back(default_observation_text);
+    for (int skill = 0; skill < Model::skill_count; ++skill) {
+      has_texts_ = has_texts_ || Model::has_text_response(skill);
+      numbers_.emplace_back();
+      for (int response = 0; response < Model::response_count(skill); ++response) {
+        numbers_.back().push_back(number_of(Model::response_name(skill, response)));
+      }
+    }
+  }
+
+  // One new world for each seed; tells the names of the observations, and whether there are texts among them.
+  void reset(JsonWriter& json, const std::vector<std::uint64_t>& seeds) {
+    worlds_.clear();
+    for (const std::uint64_t seed : seeds) {
+      worlds_.push_back({State{}, Sampler{seed}});
+      start(worlds_.back());
+    }
+    json.begin_object().key("observations").begin_array();
+    for (const std::string& name : names_) json.value(name);
+    json.end_array().member("has_texts", has_texts_).end_object();
+  }
+
+  std::size_t count() const { return worlds_.size(); }
+
+  // One action for each world; a negative one starts the world anew. Arrays have an entry for each world and are told in
+  // base64; endings are of `Ending`.
+  void step(JsonWriter& json, const std::vector<std::int32_t>& actions) {
+    rewards_.clear();
+    observations_.clear();
+    endings_.clear();
+    texts_.clear();
+    for (std::size_t number = 0; number < worlds_.size(); ++number) advance(worlds_[number], actions[number]);
+    json.begin_object().member("endings", to_base64(endings_)).member("rewards", to_base64(rewards_));
+    json.member("observations", to_base64(observations_)).key("texts").begin_array();
+    for (const std::string& text : texts_) json.value(text);
+    json.end_array().end_object();
+  }
+
+ private:
+  struct World {
+    State state;
+    Sampler random;
+  };
+
+  int number_of(const std::string& name) {
+    const auto number = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+    if (number == names_.size()) names_.push_back(name);
+    return static_cast<int>(number);
+  }
+
+  static void start(World& world) {
+    world.state = State{};
+    Model::initial(world.state, world.random);
+  }
+
+  void advance(World& world, int action) {
+    Step step;
+    if (action < 0) {
+      start(world);
+    } else {
+      step = Model::step(world.state, action, world.random);
+    }
+    rewards_.push_back(step.reward);
+    endings_.push_back(static_cast<std::uint8_t>(Model::ending(world.state)));
+    const bool is_named = step.observation >= 0;
+    observations_.push_back(is_named ? numbers_[static_cast<std::size_t>(Model::skill_of(action))]
+                                               [static_cast<std::size_t>(step.observation)]
+                                     : 0);
+    if (has_texts_) texts_.emplace_back(is_named ? names_[static_cast<std::size_t>(observations_.back())]
+                                                 : observation_text(step.observation));
+  }
+
+  std::vector<std::string> names_;
+  std::vector<std::vector<int>> numbers_;  // by skill and response
+  bool has_texts_ = false;
+  std::vector<World> worlds_;
+
+  std::vector<double> rewards_;
+  std::vector<std::int32_t> observations_;
+  std::vector<std::uint8_t> endings_;
+  std::vector<std::string> texts_;
+};
+
+}  // namespace aos

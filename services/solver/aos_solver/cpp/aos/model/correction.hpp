@@ -1,0 +1,75 @@
+// What a real observation tells about the state beyond its response: the skill's code for a state given an observation,
+// with the local variables of its abstraction mapping. Only beliefs are corrected so, never what a search imagines.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "aos/model/blame.hpp"
+#include "aos/model/containers.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/model/state_text.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+// An array among the local variables; an index out of range is a ModelFault.
+template <class T>
+struct LocalArray : std::vector<T> {
+  decltype(auto) operator[](std::ptrdiff_t index) const { return std::vector<T>::operator[](checked(index)); }
+  decltype(auto) at(std::ptrdiff_t index) const { return (*this)[index]; }
+  decltype(auto) front() const { return (*this)[0]; }
+  decltype(auto) back() const { return (*this)[static_cast<std::ptrdiff_t>(this->size()) - 1]; }
+
+ private:
+  std::size_t checked(std::ptrdiff_t index) const {
+    if (static_cast<std::size_t>(index) >= this->size()) out_of_range(index, this->size());
+    return static_cast<std::size_t>(index);
+  }
+};
+
+template <class Locals>
+void read_locals(Locals& locals, std::string_view text) {
+  StateReader values{text};
+  values.read(locals);
+  values.finish();
+}
+
+// A local variable tells the value of the state variable that has its name.
+void tell(const char* name, auto& variable, const auto& value) {
+  try {
+    variable = value;
+  } catch (const ModelFault& fault) {
+    throw ModelFault{fault.code, std::string{name} + ": " + fault.text};
+  }
+}
+
+// Corrects `next`, to which a step has led from `before`. The special states look at it again, as if the step had led to
+// what it is now. A state that had ended before the step stays as it is.
+template <class Environment, class Skill, class State>
+void correct(const State& before, State& next, const auto& parameters, auto& random) {
+  if (before.__ending != Ending::running) return;
+  Skill::given_observation(before, next, parameters, random);
+  next.__ending = Ending::running;
+  if constexpr (requires { next.__spent; }) next.__spent = before.__spent;
+  Environment::special_states(next, random);
+  blame::at(0);
+}
+
+// A model whose steps are corrected where they bring the observation that was made: what a belief is updated with.
+template <class Model>
+struct CorrectedModel : Model {
+  inline static Observation made = default_observation;
+
+  template <class Random>
+  static Step step(typename Model::State& state, int action, Random& random) {
+    const typename Model::State before = state;
+    const Step step = Model::step(state, action, random);
+    if (step.observation == made) Model::correct(before, state, action, random);
+    return step;
+  }
+};
+
+}  // namespace aos

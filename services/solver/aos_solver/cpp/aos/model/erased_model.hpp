@@ -1,0 +1,108 @@
+// The compiled model behind the table, as the engine's templates want a model.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "aos/model/model_table.hpp"
+#include "aos/model/values.hpp"
+
+namespace aos {
+
+// A state of up to `Size` bytes.
+template <std::size_t Size>
+struct ErasedState {
+  alignas(std::uint64_t) std::byte bytes[Size]{};
+
+  friend bool operator==(const ErasedState& left, const ErasedState& right) {
+    return compiled_model.equal(left.bytes, right.bytes);
+  }
+};
+
+template <std::size_t Size>
+struct ErasedModel {
+  using State = ErasedState<Size>;
+  inline static const char* const project = compiled_model.project;
+  inline static const int horizon = compiled_model.horizon;
+  inline static const double discount = compiled_model.discount;
+  inline static const int skill_count = compiled_model.skill_count;
+  inline static const bool has_rollout_policy = compiled_model.has_rollout_policy;
+  inline static const bool has_state_heuristic = compiled_model.has_state_heuristic;
+
+  static void prepare() { compiled_model.prepare(); }
+  static int action_count() { return static_cast<int>(compiled_model.actions->size()); }
+  static const char* action_name(int action) { return grounded(action).name; }
+  static int skill_of(int action) { return grounded(action).skill; }
+  static const char* skill_name(int skill) { return compiled_model.skills[skill].name; }
+  static int response_count(int skill) { return compiled_model.skills[skill].response_count; }
+  static const char* response_name(int skill, int response) { return compiled_model.skills[skill].responses[response]; }
+  static bool has_text_response(int skill) { return compiled_model.skills[skill].has_text_response; }
+  static void write_parameters(int action, JsonWriter& json) {
+    compiled_model.skills[skill_of(action)].write_parameters(grounded(action).parameters, json);
+  }
+  static void read_locals(int action, std::string_view text) {
+    compiled_model.skills[skill_of(action)].read_locals(text);
+  }
+
+  static Ending ending(const State& state) { return static_cast<Ending>(state.bytes[compiled_model.ending_offset]); }
+  static std::uint64_t hash(const State& state) { return compiled_model.hash(state.bytes); }
+  static std::string state_text(const State& state) { return compiled_model.state_text(state.bytes); }
+  static std::string save_state(const State& state) { return compiled_model.save_state(state.bytes); }
+  static SavedConstants save_constants() { return compiled_model.save_constants(); }
+  static void load_state(State& state, std::string_view saved, const SavedConstants& constants) {
+    compiled_model.load_state(state.bytes, saved, constants);
+  }
+  // Calls `visitor(name, leaf)` for every single value.
+  template <class Visitor>
+  static void visit(const State& state, Visitor&& visitor) {
+    NamedLeavesCall leaves{visitor};
+    compiled_model.visit(state.bytes, leaves);
+  }
+  static void visit_values(const State& state, ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); }
+  // How many bytes of a state the model uses; the others are 0.
+  static std::size_t state_bytes() { return compiled_model.state_bytes; }
+  // Where the state's single values stand, in the order of `visit`.
+  static std::vector<Place> places(const State& state) {
+    return places_in(state.bytes, [&](ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); });
+  }
+
+  template <class Random>
+  static void initial(State& state, Random& random) {
+    functions<Random>().initial(state.bytes, random);
+  }
+  template <class Random>
+  static Step step(State& state, int action, Random& random) {
+    return functions<Random>().step(state.bytes, action, random);
+  }
+  static bool meets_precondition(const State& state, int action, Enumerator& random) {
+    return compiled_model.meets_precondition(state.bytes, action, random);
+  }
+  template <class Random>
+  static void correct(const State& before, State& next, int action, Random& random) {
+    functions<Random>().correct(before.bytes, next.bytes, action, random);
+  }
+  // A whole rollout in one call: see rollout.hpp.
+  static double rollout(const State& state, int horizon, Sampler& random) {
+    return compiled_model.rollout(state.bytes, horizon, random);
+  }
+  // Many steps in one call: see walk.hpp.
+  static Walked walk(std::uint64_t steps, Sampler& random) { return compiled_model.walk(steps, random); }
+
+ private:
+  static const GroundedAction& grounded(int action) { return (*compiled_model.actions)[static_cast<std::size_t>(action)]; }
+
+  template <class Random>
+  static const DrawingFunctions<Random>& functions() {
+    if constexpr (std::is_same_v<Random, Sampler>) {
+      return compiled_model.sampling;
+    } else {
+      return compiled_model.enumerating;
+    }
+  }
+};
+
+}  // namespace aos

@@ -1,0 +1,123 @@
+// Grounded actions: a skill with values for its parameters.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "aos/model/reflection.hpp"
+
+namespace aos {
+
+template <class Parameters>
+struct Grounding {
+  std::string name;
+  Parameters parameters;
+};
+
+// `parameters` are of the skill's type; the grounding that holds them stays where it is.
+struct GroundedAction {
+  int skill = 0;
+  const void* parameters = nullptr;
+  const char* name = "";
+};
+
+template <class Skill>
+const typename Skill::Parameters& parameters_of(const GroundedAction& action) {
+  return *static_cast<const typename Skill::Parameters*>(action.parameters);
+}
+
+// A value that parameters of type T may take, and the variable that holds it.
+template <class T>
+struct NamedValue {
+  const char* name;
+  T value;
+};
+
+// What there is to know about a skill besides what it does.
+struct SkillFacts {
+  const char* name;
+  const char* const* responses;
+  int response_count;
+  bool has_text_response;
+  void (*write_parameters)(const void* parameters, JsonWriter& json);
+  void (*read_locals)(std::string_view values);
+};
+
+template <class Skill>
+constexpr SkillFacts facts_of(const char* name) {
+  return {
+      .name = name,
+      .responses = Skill::response_names.data(),
+      .response_count = static_cast<int>(Skill::response_names.size()),
+      .has_text_response = Skill::has_text_response,
+      .write_parameters =
+          [](const void* parameters, JsonWriter& json) {
+            write_json(json, *static_cast<const typename Skill::Parameters*>(parameters));
+          },
+      .read_locals = Skill::read_locals,
+  };
+}
+
+// The value of a parameter as text.
+struct Argument {
+  std::string_view parameter;
+  std::string_view value;
+};
+
+// `skill(parameter=value, ...)`; the skill alone where there are no parameters.
+std::string action_name(std::string_view skill, std::initializer_list<Argument> arguments);
+
+template <class Parameters>
+void add_actions(std::vector<GroundedAction>& actions, int skill, const std::vector<Grounding<Parameters>>& groundings) {
+  for (const auto& grounding : groundings) actions.push_back({skill, &grounding.parameters, grounding.name.c_str()});
+}
+
+// Calls `use` with a skill's type and the parameters of each of its groundings, skill by skill.
+template <class... Skills>
+void with_each_grounding(auto&& use) {
+  const auto groundings_of = [&]<class Skill>(std::type_identity<Skill> skill) {
+    for (const auto& grounding : Skill::groundings) use(skill, grounding.parameters);
+  };
+  (groundings_of(std::type_identity<Skills>{}), ...);
+}
+
+// Draws for code that runs once, before there is a particle: the likeliest outcome, the mean, the middle.
+struct FixedDraws {
+  bool Bernoulli(double probability) { return probability >= 0.5; }
+  int SampleDiscrete(int name, std::initializer_list<double> weights) { return name + 1 + likeliest(weights); }
+  template <class Weights>
+  int SampleDiscrete(int name, const Weights& weights) {
+    return name + 1 + likeliest(weights);
+  }
+  template <class Weights = std::initializer_list<double>>
+  int SampleDiscrete(const Weights& weights) {
+    return likeliest(weights);
+  }
+  double SampleNormal(double mean, double) { return mean; }
+  double SampleUniform(double low, double high) { return (low + high) / 2; }
+  void SetNull(bool& value) { value = false; }
+  void Uninitialize(bool& value) { value = false; }
+  void Initialize(bool& value) { value = true; }
+  bool IsInitialized(bool value) { return value; }
+
+ private:
+  template <class Weights>
+  static int likeliest(const Weights& weights) {
+    int best = 0;
+    double most = -1;
+    int index = 0;
+    for (const double weight : weights) {
+      if (weight > most) {
+        most = weight;
+        best = index;
+      }
+      ++index;
+    }
+    return best;
+  }
+};
+
+}  // namespace aos

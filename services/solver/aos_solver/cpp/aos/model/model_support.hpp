@@ -1,0 +1,24 @@
+// Everything an emitted model stands on. No system headers here: their macros could be names in a document.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "aos/model/blame.hpp"
+#include "aos/model/containers.hpp"
+#include "aos/model/correction.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/model/grounding.hpp"
+#include "aos/model/model_table.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/state_text.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/text.hpp"
+#include "aos/model/trace.hpp"
+#include "aos/model/transition.hpp"

@@ -1,0 +1,148 @@
+// A compiled model as a table of functions over states that are blocks of bytes. It lets the engine be compiled once
+// for all models of about the same size, and a model without the engine.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "aos/model/blame.hpp"
+#include "aos/base/enumerator.hpp"
+#include "aos/model/grounding.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/rollout.hpp"
+#include "aos/model/state_text.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/walk.hpp"
+
+namespace aos {
+
+// The model functions that draw, for one source of randomness.
+template <class Random>
+struct DrawingFunctions {
+  void (*initial)(void* state, Random& random);
+  Step (*step)(void* state, int action, Random& random);
+  void (*correct)(const void* before, void* next, int action, Random& random);
+};
+
+// The size of a state as text that the build finds in the object file, to link the engine for such states.
+template <std::size_t Size>
+inline constexpr auto size_mark = [] {
+  std::array<char, 32> mark{"aos-state-bytes:0000000000;"};
+  for (std::size_t place = 25, rest = Size; rest > 0; rest /= 10) mark[place--] = static_cast<char>('0' + rest % 10);
+  return mark;
+}();
+
+// See the emitted `Model` for what each member means.
+struct ModelTable {
+  const char* size_mark;
+  std::size_t state_bytes;
+  const char* project;
+  int horizon;
+  double discount;
+  int skill_count;
+  const SkillFacts* skills;
+  const std::vector<GroundedAction>* actions;
+  bool has_rollout_policy;
+  bool has_state_heuristic;
+  std::size_t ending_offset;
+
+  void (*prepare)();
+  bool (*equal)(const void* left, const void* right);
+  std::uint64_t (*hash)(const void* state);
+  void (*visit)(const void* state, ValueVisitor& visitor);
+  std::string (*state_text)(const void* state);
+  std::string (*save_state)(const void* state);
+  SavedConstants (*save_constants)();
+  void (*load_state)(void* state, std::string_view saved, const SavedConstants& constants);
+
+  DrawingFunctions<Sampler> sampling;
+  DrawingFunctions<Enumerator> enumerating;
+  bool (*meets_precondition)(const void* state, int action, Enumerator& random);
+  double (*rollout)(const void* state, int horizon, Sampler& random);
+  Walked (*walk)(std::uint64_t steps, Sampler& random);
+};
+
+// The model that this executable is linked with.
+extern const ModelTable compiled_model;
+
+template <class Model, class Random>
+constexpr DrawingFunctions<Random> drawing_functions() {
+  using State = typename Model::State;
+  return {
+      .initial = [](void* state, Random& random) { Model::initial(*static_cast<State*>(state), random); },
+      .step =
+          [](void* state, int action, Random& random) {
+            const Step step = Model::step(*static_cast<State*>(state), action, random);
+            blame::at(0);
+            return step;
+          },
+      .correct =
+          [](const void* before, void* next, int action, Random& random) {
+            if constexpr (Model::has_corrections) {
+              Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, random);
+            }
+          },
+  };
+}
+
+template <class Model>
+constexpr ModelTable table_of() {
+  using State = typename Model::State;
+  static_assert(std::is_trivially_copyable_v<State> && alignof(State) <= alignof(std::uint64_t));
+  return {
+      .size_mark = size_mark<sizeof(State)>.data(),
+      .state_bytes = sizeof(State),
+      .project = Model::project,
+      .horizon = Model::horizon,
+      .discount = Model::discount,
+      .skill_count = static_cast<int>(Model::skills.size()),
+      .skills = Model::skills.data(),
+      .actions = &Model::grounded_actions(),
+      .has_rollout_policy = Model::has_rollout_policy,
+      .has_state_heuristic = Model::has_state_heuristic,
+      .ending_offset = offsetof(State, __ending),
+      .prepare = Model::prepare,
+      .equal =
+          [](const void* left, const void* right) {
+            return *static_cast<const State*>(left) == *static_cast<const State*>(right);
+          },
+      .hash = [](const void* state) { return Model::hash(*static_cast<const State*>(state)); },
+      .visit = [](const void* state,
+                  ValueVisitor& visitor) { visit_value(*static_cast<const State*>(state), visitor); },
+      .state_text = [](const void* state) { return Model::state_text(*static_cast<const State*>(state)); },
+      .save_state = [](const void* state) { return Model::save_state(*static_cast<const State*>(state)); },
+      .save_constants = Model::save_constants,
+      .load_state =
+          [](void* state, std::string_view saved, const SavedConstants& constants) {
+            Model::load_state(*static_cast<State*>(state), saved, constants);
+          },
+      .sampling = drawing_functions<Model, Sampler>(),
+      .enumerating = drawing_functions<Model, Enumerator>(),
+      .meets_precondition =
+          [](const void* state, int action, Enumerator& random) {
+            const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, random);
+            blame::at(0);
+            return meets;
+          },
+      .rollout =
+          [](const void* state, int horizon, Sampler& random) {
+            const double value = aos::rollout<Model>(*static_cast<const State*>(state), horizon, random);
+            blame::at(0);
+            return value;
+          },
+      .walk =
+          [](std::uint64_t steps, Sampler& random) {
+            const Walked walked = aos::walk<Model>(steps, random);
+            blame::at(0);
+            return walked;
+          },
+  };
+}
+
+}  // namespace aos

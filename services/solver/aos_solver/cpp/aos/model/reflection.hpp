@@ -1,0 +1,184 @@
+// Values as code sees them that knows no types: their members and their single values, one after another. Compounds and
+// states list their members in `__fields`, enums have a `name_of`, both emitted.
+//
+// A type is visited by one small function. All that is made of values (text, JSON, places) is compiled once, with the
+// engine: values.hpp, value_text.hpp.
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "aos/model/text.hpp"
+
+namespace aos {
+
+class JsonWriter;
+
+template <class T>
+concept Compound = requires(const T& value) { T::__fields(value, [](const char*, const auto&) {}); };
+template <class T>
+concept Sequence = requires(const T& value) {
+  typename T::value_type;
+  value.size();
+  value.begin();
+} && !std::same_as<T, Text> && !std::same_as<T, std::string>;
+template <class T>
+concept Mapping = requires { typename T::mapped_type; };
+
+// The name of an enum's value; null for a number that has none.
+inline const char* name_in(std::initializer_list<const char*> names, int value) {
+  const auto index = static_cast<std::size_t>(value);
+  return index < names.size() ? names.begin()[index] : nullptr;
+}
+
+// A single value where it stands.
+struct Leaf {
+  enum class Kind : std::uint8_t { boolean, signed_number, unsigned_number, real, enumerated, text, string };
+  Kind kind;
+  std::size_t size;
+  const void* place;
+  const char* name = nullptr;  // of an enum's value, if it has one
+};
+
+template <class T>
+Leaf leaf_of(const T& value) {
+  using Kind = Leaf::Kind;
+  if constexpr (std::is_enum_v<T>) {
+    Leaf leaf{Kind::enumerated, sizeof value, &value};
+    if constexpr (requires { name_of(value); }) leaf.name = name_of(value);
+    return leaf;
+  } else {
+    constexpr Kind kind = std::same_as<T, bool>          ? Kind::boolean
+                          : std::same_as<T, Text>        ? Kind::text
+                          : std::same_as<T, std::string> ? Kind::string
+                          : std::floating_point<T>       ? Kind::real
+                          : std::is_signed_v<T>          ? Kind::signed_number
+                                                         : Kind::unsigned_number;
+    static_assert(kind != Kind::unsigned_number || std::integral<T>);
+    return {kind, sizeof value, &value};
+  }
+}
+
+// The text of a single value: enums by name, `true` and `false`, the shortest decimal that reads back.
+std::string leaf_text(const Leaf& leaf);
+
+template <class Key>
+std::string key_text(const Key& key) {
+  std::string text;
+  const auto add = [&](const Leaf& part) {
+    if (!text.empty()) text += ',';
+    text += leaf_text(part);
+  };
+  std::apply([&](const auto&... part) { (add(leaf_of(part)), ...); }, key);
+  return text;
+}
+
+// What there is in a value, in the order of its members. A member, an element or an entry is told before its value.
+class ValueVisitor {
+ public:
+  virtual void leaf(const Leaf& leaf) = 0;
+  virtual void begin_compound() {}
+  virtual void begin_sequence(std::size_t /*size*/) {}
+  virtual void begin_mapping() {}
+  virtual void member(const char* /*name*/) {}
+  virtual void element(std::size_t /*index*/) {}
+  virtual void entry(const std::string& /*key*/) {}
+  virtual void end() {}  // of a compound, a sequence or a mapping
+
+ protected:
+  ~ValueVisitor() = default;
+};
+
+template <class T>
+void visit_value(const T& value, ValueVisitor& visitor) {
+  if constexpr (Compound<T>) {
+    visitor.begin_compound();
+    T::__fields(value, [&](const char* name, const auto& member) {
+      visitor.member(name);
+      visit_value(member, visitor);
+    });
+    visitor.end();
+  } else if constexpr (Mapping<T>) {
+    visitor.begin_mapping();
+    for (const auto& [key, element] : value) {
+      visitor.entry(key_text(key));
+      visit_value(element, visitor);
+    }
+    visitor.end();
+  } else if constexpr (Sequence<T>) {
+    visitor.begin_sequence(value.size());
+    std::size_t index = 0;
+    for (const auto& element : value) {
+      visitor.element(index++);
+      visit_value(element, visitor);
+    }
+    visitor.end();
+  } else {
+    visitor.leaf(leaf_of(value));
+  }
+}
+
+// A value of any type that lives as long as this is used.
+class AnyValue {
+ public:
+  template <class T>
+  AnyValue(const T& value) : value_(&value), visit_(visit_as<T>) {}
+  void visit(ValueVisitor& visitor) const { visit_(value_, visitor); }
+  const void* place() const { return value_; }
+
+ private:
+  template <class T>
+  static void visit_as(const void* value, ValueVisitor& visitor) {
+    visit_value(*static_cast<const T*>(value), visitor);
+  }
+
+  const void* value_;
+  void (*visit_)(const void* value, ValueVisitor& visitor);
+};
+
+// All single values with their names, as one line.
+std::string leaves_text(AnyValue value);
+// Text of a whole value, for the names of grounded actions.
+std::string value_text(AnyValue value);
+void write_json(JsonWriter& json, AnyValue value);
+
+// Document code writes enums to streams as numbers. Those of a state are as small as characters, and are none.
+template <class Stream, class Enum>
+  requires std::is_enum_v<Enum> && requires { typename Stream::char_type; }
+Stream& operator<<(Stream& out, Enum value) {
+  return static_cast<Stream&>(out << static_cast<int>(value));
+}
+
+inline std::uint64_t mixed(std::uint64_t hash, std::uint64_t more) {
+  hash = (hash ^ more) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 32);
+}
+
+// A hash that agrees with `==`: 0.0 and -0.0 are one, unused storage does not count.
+template <class T>
+std::uint64_t hashed(std::uint64_t hash, const T& value) {
+  if constexpr (Compound<T>) {
+    T::__fields(value, [&](const char*, const auto& member) { hash = hashed(hash, member); });
+    return hash;
+  } else if constexpr (Mapping<T>) {
+    for (const auto& entry : value) hash = hashed(hash, entry.second);
+    return hash;
+  } else if constexpr (std::same_as<T, Text> || Sequence<T>) {
+    hash = mixed(hash, value.size());
+    for (const auto& element : value) hash = hashed(hash, element);
+    return hash;
+  } else if constexpr (std::floating_point<T>) {
+    return mixed(hash, std::bit_cast<std::uint64_t>(static_cast<double>(value == 0 ? 0.0 : value)));
+  } else {
+    return mixed(hash, static_cast<std::uint64_t>(value));
+  }
+}
+
+}  // namespace aos

@@ -1,0 +1,84 @@
+// A rollout: what a state is worth to somebody who follows the documents' rollout policy from it.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/inlining.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+// Where the documents give a state heuristic, a rollout ends with it before each step with this probability.
+inline constexpr double heuristic_ending = 0.75;
+
+namespace detail {
+
+// The first action at which the running sum of the weights exceeds `drawn`; rounding cannot lead past the last sum.
+inline int action_at(const double* sums, int count, double drawn) {
+  int action = 0;
+  for (int i = 0; i < count - 1; ++i) action += sums[i] <= drawn;
+  while (action > 0 && sums[action] == sums[action - 1]) --action;
+  return action;
+}
+
+// The action is drawn no more.
+inline void leave_out(double* sums, int count, int action) {
+  const double before = action > 0 ? sums[action - 1] : 0;
+  const double weight = sums[action] - before;
+  sums[action] = before;
+  for (int i = action + 1; i < count; ++i) sums[i] -= weight;
+}
+
+// By the documents' rollout policy among the actions whose preconditions hold; where it prefers none of them any whose
+// precondition holds; else any.
+template <class Model>
+int rollout_action(const typename Model::State& state, double* sums, int count, Sampler& random) {
+  if constexpr (Model::has_rollout_policy) {
+    double total = 0;
+    int filled = 0;
+    Model::rollout_weights(state, random, [&](double weight) { sums[filled++] = total += weight; });
+    for (int left = count; total > 0 && left > 0; --left) {
+      const int action = action_at(sums, count, random.uniform() * total);
+      if (Model::meets_precondition(state, action, random)) return action;
+      leave_out(sums, count, action);
+      total = sums[count - 1];
+    }
+  }
+  for (int attempt = 0; attempt < 2 * count; ++attempt) {
+    const int action = random.below(count);
+    if (Model::meets_precondition(state, action, random)) return action;
+  }
+  return random.below(count);
+}
+
+}  // namespace detail
+
+// The discounted return of at most `horizon` steps from `start` on.
+template <class Model>
+AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon, Sampler& random) {
+  thread_local std::vector<double> sums_of_weights;
+  const int count = Model::action_count();
+  if constexpr (Model::has_rollout_policy) sums_of_weights.resize(static_cast<std::size_t>(count));
+  double* const sums = sums_of_weights.data();
+  Sampler draws = random;  // what nothing else points to, a compiler keeps in registers
+  typename Model::State state = start;
+  double sum = 0;
+  double discount = 1;
+  for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
+    if constexpr (Model::has_state_heuristic) {
+      if (draws.flag(heuristic_ending)) {
+        sum += discount * Model::state_value(state, draws);
+        break;
+      }
+    }
+    const Step step = Model::step(state, detail::rollout_action<Model>(state, sums, count, draws), draws);
+    sum += discount * step.reward;
+    discount *= Model::discount;
+  }
+  random = draws;
+  return sum;
+}
+
+}  // namespace aos

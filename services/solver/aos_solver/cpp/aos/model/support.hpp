@@ -1,0 +1,102 @@
+// What models call and do not bring along: the functions that model_support.hpp declares. Exactly one source of a program
+// includes this; in an executable, the engine's.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "aos/model/containers.hpp"
+#include "aos/base/enumerator.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/model/grounding.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/text.hpp"
+#include "aos/model/transition.hpp"
+#include "aos/model/value_text.hpp"
+
+namespace aos {
+
+void out_of_range(std::ptrdiff_t index, std::size_t size) {
+  throw ModelFault{"AOS215", "element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
+}
+void no_room(std::size_t size, std::size_t room) {
+  const std::string holds = "; its state variable holds " + std::to_string(room);
+  throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
+}
+void bad_weights(const char* text) { throw ModelFault{"AOS215", text}; }
+
+void Text::no_character(std::ptrdiff_t index, std::size_t size) {
+  throw ModelFault{"AOS215", "character " + std::to_string(index) + " of a text of " + std::to_string(size) + " characters"};
+}
+void Text::overflow(std::size_t size) {
+  throw ModelFault{"AOS215", "a text of " + std::to_string(size) + " characters; a state variable of type string holds " +
+                                 std::to_string(room)};
+}
+
+namespace detail {
+
+void no_such_response(int response) {
+  throw ModelFault{"AOS215", "__moduleResponse is " + std::to_string(response) + ", which is no response"};
+}
+void no_such_reward(double reward) { throw ModelFault{"AOS214", "the reward is " + std::to_string(reward)}; }
+
+// Per thread, without a lock: the numbers depend on the texts alone, so threads agree on them.
+std::unordered_map<Observation, std::string>& observed_texts() {
+  thread_local std::unordered_map<Observation, std::string> texts;
+  return texts;
+}
+
+}  // namespace detail
+
+Observation text_observation(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char character : text) {
+    hash = (hash ^ static_cast<unsigned char>(character)) * 0x100000001b3u;
+  }
+  auto number = static_cast<Observation>(hash | (std::uint64_t{1} << 63));
+  if (number == default_observation) --number;
+  // Most texts come again soon.
+  thread_local std::array<Observation, 256> recent{};
+  Observation& last = recent[static_cast<std::size_t>(number) % recent.size()];
+  if (last != number) detail::observed_texts().try_emplace(last = number, text);
+  return number;
+}
+
+std::string_view observation_text(Observation number) {
+  const auto& texts = detail::observed_texts();
+  const auto known = texts.find(number);
+  return known == texts.end() ? std::string_view{} : std::string_view{known->second};
+}
+
+std::string action_name(std::string_view skill, std::initializer_list<Argument> arguments) {
+  std::string list;
+  for (const auto& [parameter, value] : arguments) {
+    if (!list.empty()) list += ", ";
+    ((list += parameter) += '=') += value;
+  }
+  std::string name{skill};
+  return list.empty() ? name : name + "(" + list + ")";
+}
+
+int Enumerator::choose(const double* weights, int count, double total) {
+  if (depth_ < by_chance_) return choose_by_chance(weights, count, total);
+  if (depth_ == choices_.size()) choices_.push_back({next_outcome(weights, count, 0), 0, 0});
+  Choice& choice = choices_[depth_++];
+  choice.following = next_outcome(weights, count, choice.taken + 1);
+  probability_ *= weights[choice.taken] / total;
+  return choice.taken;
+}
+
+double Enumerator::uniform() {
+  if (chance_ == nullptr) throw NotEnumerable{"a draw is continuous"};
+  if (depth_ == choices_.size()) choices_.push_back({0, none, no_alternatives, chance_->uniform()});
+  return choices_[depth_++].value;
+}
+
+}  // namespace aos

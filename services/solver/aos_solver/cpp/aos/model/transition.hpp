@@ -1,0 +1,185 @@
+// One simulated step as the documents mean it: which phase sees and changes which copy of the state.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "aos/model/blame.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+inline constexpr const char* no_text_response = "NoStrResponse";
+
+// What the dynamic model of a skill gives besides the next state. Responses count from 1, so that every one of them is
+// true where a document uses it as a condition; 0 is the default observation.
+struct Effect {
+  double reward = 0;
+  int response = 0;
+};
+
+struct EffectWithText : Effect {
+  std::string text = no_text_response;
+};
+
+// What a skill document leaves out.
+struct SkillDefaults {
+  struct Parameters {
+    static void __fields(auto&, auto&&) {}
+  };
+  static constexpr double violation_penalty = 0;
+  static constexpr bool has_text_response = false;
+  // Whether the code of a step reads `state` (`state_`) where it has already changed a later copy.
+  static constexpr bool keeps_state = false;
+  static constexpr bool keeps_state_ = false;
+  static void precondition(const auto&, bool&, const auto&, auto&) {}
+  static void execution_time(const auto&, int&, const auto&, auto&) {}
+  static void next_state(auto&, auto&, auto&, bool, int, auto&, const auto&, auto&) {}
+  static void rollout_policy(const auto&, double&, const auto&, auto&) {}
+  static void read_locals(std::string_view) {}
+  static void given_observation(const auto&, auto&, const auto&, auto&) {}
+};
+
+// What an environment document leaves out.
+struct EnvironmentDefaults {
+  static constexpr bool is_one_state = false;
+  static constexpr bool has_extrinsic_changes = false;
+  static constexpr bool has_special_states = false;
+  static void initial_belief(auto&, auto&) {}
+  static void extrinsic_changes(auto&, auto&, double&, int, const auto&, auto&) {}
+  static double special_states(auto&, auto&) { return 0; }
+  static void state_heuristic(const auto&, double&, auto&) {}
+};
+
+// A special state on the next state: its reward, once more unless `bit` says that it is used up. The first goal decides
+// how the state ends. `evaluate` sets the reward, whether it is a goal, and whether it is used up now.
+template <class State>
+double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
+  if constexpr (requires { next.__spent; }) {
+    if ((next.__spent & bit) != 0) return 0;
+  }
+  double reward = 0;
+  bool is_goal = false;
+  bool is_used_up = false;
+  evaluate(reward, is_goal, is_used_up);
+  if (is_goal && next.__ending == Ending::running) next.__ending = reward > 0 ? Ending::goal : Ending::failure;
+  if constexpr (requires { next.__spent; }) {
+    if (is_used_up) next.__spent |= static_cast<decltype(next.__spent)>(bit);
+  }
+  return reward;
+}
+
+namespace detail {
+
+// Out of the way of the code that runs in every step.
+[[noreturn, gnu::cold]] void no_such_response(int response);
+[[noreturn, gnu::cold]] void no_such_reward(double reward);
+// After each phase that has a reward of its own, so that the phase is blamed and not the one after it.
+inline void check_reward(double reward) {
+  if (!std::isfinite(reward)) no_such_reward(reward);
+}
+
+template <class Skill>
+Observation observation_of(const auto& effect) {
+  if constexpr (Skill::has_text_response) {
+    if (effect.text != no_text_response) return text_observation(effect.text);
+  }
+  constexpr int last = static_cast<int>(Skill::response_names.size());
+  if (effect.response < 0 || effect.response > last) no_such_response(effect.response);
+  return effect.response - 1;
+}
+
+// A copy of what it is made of, or another name for it.
+template <class State, bool is_kept>
+using Kept = std::conditional_t<is_kept, const State, State&>;
+
+// What the skill does once the extrinsic changes are made.
+template <class Environment, class Skill>
+Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, int execution_time,
+               double extrinsic_reward, const auto& parameters, auto& random) {
+  std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
+  Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
+  Step step;
+  step.reward = effect.reward;
+  // Only what there is to add, since adding nothing takes time as well.
+  const double penalty = meets_precondition ? 0 : Skill::violation_penalty;
+  if constexpr (Environment::has_extrinsic_changes) {
+    step.reward = penalty + extrinsic_reward + effect.reward;
+  } else if constexpr (Skill::violation_penalty != 0) {
+    step.reward = penalty + effect.reward;
+  }
+  check_reward(step.reward);
+  step.observation = observation_of<Skill>(effect);
+  if constexpr (Environment::has_special_states) {
+    step.reward += Environment::special_states(next, random);
+    check_reward(step.reward);
+  }
+  return step;
+}
+
+// The phases in their order. All changes are made in place, and what is read after them is kept before: of a copy that
+// never changes, a compiler makes no more than is read.
+template <class Environment, class Skill, class State>
+Step transition(State& next, const auto& parameters, auto& random) {
+  Kept<State, Skill::keeps_state> state = next;
+  bool meets_precondition = true;
+  Skill::precondition(state, meets_precondition, parameters, random);
+  int execution_time = -1;
+  Skill::execution_time(state, execution_time, parameters, random);
+
+  if constexpr (Environment::has_extrinsic_changes) {
+    double reward = 0;
+    const typename Environment::Chosen chosen{parameters};
+    Environment::extrinsic_changes(state, next, reward, execution_time, chosen, random);
+    check_reward(reward);
+    Kept<State, Skill::keeps_state_> state_ = next;
+    return run_skill<Environment, Skill>(state, state_, next, meets_precondition, execution_time, reward, parameters,
+                                         random);
+  } else {
+    return run_skill<Environment, Skill>(state, state, next, meets_precondition, execution_time, 0, parameters, random);
+  }
+}
+
+// What an ended state lets the robot observe: what the documents give for it, or the default observation where they do
+// not reckon with such a state.
+template <class Environment, class Skill, class State>
+[[gnu::cold, gnu::noinline]] Step step_after_the_end(State copy, const auto& parameters, auto& random) {
+  copy.__ending = Ending::running;
+  try {
+    return {0, transition<Environment, Skill>(copy, parameters, random).observation};
+  } catch (const ModelFault&) {
+    return {};
+  }
+}
+
+}  // namespace detail
+
+// Runs a skill in place. An ended state stays as it is and earns nothing.
+template <class Environment, class Skill, class State>
+Step step(State& state, const auto& parameters, auto& random) {
+  if (state.__ending != Ending::running) [[unlikely]] {
+    return detail::step_after_the_end<Environment, Skill>(state, parameters, random);
+  }
+  return detail::transition<Environment, Skill>(state, parameters, random);
+}
+
+template <class Skill>
+bool meets_precondition(const auto& state, const auto& parameters, auto& random) {
+  bool meets = true;
+  Skill::precondition(state, meets, parameters, random);
+  return meets;
+}
+
+// How much the rollout policy prefers the action; never negative.
+template <class Skill>
+double rollout_weight(const auto& state, const auto& parameters, auto& random) {
+  double weight = 0;
+  Skill::rollout_policy(state, weight, parameters, random);
+  return weight > 0 ? weight : 0;
+}
+
+}  // namespace aos

@@ -1,0 +1,185 @@
+// Values as text, as JSON, and as the numbers of a saved state. Included by support.hpp alone.
+#pragma once
+
+#include <bit>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "aos/base/fault.hpp"
+#include "aos/base/json.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/state_text.hpp"
+#include "aos/model/values.hpp"
+
+namespace aos {
+
+std::string leaf_text(const Leaf& leaf) {
+  if (leaf.name != nullptr) return leaf.name;
+  if (is_text(leaf)) return std::string{characters_of(leaf)};
+  if (leaf.kind == Leaf::Kind::boolean) return stored_at<bool>(leaf.place) ? "true" : "false";
+  std::string text;
+  with_number(leaf, [&](auto number) {
+    if constexpr (std::is_floating_point_v<decltype(number)>) {
+      text = number_text(number);
+    } else {
+      text = std::to_string(number);
+    }
+  });
+  return text;
+}
+
+std::string leaves_text(AnyValue value) {
+  std::string text;
+  const auto add = [&](const std::string& name, const Leaf& leaf) {
+    text += (text.empty() ? "" : ", ") + name + "=" + leaf_text(leaf);
+  };
+  NamedLeavesCall visitor{add};
+  value.visit(visitor);
+  return text;
+}
+
+// Compounds as `{x=1, y=2}`, sequences as `[1, 2]`.
+class ValueText final : public ValueVisitor {
+ public:
+  void leaf(const Leaf& leaf) override { text_ += leaf_text(leaf); }
+  void begin_compound() override { begin('{', '}'); }
+  void begin_sequence(std::size_t) override { begin('[', ']'); }
+  void begin_mapping() override { begin('[', ']'); }
+  void member(const char* name) override { (separate() += name) += '='; }
+  void element(std::size_t) override { separate(); }
+  void entry(const std::string& key) override { (separate() += key) += '='; }
+  void end() override {
+    text_ += ends_.back();
+    ends_.pop_back();
+  }
+  std::string& text() { return text_; }
+
+ private:
+  void begin(char bracket, char end) {
+    text_ += bracket;
+    ends_ += end;
+    is_first_ = true;
+  }
+  std::string& separate() {
+    if (!std::exchange(is_first_, false)) text_ += ", ";
+    return text_;
+  }
+
+  std::string text_;
+  std::string ends_;
+  bool is_first_ = true;
+};
+
+std::string value_text(AnyValue value) {
+  ValueText visitor;
+  value.visit(visitor);
+  return std::move(visitor.text());
+}
+
+class ValueJson final : public ValueVisitor {
+ public:
+  explicit ValueJson(JsonWriter& json) : json_(json) {}
+  void leaf(const Leaf& leaf) override {
+    if (leaf.kind == Leaf::Kind::boolean) {
+      json_.value(stored_at<bool>(leaf.place));
+    } else if (leaf.kind == Leaf::Kind::enumerated || is_text(leaf)) {
+      json_.value(leaf_text(leaf));
+    } else {
+      with_number(leaf, [&](auto number) { json_.value(number); });
+    }
+  }
+  void begin_compound() override { begin_object(); }
+  void begin_mapping() override { begin_object(); }
+  void begin_sequence(std::size_t) override {
+    json_.begin_array();
+    are_arrays_.push_back(true);
+  }
+  void member(const char* name) override { json_.key(name); }
+  void entry(const std::string& key) override { json_.key(key); }
+  void end() override {
+    are_arrays_.back() ? json_.end_array() : json_.end_object();
+    are_arrays_.pop_back();
+  }
+
+ private:
+  void begin_object() {
+    json_.begin_object();
+    are_arrays_.push_back(false);
+  }
+
+  JsonWriter& json_;
+  std::vector<bool> are_arrays_;
+};
+
+void write_json(JsonWriter& json, AnyValue value) {
+  ValueJson visitor{json};
+  value.visit(visitor);
+}
+
+// Numbers with blanks between them.
+class ValueNumbers final : public ValueVisitor {
+ public:
+  explicit ValueNumbers(std::string& text) : text_(text) {}
+  void begin_sequence(std::size_t size) override { put(static_cast<std::int64_t>(size)); }
+  void leaf(const Leaf& leaf) override {
+    if (is_text(leaf)) {
+      const std::string_view characters = characters_of(leaf);
+      put(static_cast<std::int64_t>(characters.size()));
+      for (const char character : characters) put(character);
+    } else {
+      with_number(leaf, [&](auto number) {
+        if constexpr (std::is_floating_point_v<decltype(number)>) {
+          put(std::bit_cast<std::int64_t>(static_cast<double>(number)));
+        } else {
+          put(static_cast<std::int64_t>(number));
+        }
+      });
+    }
+  }
+
+ private:
+  void put(std::int64_t number) {
+    char buffer[24];
+    if (!text_.empty()) text_ += ' ';
+    text_.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
+  }
+
+  std::string& text_;
+};
+
+void StateWriter::write(AnyValue value) {
+  ValueNumbers visitor{text_};
+  value.visit(visitor);
+}
+
+void StateReader::malformed() { throw ModelFault{"AOS215", "a saved state that does not fit this model"}; }
+
+std::int64_t StateReader::next() {
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), number);
+  if (error != std::errc{}) malformed();
+  rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+  if (!rest_.empty()) rest_.remove_prefix(1);
+  return number;
+}
+
+void SavedConstants::add(std::string_view name, AnyValue value) {
+  StateWriter text;
+  text.write(value);
+  add_text(name, text.text());
+}
+
+const std::string* SavedConstants::find(std::string_view name) const {
+  for (const auto& [known, text] : texts_) {
+    if (known == name) return &text;
+  }
+  return nullptr;
+}
+
+}  // namespace aos

@@ -1,0 +1,151 @@
+// Values of which only the leaves are known: their names, numbers and places.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "aos/model/reflection.hpp"
+
+namespace aos {
+
+template <class T>
+T stored_at(const void* place) {
+  T value;
+  std::memcpy(&value, place, sizeof value);
+  return value;
+}
+
+// Calls `use` with the number that the leaf holds, as 64 bits with its sign, or as it is if it is real.
+template <class Use>
+void with_number(const Leaf& leaf, Use&& use) {
+  const auto widened = [&](auto narrow) {
+    if (leaf.kind == Leaf::Kind::unsigned_number || leaf.kind == Leaf::Kind::boolean) {
+      use(std::uint64_t{static_cast<std::make_unsigned_t<decltype(narrow)>>(narrow)});
+    } else {
+      use(std::int64_t{narrow});
+    }
+  };
+  if (leaf.kind == Leaf::Kind::real) {
+    leaf.size == sizeof(float) ? use(stored_at<float>(leaf.place)) : use(stored_at<double>(leaf.place));
+  } else if (leaf.size == 1) {
+    widened(stored_at<std::int8_t>(leaf.place));
+  } else if (leaf.size == 2) {
+    widened(stored_at<std::int16_t>(leaf.place));
+  } else if (leaf.size == 4) {
+    widened(stored_at<std::int32_t>(leaf.place));
+  } else {
+    widened(stored_at<std::int64_t>(leaf.place));
+  }
+}
+
+inline bool is_text(const Leaf& leaf) { return leaf.kind == Leaf::Kind::text || leaf.kind == Leaf::Kind::string; }
+
+inline std::string_view characters_of(const Leaf& leaf) {
+  if (leaf.kind == Leaf::Kind::text) return static_cast<const Text*>(leaf.place)->view();
+  return *static_cast<const std::string*>(leaf.place);
+}
+
+// Visits every single value with its name: `v1.visited`, `grid[3]`, `cell[1,2]`.
+class NamedLeaves : public ValueVisitor {
+ public:
+  virtual void named(const std::string& name, const Leaf& leaf) = 0;
+
+  void leaf(const Leaf& leaf) final { named(name_, leaf); }
+  void begin_compound() final { owners_.push_back(name_.size()); }
+  void begin_sequence(std::size_t) final { owners_.push_back(name_.size()); }
+  void begin_mapping() final { owners_.push_back(name_.size()); }
+  void member(const char* name) final {
+    name_.resize(owners_.back());
+    if (!name_.empty()) name_ += '.';
+    name_ += name;
+  }
+  void element(std::size_t index) final { entry(std::to_string(index)); }
+  void entry(const std::string& key) final {
+    name_.resize(owners_.back());
+    (name_ += '[').append(key) += ']';
+  }
+  void end() final {
+    name_.resize(owners_.back());
+    owners_.pop_back();
+  }
+
+ protected:
+  ~NamedLeaves() = default;
+
+ private:
+  std::string name_;
+  std::vector<std::size_t> owners_;  // how long the names are of what is visited now
+};
+
+// Calls `use(name, leaf)`.
+template <class Use>
+class NamedLeavesCall final : public NamedLeaves {
+ public:
+  explicit NamedLeavesCall(Use& use) : use_(use) {}
+  void named(const std::string& name, const Leaf& leaf) override { use_(name, leaf); }
+
+ private:
+  Use& use_;
+};
+
+// Single values as numbers, in their order: equal values have equal numbers. Values of the same shape have the same leaves,
+// by name.
+struct LeafNumbers final : ValueVisitor {
+  std::vector<std::uint64_t> numbers;
+  std::uint64_t shape = 0;
+
+  void clear() {
+    numbers.clear();
+    shape = 0;
+  }
+
+  void leaf(const Leaf& leaf) override {
+    if (is_text(leaf)) return numbers.push_back(std::hash<std::string_view>{}(characters_of(leaf)));
+    with_number(leaf, [&](auto number) {
+      if constexpr (std::is_floating_point_v<decltype(number)>) {
+        numbers.push_back(std::bit_cast<std::uint64_t>(double{number}));
+      } else {
+        numbers.push_back(static_cast<std::uint64_t>(number));
+      }
+    });
+  }
+  void begin_sequence(std::size_t size) override { shape = mixed(shape, size); }
+};
+
+// Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
+struct Place {
+  std::size_t offset;
+  std::size_t size;
+  friend bool operator==(const Place&, const Place&) = default;
+};
+
+// The places of a state, without overlap; it is visited by `visit(visitor)`.
+template <class Visit>
+std::vector<Place> places_in(const void* state, Visit&& visit) {
+  std::vector<Place> places;
+  std::string compound;
+  const auto add = [&](const std::string& name, const Leaf& leaf) {
+    const auto offset = static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) -
+                                                 static_cast<const std::byte*>(state));
+    const auto dot = name.rfind('.');
+    const std::string owner = dot == std::string::npos ? "" : name.substr(0, dot);
+    if (!owner.empty() && owner == compound) {
+      places.back().size = offset + leaf.size - places.back().offset;
+    } else {
+      places.push_back({offset, leaf.size});
+    }
+    compound = owner;
+  };
+  NamedLeavesCall visitor{add};
+  visit(visitor);
+  return places;
+}
+
+}  // namespace aos

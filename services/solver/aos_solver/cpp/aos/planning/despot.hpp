@@ -1,0 +1,347 @@
+// Anytime regularised DESPOT (Ye, Somani, Hsu and Lee, 2017): heuristic search in a sparse tree of the histories that a
+// fixed number of scenarios lead to.
+//
+// Each trial goes down from the root, by the action with the highest upper bound and the observation with the largest gap
+// between the bounds in excess of what is asked for, until nothing is left to gain; the new leaf's bounds are backed up.
+// What an action is worth is its lower bound: what the best policy in the tree so far earns in the scenarios, less a
+// penalty for each of its decisions, which keeps it from fitting their luck.
+//
+// What the system chooses by itself: the bounds and the default policy (scenarios.hpp), the number of scenarios by the
+// budget, and the penalty by the spread of the scenarios' returns: a decision has to be worth a deviation of one scenario.
+//
+// Bounds of a node are sums over its scenarios, divided by the number of all, and discounted from the root on.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "aos/base/arena.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/base/clock.hpp"
+#include "aos/base/random.hpp"
+#include "aos/planning/scenarios.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+inline constexpr std::size_t most_scenarios = 500;
+inline constexpr std::size_t fewest_scenarios = 30;
+inline constexpr double share_of_first_look = 0.2;  // of the budget, for all actions at the root
+inline constexpr double gap_share = 0.95;           // of the root's gap, that a node's share of it may keep
+inline constexpr double penalty_in_deviations = 1;
+inline constexpr std::size_t most_scenario_bytes = std::size_t{512} << 20;
+inline constexpr std::size_t most_node_bytes = std::size_t{128} << 20;
+
+template <class Model>
+class Despot {
+ public:
+  using State = typename Model::State;
+
+  Despot()
+      : nodes_(most_node_bytes / sizeof(Node)),
+        actions_(most_node_bytes / sizeof(ActionNode)),
+        scenarios_(most_scenario_bytes / sizeof(Scenario<Model>)) {}
+
+  // Runs the search and returns how many simulations it took: a simulation is a step of a scenario with the evaluation of
+  // what it leads to.
+  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
+    using Seconds = std::chrono::duration<double>;
+    // Up to some seconds for the first decision, which no budget counts, and next to nothing later.
+    evaluation_.prepare(belief, horizon);
+    budget_ = budget;
+    latest_ = budget.seconds > 0
+                  ? PlanningClock::now() + std::chrono::duration_cast<PlanningClock::duration>(Seconds{budget.seconds})
+                  : PlanningClock::time_point::max();
+    horizon_ = horizon;
+    simulations_ = 0;
+    nodes_.clear();
+    actions_.clear();
+    scenarios_.clear();
+    deviations_.clear();
+    if (action_count() == 0 || !plant(belief, random)) return 0;
+    while (may_go_on() && explore()) {
+    }
+    return simulations_;
+  }
+
+  // For each action; values are over the whole belief, so that its ended part counts as nothing to gain. The standard
+  // error is what follows from the number of scenarios.
+  std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
+    std::vector<ActionEstimate> result(action_count());
+    if (nodes_.size() == 0 || nodes_[0].first_action == no_node) return result;
+    const double running = belief.probability_of(Ending::running);
+    for (std::size_t a = 0; a < deviations_.size(); ++a) {
+      const ActionNode& action = actions_[nodes_[0].first_action + a];
+      result[a] = {running * (origin_ + action.lower), action.trials, running * deviations_[a]};
+    }
+    return result;
+  }
+
+  // The scenarios are drawn anew for each decision, so nothing is kept.
+  void move_to(int, Observation) {}
+  void forget() {}
+
+ private:
+  using Evaluation = ScenarioEvaluation<Model>;
+
+  struct Node {
+    std::uint32_t first_scenario;
+    std::uint32_t scenarios;
+    std::uint32_t depth;
+    std::uint32_t parent;  // an action
+    std::uint32_t sibling;
+    std::uint32_t first_action;
+    double lower;
+    double upper;
+    double default_lower;
+    double first_upper;
+  };
+  struct ActionNode {
+    std::uint32_t parent;  // a node
+    std::uint32_t first_child;
+    std::uint32_t trials;
+    double reward;  // less the penalty
+    double lower;
+    double upper;
+  };
+  static std::size_t action_count() { return static_cast<std::size_t>(Model::action_count()); }
+  bool may_go_on() const {
+    return (budget_.simulations == 0 || simulations_ < budget_.simulations) && PlanningClock::now() < latest_;
+  }
+
+  // --- the root --------------------------------------------------------------------------------------
+
+  // Returns false where there is nothing to decide.
+  bool plant(const Belief<Model>& belief, Sampler& random) {
+    const double running = belief.probability_of(Ending::running);
+    if (running <= 0) return false;
+    evaluation_.start(random.bits());
+    draw_scenarios(belief, fewest_scenarios, running, random);
+    const PlanningClock::time_point start = PlanningClock::now();
+    evaluation_.bounds(outcomes_, 0);
+    const PlanningClock::duration spent = PlanningClock::now() - start;
+    draw_scenarios(belief, affordable_scenarios(spent), running, random);
+    if (outcomes_.empty()) return false;
+    origin_ = 0;
+    for (const Observed<Model>& outcome : outcomes_) origin_ += evaluation_.origin(outcome.scenario.seen) / scenario_count_;
+    const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, 0);
+    penalty_ = penalty_in_deviations * evaluation_.deviation() / static_cast<double>(scenario_count_);
+    add_node(0, outcomes_.size(), 0, no_node, bounds);
+    expand(0);
+    return true;
+  }
+
+  // About `count` of them: states that have ended need no decision.
+  void draw_scenarios(const Belief<Model>& belief, std::size_t count, double running, Sampler& random) {
+    outcomes_.clear();
+    draw_evenly<Model>(belief.particles(), static_cast<std::size_t>(std::ceil(static_cast<double>(count) / running)), random,
+                       [&](const State& state) {
+                         if (Model::ending(state) != Ending::running) return;
+                         const auto number = static_cast<std::uint32_t>(outcomes_.size());
+                         outcomes_.push_back({{state, number, evaluation_.seen(state)}, default_observation});
+                       });
+    scenario_count_ = outcomes_.size();
+  }
+
+  // By how long it took to evaluate the fewest.
+  std::size_t affordable_scenarios(PlanningClock::duration spent) const {
+    double share = 1;  // of the most
+    if (budget_.simulations > 0) {
+      share = share_of_first_look * static_cast<double>(budget_.simulations) / (2.0 * action_count() * most_scenarios);
+    } else if (budget_.seconds > 0) {
+      const double seconds = std::chrono::duration<double>(spent).count() / fewest_scenarios;
+      share = share_of_first_look * budget_.seconds / (seconds * action_count() * most_evaluated);
+    }
+    const auto affordable = static_cast<std::size_t>(std::min(share, 1.0) * most_scenarios);
+    const std::size_t room = std::min(most_node_bytes / sizeof(Node), most_scenario_bytes / sizeof(Scenario<Model>));
+    return std::clamp(room / (2 * action_count()), std::size_t{1}, std::max(affordable, fewest_scenarios));
+  }
+
+  // --- the tree --------------------------------------------------------------------------------------
+
+  // A node for the outcomes from `first` to `last`.
+  std::uint32_t add_node(std::size_t first, std::size_t last, int depth, std::uint32_t parent,
+                         const std::vector<ScenarioBounds>& bounds) {
+    ScenarioBounds sum;
+    const std::size_t first_scenario = scenarios_.size();
+    for (std::size_t i = first; i < last; ++i) {
+      scenarios_.push_back(outcomes_[i].scenario);
+      sum.lower += bounds[i].lower;
+      sum.upper += bounds[i].upper;
+    }
+    simulations_ += last - first;
+    const double lower = weight_at(depth) * sum.lower;
+    const double upper = weight_at(depth) * std::max(sum.upper, sum.lower);
+    nodes_.push_back({static_cast<std::uint32_t>(first_scenario), static_cast<std::uint32_t>(last - first),
+                      static_cast<std::uint32_t>(depth), parent, no_node, no_node, lower, upper, lower, upper});
+    return static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+  double weight_at(int depth) const { return std::pow(Model::discount, depth) / static_cast<double>(scenario_count_); }
+
+  // Adds all actions of a node and their children; returns false where there is no room or no time.
+  bool expand(std::uint32_t number) {
+    const std::size_t most_new = action_count() * nodes_[number].scenarios;
+    if (!scenarios_.has_room_for(most_new) || !nodes_.has_room_for(most_new) || !actions_.has_room_for(action_count())) {
+      return false;
+    }
+    const auto first_action = static_cast<std::uint32_t>(actions_.size());
+    for (std::size_t a = 0; a < action_count(); ++a) {
+      if (a > 0 && !may_go_on()) {
+        if (number != 0) return false;
+        break;
+      }
+      try_action(number, static_cast<int>(a));
+    }
+    nodes_[number].first_action = first_action;
+    update(number);
+    return true;
+  }
+
+  void try_action(std::uint32_t number, int a) {
+    const Node node = nodes_[number];
+    const auto depth = static_cast<int>(node.depth);
+    double reward = 0;
+    double squares = 0;
+    outcomes_.clear();
+    for (std::size_t i = node.first_scenario; i < node.first_scenario + node.scenarios; ++i) {
+      Observed<Model> outcome{scenarios_[i], default_observation};
+      Sampler draws = evaluation_.draws(outcome.scenario.number, depth);
+      const Step step = Model::step(outcome.scenario.state, a, draws);
+      const double earned = evaluation_.earned(scenarios_[i].seen, a, depth, step.reward);
+      reward += earned;
+      squares += earned * earned;
+      ++simulations_;
+      outcome.observation = step.observation;
+      if (Model::ending(outcome.scenario.state) != Ending::running || depth + 1 == horizon_) continue;
+      outcome.scenario.seen = evaluation_.seen_next(outcome.scenario.seen, a, outcome.scenario.state);
+      outcomes_.push_back(outcome);
+    }
+    sort_by_observation(outcomes_, 0, outcomes_.size());
+
+    const auto action_number = static_cast<std::uint32_t>(actions_.size());
+    const double earned = weight_at(depth) * reward - penalty_;
+    ActionNode& action = actions_.push_back({number, no_node, number == 0 ? 1u : 0u, earned, earned, earned});
+    const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, depth + 1);
+    for_each_history(outcomes_, [&](std::size_t first, std::size_t last) {
+      const std::uint32_t child = add_node(first, last, depth + 1, action_number, bounds);
+      nodes_[child].sibling = std::exchange(action.first_child, child);
+      action.lower += nodes_[child].lower;
+      action.upper += nodes_[child].upper;
+    });
+    if (number == 0) {
+      const auto count = static_cast<double>(node.scenarios);
+      const double variance = std::max(squares / count - (reward / count) * (reward / count), 0.0);
+      deviations_.push_back(std::sqrt(variance / count));
+    }
+  }
+
+  // The node's bounds from those of its actions.
+  void update(std::uint32_t number) {
+    Node& node = nodes_[number];
+    double lower = node.default_lower;
+    double upper = node.default_lower;
+    for (std::size_t a = 0; a < tried_actions(number); ++a) {
+      lower = std::max(lower, actions_[node.first_action + a].lower);
+      upper = std::max(upper, actions_[node.first_action + a].upper);
+    }
+    node.lower = lower;
+    node.upper = upper;
+  }
+  std::size_t tried_actions(std::uint32_t number) const { return number == 0 ? deviations_.size() : action_count(); }
+
+  // --- trials ----------------------------------------------------------------------------------------
+
+  // One trial. Returns false where the bounds have met, or nothing can be added any more.
+  bool explore() {
+    if (nodes_[0].first_action == no_node || nodes_[0].upper - nodes_[0].lower <= 1e-9) return false;
+    std::uint32_t number = 0;
+    bool has_changed = false;
+    while (excess(number) > 0 || number == 0) {
+      if (nodes_[number].first_action == no_node) {
+        if (is_blocked(number)) {
+          nodes_[number].upper = nodes_[number].lower = nodes_[number].default_lower;
+          has_changed = true;
+          break;
+        }
+        if (!expand(number)) break;
+        has_changed = true;
+      }
+      const std::uint32_t child = promising_child(number);
+      if (child == no_node) break;
+      number = child;
+    }
+    back_up(number);
+    return has_changed;
+  }
+
+  double gap(std::uint32_t number) const { return nodes_[number].upper - nodes_[number].lower; }
+  double excess(std::uint32_t number) const {
+    const double share = static_cast<double>(nodes_[number].scenarios) / static_cast<double>(scenario_count_);
+    return gap(number) - gap_share * share * gap(0);
+  }
+
+  // By the action with the highest upper bound, the observation with the largest excess.
+  std::uint32_t promising_child(std::uint32_t number) {
+    const Node& node = nodes_[number];
+    std::uint32_t best = node.first_action;
+    for (std::size_t a = 1; a < tried_actions(number); ++a) {
+      const auto candidate = static_cast<std::uint32_t>(node.first_action + a);
+      if (actions_[candidate].upper > actions_[best].upper) best = candidate;
+    }
+    ++actions_[best].trials;
+    std::uint32_t chosen = no_node;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t child = actions_[best].first_child; child != no_node; child = nodes_[child].sibling) {
+      if (excess(child) <= most) continue;
+      most = excess(child);
+      chosen = child;
+    }
+    return chosen;
+  }
+
+  // Whether even with the upper bound an ancestor would not gain more than the penalties of the decisions down to here.
+  bool is_blocked(std::uint32_t number) const {
+    std::uint32_t ancestor = number;
+    for (int decisions = 1; nodes_[ancestor].parent != no_node; ++decisions) {
+      ancestor = actions_[nodes_[ancestor].parent].parent;
+      if (nodes_[ancestor].first_upper - nodes_[ancestor].default_lower <= penalty_ * decisions) return true;
+    }
+    return false;
+  }
+
+  void back_up(std::uint32_t number) {
+    while (true) {
+      if (nodes_[number].first_action != no_node) update(number);
+      if (nodes_[number].parent == no_node) return;
+      ActionNode& action = actions_[nodes_[number].parent];
+      action.lower = action.upper = action.reward;
+      for (std::uint32_t child = action.first_child; child != no_node; child = nodes_[child].sibling) {
+        action.lower += nodes_[child].lower;
+        action.upper += nodes_[child].upper;
+      }
+      number = action.parent;
+    }
+  }
+
+  Evaluation evaluation_;
+  Budget budget_;
+  PlanningClock::time_point latest_;
+  int horizon_ = 0;
+  std::uint64_t simulations_ = 0;
+  std::size_t scenario_count_ = 0;
+  double origin_ = 0;  // what values are counted from
+  double penalty_ = 0;
+  Arena<Node> nodes_;
+  Arena<ActionNode> actions_;
+  Arena<Scenario<Model>> scenarios_;
+  std::vector<Observed<Model>> outcomes_;  // of the action that is being tried
+  std::vector<double> deviations_;  // standard errors of the root's actions that were tried
+};
+
+}  // namespace aos

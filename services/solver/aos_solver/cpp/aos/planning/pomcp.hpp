@@ -1,0 +1,203 @@
+// POMCP (Silver and Veness, 2010): Monte-Carlo tree search over histories, from an exact root belief.
+//
+// What differs from the paper, and why:
+// - Where the states that matter are few enough, returns are counted from what a state is worth to somebody who sees it
+//   (bounds.hpp): a step earns its reward and the change of that worth. Nothing changes in which action is best, but luck
+//   of the state no longer blurs the returns, and what is left to find is the cost of not seeing. A new history starts at
+//   0, as if all were seen from there on. Where there are too many states it starts with a rollout.
+// - The exploration bonus of an action follows the spread of its own returns: immediate rewards say little about it, and a
+//   constant that is too small is the commonest way for POMCP to fail. It falls polynomially, not logarithmically, as
+//   values that drift while the tree below them grows need (Shah, Xie and Xu, 2020).
+// - Values are backed up through the best action among those with a quarter of the visits of the most visited one, not as
+//   the mean of all simulations, which the exploring ones pull down. The decision is made in the same way.
+// - Every eighth simulation takes the root's actions in turn, so that the values of all of them are worth reading.
+// - After a real step the subtree below (action, observation) is kept and looks the full horizon ahead again.
+// - With several threads each has a tree of its own; values are merged by visits. With a budget in simulations each thread
+//   has its fixed share of them, so that a seed gives the same result however the threads are scheduled.
+// - A budget in time is not used up once the choice cannot change; see TreeSearch::is_decided.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "aos/belief/belief.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/planning/bounds.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/base/clock.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/tree_search.hpp"
+
+namespace aos {
+
+inline constexpr std::size_t most_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
+inline constexpr double least_time_share = 0.1;  // of a budget in time that is always used
+
+template <class Model>
+class Pomcp {
+ public:
+  using State = typename Model::State;
+
+  // Values for somebody who sees the state; returns whether the model is small enough. The search does it, too. It takes up
+  // to some seconds for the first decision, which no budget counts, and next to nothing later.
+  bool prepare(const Belief<Model>& belief, int horizon) { return values_.prepare(belief, horizon); }
+  std::size_t known_states() const { return values_.states(); }
+
+  // Runs the search and returns how many simulations it took.
+  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
+    return search(belief, budget, horizon, random, -1, [] { return false; });
+  }
+
+  // Looks ahead below one action while it is carried out, until `is_over()`, which is asked every millisecond or so.
+  template <class IsOver>
+  std::uint64_t think_about(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+                            IsOver&& is_over) {
+    return search(belief, budget, horizon, random, action, is_over);
+  }
+
+  // For each action; values are over the whole belief, so that its ended part counts as nothing to gain.
+  std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
+    std::vector<ActionEstimate> result(static_cast<std::size_t>(Model::action_count()));
+    const double running = belief.probability_of(Ending::running);
+    for (int a = 0; a < Model::action_count(); ++a) {
+      double n = 0;
+      double q = 0;
+      double squares = 0;
+      for (const auto& tree : trees_) {
+        const auto known = tree->known(a);
+        n += known.n;
+        q += known.n * known.q;
+        squares += known.n * known.variance;
+      }
+      if (n == 0) continue;
+      const double value = running * (q / n + seen_worth_);
+      result[static_cast<std::size_t>(a)] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n};
+    }
+    return result;
+  }
+
+  // How many simulations went through the root.
+  std::uint64_t known_simulations() const {
+    std::uint64_t sum = 0;
+    for (const auto& tree : trees_) sum += tree->known_simulations();
+    return sum;
+  }
+
+  // Keeps what is known below the action and observation; nothing where that was never simulated.
+  void move_to(int action, Observation observation) {
+    for (const auto& tree : trees_) tree->move_to(action, observation);
+  }
+  void forget() {
+    for (const auto& tree : trees_) tree->forget();
+  }
+
+ private:
+  using Tree = TreeSearch<Model>;
+
+  // What one thread has done; a fault of model code with the piece that ran.
+  struct Work {
+    std::uint64_t simulations = 0;
+    std::exception_ptr fault;
+    std::uint32_t piece = 0;
+  };
+
+  template <class IsOver>
+  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, int first,
+                       IsOver&& is_over) {
+    const bool has_values = values_.prepare(belief, horizon);
+    const auto start = PlanningClock::now();
+    seen_worth_ = has_values ? seen_worth(belief, horizon) : 0;
+    const auto threads = static_cast<std::size_t>(budget.threads);
+    if (trees_.size() != threads) {
+      trees_.clear();
+      for (std::size_t i = 0; i < threads; ++i) trees_.push_back(std::make_unique<Tree>(most_search_bytes / threads));
+    }
+    if (belief.probability_of(Ending::running) <= 0) return 0;
+    for (const auto& tree : trees_) tree->begin(has_values ? &values_ : nullptr, horizon);
+
+    std::vector<Work> works(threads);
+    {
+      std::vector<std::jthread> others;
+      for (std::size_t i = 1; i < threads; ++i) {
+        const std::uint64_t seed = random.bits();
+        others.emplace_back([&, i, seed] {
+          blame::use_line(static_cast<int>(i));
+          Sampler own{seed};
+          works[i] = work(*trees_[i], belief, share(budget, i), start, own, first, is_over);
+        });
+      }
+      works[0] = work(*trees_[0], belief, share(budget, 0), start, random, first, is_over);
+    }
+    std::uint64_t simulations = 0;
+    for (const Work& done : works) {
+      if (done.fault) {
+        blame::at(done.piece);
+        std::rethrow_exception(done.fault);
+      }
+      simulations += done.simulations;
+    }
+    return simulations;
+  }
+
+  static Budget share(Budget budget, std::size_t thread) {
+    const auto threads = static_cast<std::uint64_t>(budget.threads);
+    if (budget.simulations > 0) budget.simulations = budget.simulations / threads + (thread < budget.simulations % threads);
+    return budget;
+  }
+
+  template <class IsOver>
+  static Work work(Tree& tree, const Belief<Model>& belief, Budget budget, PlanningClock::time_point start,
+                   Sampler& random, int first, IsOver&& is_over) {
+    constexpr std::uint64_t between_looks = 64;
+    Work done;
+    try {
+      const bool has_limit = budget.simulations > 0 || budget.seconds <= 0;
+      while (!has_limit || done.simulations < budget.simulations) {
+        if (done.simulations % between_looks == 0) {
+          if (is_over() || (budget.seconds > 0 && is_enough(tree, budget.seconds, start, done.simulations, first))) break;
+        }
+        ++done.simulations;
+        const State& state = belief.sample(random);
+        if (Model::ending(state) == Ending::running) tree.simulate(state, first, random);
+      }
+    } catch (...) {
+      done.fault = std::current_exception();
+      done.piece = blame::piece();
+    }
+    blame::at(0);
+    return done;
+  }
+
+  static bool is_enough(const Tree& tree, double seconds, PlanningClock::time_point start, std::uint64_t simulations,
+                        int first) {
+    const double spent = std::chrono::duration<double>(PlanningClock::now() - start).count();
+    if (spent >= seconds) return true;
+    if (first >= 0 || spent < least_time_share * seconds) return false;
+    return tree.is_decided(static_cast<double>(simulations) * (seconds / spent - 1));
+  }
+
+  // What the running part of a belief is worth, on average, to somebody who sees the state.
+  double seen_worth(const Belief<Model>& belief, int horizon) const {
+    double worth = 0;
+    double running = 0;
+    for (const auto& [state, weight] : belief.particles()) {
+      if (Model::ending(state) != Ending::running) continue;
+      worth += weight * values_.value(values_.number_of(state), horizon);
+      running += weight;
+    }
+    return running > 0 ? worth / running : 0;
+  }
+
+  std::vector<std::unique_ptr<Tree>> trees_;
+  SeenValues<Model> values_;
+  double seen_worth_ = 0;
+};
+
+}  // namespace aos

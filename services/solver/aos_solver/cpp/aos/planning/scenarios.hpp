@@ -1,0 +1,241 @@
+// Scenarios: states with all the randomness that is to come, and what they are worth at least and at most.
+//
+// The draws of a step depend on the scenario and the depth alone, so that actions are compared under equal luck.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "aos/belief/belief.hpp"
+#include "aos/planning/bounds.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+template <class Model>
+struct Scenario {
+  typename Model::State state;
+  std::uint32_t number;
+  std::uint32_t seen;  // the number of the state in the table of values, if there is one
+};
+
+inline constexpr int rollouts_per_scenario = 3;
+inline constexpr std::size_t smallest_group = 10;
+inline constexpr std::size_t most_evaluated = 50;  // of the scenarios with the same history
+
+// A scenario after a step, and what the step let it observe.
+template <class Model>
+struct Observed {
+  Scenario<Model> scenario;
+  Observation observation;
+};
+
+// Most often there is but one observation.
+template <class Element>
+void sort_by_observation(std::vector<Element>& elements, std::size_t first, std::size_t last) {
+  const auto begin = elements.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto end = elements.begin() + static_cast<std::ptrdiff_t>(last);
+  const auto is_before = [](const Element& left, const Element& right) { return left.observation < right.observation; };
+  if (!std::is_sorted(begin, end, is_before)) std::stable_sort(begin, end, is_before);
+}
+
+// Where the elements end that have the observation of the one at `start`.
+template <class Element>
+std::size_t end_of_history(const std::vector<Element>& elements, std::size_t start, std::size_t last) {
+  std::size_t end = start + 1;
+  while (end < last && elements[end].observation == elements[start].observation) ++end;
+  return end;
+}
+
+// Calls `visit(first, last)` for each run of elements with the same observation.
+template <class Element, class Visit>
+void for_each_history(const std::vector<Element>& elements, Visit&& visit) {
+  for (std::size_t first = 0, last = 0; first < elements.size(); first = last) {
+    last = end_of_history(elements, first, elements.size());
+    visit(first, last);
+  }
+}
+
+// What a scenario is worth at least and at most, discounted from its depth on.
+struct ScenarioBounds {
+  double lower = 0;
+  double upper = 0;
+};
+
+// Evaluates scenarios: what a default policy earns, and what nobody can exceed.
+//
+// Where the model is small enough (bounds.hpp), all is counted from what a scenario's state is worth to somebody who sees
+// it: a step costs what its action is worth less than the best one for that state. On average over all luck that adds up to
+// the same, but most of the luck is left out, and 0 is what nobody can exceed. There a policy takes the action that is best
+// on average over the scenarios of a group, by what it would be worth to somebody who sees them, and goes on by what
+// is observed. Scenarios whose observation only few others share stay together: a policy that went by those few would know
+// what nobody can know.
+//
+// The other policy is that of the rollouts; where there are no values of seen states, the most that a few of them earn
+// stands for the bound, though it is none. Where there are both, a history has the better one for its default policy. Of
+// many scenarios with the same history some stand for all.
+template <class Model>
+class ScenarioEvaluation {
+ public:
+  using State = typename Model::State;
+  // Derives values from the model where it is small enough.
+  void prepare(const Belief<Model>& belief, int horizon) {
+    horizon_ = horizon;
+    has_values_ = values_.prepare(belief, horizon);
+  }
+  std::uint32_t seen(const State& state) const { return has_values_ ? values_.number_of(state) : 0; }
+  // The same for the state that an action has led to from one with the number `before`.
+  std::uint32_t seen_next(std::uint32_t before, int action, const State& state) const {
+    if (!has_values_) return 0;
+    const std::uint32_t next = values_.certain_next(before, action);
+    return next != RelevantStates<Model>::none ? next : values_.number_of(state);
+  }
+
+  // What is counted from: what a state is worth to somebody who sees it, or nothing.
+  double origin(std::uint32_t seen) const { return has_values_ ? values_.value(seen, horizon_) : 0; }
+  // What a step earns by this count.
+  double earned(std::uint32_t seen_before, int action, int depth, double reward) const {
+    return has_values_ ? values_.advantage(seen_before, action, horizon_ - depth) : reward;
+  }
+
+  // New luck for all scenarios.
+  void start(std::uint64_t seed) { seed_ = seed; }
+
+  Sampler draws(std::uint32_t scenario, int depth) const {
+    return Sampler{mixed(mixed(seed_, scenario), static_cast<std::uint64_t>(depth))};
+  }
+
+  // Of each scenario; all have had the same history but for the last observation, by which they are sorted.
+  const std::vector<ScenarioBounds>& bounds(const std::vector<Observed<Model>>& scenarios, int depth) {
+    bounds_.assign(scenarios.size(), {});
+    earned_.assign(scenarios.size(), 0);
+    followers_.clear();
+    for_each_history(scenarios, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; i += stride(first, last)) followers_.push_back({scenarios[i], i});
+    });
+    if (has_values_) split(0, followers_.size(), depth, 1);
+    for_each_history(scenarios, [&](std::size_t first, std::size_t last) {
+      Earnings by_average;
+      Earnings by_rollouts;
+      for (std::size_t i = first; i < last; i += stride(first, last)) {
+        if (has_values_) by_average.add(earned_[i]);
+        if (has_rollouts()) roll_out(scenarios[i].scenario, depth, by_rollouts);
+      }
+      best_ = !has_values_ || (has_rollouts() && by_rollouts.mean() > by_average.mean()) ? by_rollouts : by_average;
+      for (std::size_t i = first; i < last; ++i) {
+        bounds_[i].lower = best_.mean();
+        bounds_[i].upper = has_values_ ? 0 : best_.mean_of_most();
+      }
+    });
+    return bounds_;
+  }
+  // How far what scenarios earned lies apart, of the history evaluated last.
+  double deviation() const { return best_.deviation(); }
+
+ private:
+  // What scenarios earn on average, and at most where that was looked for.
+  class Earnings {
+   public:
+    void add(double earned, double most = 0) {
+      ++count_;
+      sum_ += earned;
+      squares_ += earned * earned;
+      sum_of_most_ += most;
+    }
+    double mean() const { return sum_ / count_; }
+    double mean_of_most() const { return sum_of_most_ / count_; }
+    double deviation() const { return std::sqrt(std::max(squares_ / count_ - mean() * mean(), 0.0)); }
+
+   private:
+    double count_ = 0;
+    double sum_ = 0;
+    double squares_ = 0;
+    double sum_of_most_ = 0;
+  };
+
+  struct Follower : Observed<Model> {
+    std::size_t index;
+  };
+
+  // Rollouts that nobody has written a policy for are at random, and say less than values do.
+  bool has_rollouts() const { return !has_values_ || Model::has_rollout_policy; }
+  static std::size_t stride(std::size_t first, std::size_t last) {
+    return std::max<std::size_t>((last - first) / most_evaluated, 1);
+  }
+
+  void roll_out(const Scenario<Model>& scenario, int depth, Earnings& earnings) const {
+    const int count = has_values_ ? 1 : rollouts_per_scenario;
+    double sum = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    Sampler random = draws(scenario.number, depth + horizon_);
+    for (int i = 0; i < count; ++i) {
+      State state = scenario.state;
+      const double found = Model::rollout(state, horizon_ - depth, random);
+      sum += found;
+      most = std::max(most, found);
+    }
+    const double origin = has_values_ ? values_.value(scenario.seen, horizon_ - depth) : 0;
+    earnings.add(sum / count - origin, most);
+  }
+
+  // The followers from `first` to `last` part by what they have observed last.
+  void split(std::size_t first, std::size_t last, int depth, double discount) {
+    sort_by_observation(followers_, first, last);
+    std::size_t kept = first;
+    for (std::size_t start = first; start < last;) {
+      const std::size_t end = end_of_history(followers_, start, last);
+      if (end - start >= smallest_group) {
+        follow(start, end, depth, discount);
+      } else {
+        for (std::size_t i = start; i < end; ++i) followers_[kept++] = followers_[i];
+      }
+      start = end;
+    }
+    follow(first, kept, depth, discount);
+  }
+
+  // They take one action together, and go on.
+  void follow(std::size_t first, std::size_t last, int depth, double discount) {
+    if (first == last || depth == horizon_) return;
+    const int action = best_on_average(first, last);
+    for (std::size_t i = first; i < last;) {
+      Follower& follower = followers_[i];
+      State& state = follower.scenario.state;
+      Sampler random = draws(follower.scenario.number, depth);
+      const Step step = Model::step(state, action, random);
+      earned_[follower.index] += discount * earned(follower.scenario.seen, action, depth, step.reward);
+      follower.observation = step.observation;
+      if (Model::ending(state) == Ending::running) {
+        follower.scenario.seen = seen_next(follower.scenario.seen, action, state);
+        ++i;
+      } else {
+        follower = followers_[--last];
+      }
+    }
+    split(first, last, depth + 1, discount * Model::discount);
+  }
+
+  int best_on_average(std::size_t first, std::size_t last) {
+    sums_.assign(static_cast<std::size_t>(Model::action_count()), 0);
+    for (std::size_t i = first; i < last; ++i) values_.add_action_values(followers_[i].scenario.seen, sums_);
+    return static_cast<int>(std::max_element(sums_.begin(), sums_.end()) - sums_.begin());
+  }
+
+  SeenValues<Model> values_;
+  bool has_values_ = false;
+  int horizon_ = 0;
+  std::uint64_t seed_ = 0;
+  std::vector<ScenarioBounds> bounds_;
+  std::vector<double> earned_;  // by scenario
+  Earnings best_;
+  std::vector<Follower> followers_;
+  std::vector<double> sums_;
+};
+
+}  // namespace aos

@@ -1,0 +1,183 @@
+// The memory of a search tree: histories, and for each of them the actions that were tried after it.
+//
+// Nodes lie in arenas and are named by their numbers. The observations after an action are a list while they are few;
+// longer lists are indexed by one table for the whole tree. A history gets its actions when it is visited for the second
+// time, since most are visited once. When the memory is used up the tree stops growing, and goes on learning.
+//
+// Letters: n visits, q value of an action, v value of a history.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "aos/base/arena.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+inline constexpr std::uint32_t most_listed_children = 4;
+
+struct HistoryNode {
+  Observation observation = default_observation;
+  double v = 0;
+  double squares = 0;  // sum of its actions'
+  std::uint32_t n = 0;
+  std::uint32_t most_visits = 0;  // of an action
+  std::uint32_t sibling = no_node;
+  std::uint32_t first_action = no_node;
+  std::uint32_t best = 0;  // the best action among the well visited ones
+};
+
+struct ActionNode {
+  double q = 0;
+  double rewards = 0;        // sum of immediate rewards
+  double continuations = 0;  // sum over children of n * v
+  double mean = 0;           // of the sampled returns, with their
+  double squares = 0;        // sum of squared deviations
+  std::uint32_t n = 0;
+  std::uint32_t first_child = no_node;
+  std::uint32_t children = 0;
+};
+
+class SearchTree {
+ public:
+  // Takes no more than `bytes` for nodes, and never memory that it does not use.
+  SearchTree(int action_count, std::size_t bytes)
+      : action_count_(static_cast<std::uint32_t>(action_count)),
+        histories_(bytes / 4 / sizeof(HistoryNode)),
+        actions_(bytes / 4 * 3 / sizeof(ActionNode)) {
+    clear();
+  }
+
+  // Only the root, number 0, is left.
+  void clear() {
+    histories_.clear();
+    actions_.clear();
+    index_.clear();
+    indexed_ = 0;
+    histories_.push_back({});
+  }
+
+  HistoryNode& history(std::uint32_t number) { return histories_[number]; }
+  const HistoryNode& history(std::uint32_t number) const { return histories_[number]; }
+  // The actions of a history that has them, one after the other.
+  ActionNode* actions(const HistoryNode& history) { return actions_.data() + history.first_action; }
+  const ActionNode* actions(const HistoryNode& history) const { return &actions_[history.first_action]; }
+  ActionNode& action(std::uint32_t number) { return actions_[number]; }
+  std::size_t size() const { return histories_.size(); }
+
+  // Returns false where there is no room for them.
+  bool give_actions(std::uint32_t number) {
+    if (histories_[number].first_action != no_node) return true;
+    if (!actions_.has_room_for(action_count_)) return false;
+    histories_[number].first_action = static_cast<std::uint32_t>(actions_.size());
+    for (std::uint32_t i = 0; i < action_count_; ++i) actions_.push_back({});
+    return true;
+  }
+
+  // The history after an action and an observation, or `no_node`.
+  std::uint32_t find_child(std::uint32_t action, Observation observation) const {
+    const ActionNode& parent = actions_[action];
+    if (parent.children > most_listed_children) return find_indexed(action, observation);
+    std::uint32_t child = parent.first_child;
+    while (child != no_node && histories_[child].observation != observation) child = histories_[child].sibling;
+    return child;
+  }
+
+  // A new history; `no_node` where there is no room.
+  std::uint32_t add_child(std::uint32_t action, Observation observation) {
+    if (!histories_.has_room_for(1)) return no_node;
+    const auto number = static_cast<std::uint32_t>(histories_.size());
+    HistoryNode node;
+    node.observation = observation;
+    histories_.push_back(node);
+    hang(action, number);
+    return number;
+  }
+
+  // This tree becomes what is below a history of another one, which becomes its root.
+  void copy_subtree(const SearchTree& from, std::uint32_t root) {
+    clear();
+    copy_node(from, root, 0);
+    for (std::uint32_t copied = 0; copied < histories_.size(); ++copied) {
+      if (histories_[copied].first_action == no_node) continue;
+      const ActionNode* const originals = from.actions(from.histories_[sources_[copied]]);
+      for (std::uint32_t a = 0; a < action_count_; ++a) {
+        for (std::uint32_t child = originals[a].first_child; child != no_node; child = from.histories_[child].sibling) {
+          const auto number = static_cast<std::uint32_t>(histories_.size());
+          histories_.push_back({});
+          copy_node(from, child, number);
+          hang(histories_[copied].first_action + a, number);
+        }
+      }
+    }
+    sources_.clear();
+  }
+
+ private:
+  struct Indexed {
+    std::uint32_t action = no_node;
+    std::uint32_t child = no_node;
+  };
+
+  void hang(std::uint32_t action, std::uint32_t child) {
+    ActionNode& parent = actions_[action];
+    histories_[child].sibling = std::exchange(parent.first_child, child);
+    if (++parent.children < most_listed_children + 1) return;
+    if (parent.children > most_listed_children + 1) return add_to_index(action, child);
+    for (; child != no_node; child = histories_[child].sibling) add_to_index(action, child);
+  }
+
+  // Copies all of a history but its place in the tree, with its actions, which have no children yet.
+  void copy_node(const SearchTree& from, std::uint32_t original, std::uint32_t copy) {
+    sources_.push_back(original);
+    const HistoryNode& node = from.histories_[original];
+    histories_[copy] = node;
+    histories_[copy].sibling = no_node;
+    histories_[copy].first_action = no_node;
+    if (node.first_action == no_node || !give_actions(copy)) return;
+    for (std::uint32_t a = 0; a < action_count_; ++a) {
+      ActionNode& action = actions_[histories_[copy].first_action + a] = from.actions(node)[a];
+      action.first_child = no_node;
+      action.children = 0;
+    }
+  }
+
+  std::size_t slot_of(std::uint32_t action, Observation observation) const {
+    std::size_t slot = mixed(action, static_cast<std::uint64_t>(observation)) & (index_.size() - 1);
+    while (index_[slot].action != no_node &&
+           (index_[slot].action != action || histories_[index_[slot].child].observation != observation)) {
+      slot = (slot + 1) & (index_.size() - 1);
+    }
+    return slot;
+  }
+  std::uint32_t find_indexed(std::uint32_t action, Observation observation) const {
+    return index_[slot_of(action, observation)].child;
+  }
+  // Open addressing, at most half full.
+  void add_to_index(std::uint32_t action, std::uint32_t child) {
+    if (2 * (indexed_ + 1) > index_.size()) {
+      std::vector<Indexed> before(std::max<std::size_t>(2 * index_.size(), 64));
+      before.swap(index_);
+      for (const Indexed& entry : before) {
+        if (entry.action != no_node) index_[slot_of(entry.action, histories_[entry.child].observation)] = entry;
+      }
+    }
+    ++indexed_;
+    index_[slot_of(action, histories_[child].observation)] = {action, child};
+  }
+
+  std::uint32_t action_count_;
+  Arena<HistoryNode> histories_;
+  Arena<ActionNode> actions_;
+  std::vector<Indexed> index_;
+  std::size_t indexed_ = 0;
+  std::vector<std::uint32_t> sources_;  // while copying: the original of each history
+};
+
+}  // namespace aos

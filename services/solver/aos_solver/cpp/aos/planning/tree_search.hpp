@@ -1,0 +1,260 @@
+// One thread's search: simulations from the root of a tree, by upper confidence bounds (see pomcp.hpp for the whole).
+//
+// Letters: s state, a action, o observation, r reward, n visits, q value of an action, v value of a history.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "aos/belief/belief.hpp"
+#include "aos/planning/bounds.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/base/random.hpp"
+#include "aos/planning/search_tree.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+inline constexpr double prior_visits = 4;  // what a spread seen elsewhere counts for, in an action's own
+inline constexpr std::uint32_t settled_visits = 16;
+inline constexpr std::uint32_t well_visited_share = 4;  // at least 1/4 of the most visited action's visits
+inline constexpr std::uint64_t turns = 8;
+
+// Whether an action was simulated often enough beside the most visited one for its value to be believed.
+inline bool is_well_visited(std::uint32_t n, std::uint32_t most) {
+  return static_cast<std::uint64_t>(n) * well_visited_share >= most && n > 0;
+}
+
+template <class Model>
+class TreeSearch {
+ public:
+  using State = typename Model::State;
+
+  // Takes no more than `bytes` for its tree, and for a copy of what is kept of it when a step is taken.
+  explicit TreeSearch(std::size_t bytes)
+      : tree_(Model::action_count(), bytes / 2), spare_(Model::action_count(), bytes / 2) {
+    forget();
+  }
+
+  // Begins a decision. `values` are what states are worth to somebody who sees them; null where they are not known.
+  void begin(const SeenValues<Model>* values, int horizon) {
+    values_ = values;
+    horizon_ = horizon;
+    lowest_ = std::numeric_limits<double>::infinity();
+    highest_ = -lowest_;
+  }
+
+  // One simulation from a running state. `first` is the first action; -1 leaves it to the search.
+  void simulate(State state, int first, Sampler& random) {
+    if (!tree_.give_actions(0)) return;
+    if (++simulations_ % renewal == 0 || simulations_ == settled_visits) renew_spread();
+    if (first < 0 && simulations_ % turns == 0) {
+      first = static_cast<int>(simulations_ / turns % static_cast<std::uint64_t>(Model::action_count()));
+    }
+    const double seen = descend(state, first < 0 ? choose(0) : static_cast<std::uint32_t>(first), random);
+    lowest_ = std::min(lowest_, seen);
+    highest_ = std::max(highest_, seen);
+    const double deviation = seen - mean_;
+    mean_ += deviation / static_cast<double>(simulations_);
+    squares_ += deviation * (seen - mean_);
+  }
+
+  // What is known about a root action: value, simulations, and the variance of one. Values are relative to those of the
+  // states, where these are known.
+  struct Known {
+    double q = 0;
+    std::uint32_t n = 0;
+    double variance = 0;
+  };
+  Known known(int action) const {
+    if (tree_.history(0).first_action == no_node) return {};
+    const ActionNode& node = tree_.actions(tree_.history(0))[action];
+    return {node.q, node.n, node.n > 1 ? std::max(node.squares / (node.n - 1), 0.0) : 0};
+  }
+
+  std::uint32_t known_simulations() const { return tree_.history(0).n; }
+
+  // Whether so many more simulations of any other action could not lift its value, and of the best one not lower it, to
+  // where they meet, were they as good and as bad as the extremes seen.
+  bool is_decided(double more) const {
+    const HistoryNode& root = tree_.history(0);
+    if (root.first_action == no_node || root.n < settled_visits) return false;
+    const ActionNode* const actions = tree_.actions(root);
+    const auto moved = [&](const ActionNode& node, double to) { return (node.n * node.q + more * to) / (node.n + more); };
+    const double least = moved(actions[root.best], lowest_);
+    for (std::uint32_t a = 0; a < action_count(); ++a) {
+      if (a != root.best && moved(actions[a], highest_) >= least) return false;
+    }
+    return true;
+  }
+
+  // Keeps what is known below the action and observation; nothing where that was never simulated.
+  void move_to(int action, Observation observation) {
+    const HistoryNode& root = tree_.history(0);
+    const std::uint32_t kept =
+        root.first_action == no_node
+            ? no_node
+            : tree_.find_child(root.first_action + static_cast<std::uint32_t>(action), observation);
+    if (kept == no_node) return forget();
+    spare_.copy_subtree(tree_, kept);
+    std::swap(tree_, spare_);
+    spare_.clear();
+    forget_spread();
+  }
+
+  void forget() {
+    tree_.clear();
+    forget_spread();
+  }
+
+ private:
+  static constexpr std::uint64_t renewal = 256;
+
+  struct Visit {
+    std::uint32_t history;
+    std::uint32_t action;
+    double reward;
+  };
+
+  static std::uint32_t action_count() { return static_cast<std::uint32_t>(Model::action_count()); }
+
+  void forget_spread() {
+    simulations_ = 0;
+    mean_ = 0;
+    squares_ = 0;
+    spread_ = 0;
+  }
+
+  // The variance of the best root action's returns, or of all returns while that is unknown.
+  void renew_spread() {
+    const HistoryNode& root = tree_.history(0);
+    const ActionNode& best = tree_.actions(root)[root.best];
+    spread_ = best.n >= settled_visits ? best.squares / best.n : squares_ / static_cast<double>(simulations_);
+  }
+
+  // Goes down to a history that is new, or to an end, and back up. Returns the discounted return.
+  double descend(State& state, std::uint32_t a, Sampler& random) {
+    visits_.clear();
+    std::uint32_t history = 0;
+    int left = horizon_;
+    double value = value_of(state, left);
+    double later = 0;
+    double change = 0;  // of n * v of the history that the last action led to
+    while (true) {
+      const Step step = Model::step(state, static_cast<int>(a), random);
+      const bool goes_on = --left > 0 && Model::ending(state) == Ending::running;
+      const double before = value;
+      value = goes_on ? value_of(state, left) : 0;
+      visits_.push_back({history, a, step.reward + Model::discount * value - before});
+      if (!goes_on) break;
+
+      const std::uint32_t action = tree_.history(history).first_action + a;
+      std::uint32_t child = tree_.find_child(action, step.observation);
+      const bool is_new = child == no_node;
+      if (is_new) child = tree_.add_child(action, step.observation);
+      if (is_new || !tree_.give_actions(child)) {
+        later = values_ != nullptr ? 0 : Model::rollout(state, left, random);
+        change = child == no_node ? later : add_return(tree_.history(child), later);
+        break;
+      }
+      history = child;
+      a = choose(history);
+    }
+    for (std::size_t i = visits_.size(); i-- > 0;) {
+      later = visits_[i].reward + Model::discount * later;
+      change = back_up(visits_[i], change, later);
+    }
+    return later;
+  }
+
+  double value_of(const State& state, int horizon) const {
+    return values_ != nullptr ? values_->value(values_->number_of(state), horizon) : 0;
+  }
+
+  // Of a history without actions. Returns the change of n * v.
+  static double add_return(HistoryNode& node, double seen) {
+    ++node.n;
+    node.v += (seen - node.v) / node.n;
+    return seen;
+  }
+
+  // Returns the change of n * v of the history.
+  double back_up(const Visit& visit, double change, double seen) {
+    HistoryNode& parent = tree_.history(visit.history);
+    ActionNode* const actions = tree_.actions(parent);
+    ActionNode& node = actions[visit.action];
+    const double q_before = node.q;
+    ++node.n;
+    node.rewards += visit.reward;
+    node.continuations += change;
+    node.q = (node.rewards + Model::discount * node.continuations) / node.n;
+    const double deviation = seen - node.mean;
+    node.mean += deviation / node.n;
+    const double square = deviation * (seen - node.mean);
+    node.squares += square;
+    parent.squares += square;
+    parent.most_visits = std::max(parent.most_visits, node.n);
+    renew_best(parent, actions, visit.action, node.q < q_before);
+
+    const double before = parent.n * parent.v;
+    ++parent.n;
+    parent.v = parent.n < settled_visits ? parent.v + (seen - parent.v) / parent.n : actions[parent.best].q;
+    return parent.n * parent.v - before;
+  }
+
+  // After a change of one action.
+  static void renew_best(HistoryNode& parent, const ActionNode* actions, std::uint32_t changed, bool has_fallen) {
+    const bool is_best = changed == parent.best;
+    if ((is_best && has_fallen) || !is_well_visited(actions[parent.best].n, parent.most_visits)) {
+      parent.best = changed;
+      for (std::uint32_t a = 0; a < action_count(); ++a) take_better(parent, actions, a);
+    } else if (!is_best) {
+      take_better(parent, actions, changed);
+    }
+  }
+  static void take_better(HistoryNode& parent, const ActionNode* actions, std::uint32_t a) {
+    const bool is_better = actions[a].q > actions[parent.best].q || !is_well_visited(actions[parent.best].n, parent.most_visits);
+    if (is_better && is_well_visited(actions[a].n, parent.most_visits)) parent.best = a;
+  }
+
+  // The highest upper confidence bound; every action once first. An action's spread is its own, and as if `prior_visits`
+  // more had the spread of all actions here, which is in the same way filled up with the root's.
+  std::uint32_t choose(std::uint32_t number) const {
+    const HistoryNode& history = tree_.history(number);
+    const ActionNode* const actions = tree_.actions(history);
+    const double root_n = std::sqrt(static_cast<double>(history.n) + 1);
+    const double prior = prior_visits * (history.squares + prior_visits * spread_) / (history.n + prior_visits);
+    std::uint32_t best = 0;
+    double best_bound = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t a = 0; a < action_count(); ++a) {
+      const ActionNode& node = actions[a];
+      if (node.n == 0) return a;
+      const double n = node.n;
+      const double bound = node.q + std::sqrt((node.squares + prior) * root_n / ((n + prior_visits) * n));
+      if (bound > best_bound) {
+        best_bound = bound;
+        best = a;
+      }
+    }
+    return best;
+  }
+
+  SearchTree tree_;
+  SearchTree spare_;
+  const SeenValues<Model>* values_ = nullptr;
+  int horizon_ = 0;
+  std::vector<Visit> visits_;
+  std::uint64_t simulations_ = 0;
+  double mean_ = 0;  // of all returns, with their
+  double squares_ = 0;
+  double spread_ = 0;
+  double lowest_ = 0;
+  double highest_ = 0;
+};
+
+}  // namespace aos

@@ -1,0 +1,1 @@
+"""From a documented project to the text of its model: lowering, rewriting of document code, emission."""

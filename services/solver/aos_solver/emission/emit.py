@@ -1,0 +1,282 @@
+"""From the lowered model to one C++ file that a person can read, and the way back from its lines.
+
+The templates lay out; document code is put in afterwards, so that no text of a document is ever taken for a
+template or for a mark. The same program gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+import jinja2
+import msgspec
+
+from aos_protocol.diagnostics import Span
+from aos_solver.emission.program import Local, ObjectList, Piece, Program, Skill, Variable
+
+__all__ = ["MODEL_FILE", "EmittedModel", "Origin", "emit"]
+
+MODEL_FILE = "model.cpp"
+"""The name that the emitted file has for itself in its #line directives."""
+
+_MARK, _END = "\ue000", "\ue001"
+_PLACE = re.compile(f"{_MARK}(\\d+){_END}")
+_OWN_NAMES = (
+    "State", "Draft", "Constants", "Environment", "Model", "actions", "constants", "default_values", "start",
+)  # fmt: skip
+_PLAIN_VALUE = re.compile(r"[\w.+-]*")
+
+
+class Origin(msgspec.Struct, frozen=True):
+    """Document code in a line of the emitted file: from character `column` on stands a line of a piece."""
+
+    column: int
+    length: int
+    piece: int
+    line: int
+
+
+class EmittedModel(msgspec.Struct, frozen=True):
+    """The file with what leads back from it. `snippets[n - 1]` is where document code of number n starts.
+
+    `state_digest` is that of the declared state: models with the same can take over each other's beliefs.
+    `locals` are the local variables that the engine wants with a real observation, for each skill whose
+    observations correct the belief. `choosing_skills` are those whose parameters stand for state variables.
+    """
+
+    project: str
+    cpp: str
+    digest: str
+    state_digest: str
+    snippets: tuple[Span, ...]
+    pieces: tuple[Piece, ...]
+    origins: dict[int, tuple[Origin, ...]]
+    locals: dict[str, tuple[Local, ...]] = {}
+    choosing_skills: frozenset[str] = frozenset()
+
+    def locate(self, line: int, byte_column: int = 1) -> Span | None:
+        """The document place of a place in the file; None for code that no document gave."""
+        origins = self.origins.get(line)
+        if not origins:
+            return None
+        text = self.cpp.split("\n")[line - 1].encode()
+        column = len(text[: byte_column - 1].decode(errors="ignore")) + 1
+        inside = [o for o in origins if o.column <= column <= o.column + o.length]
+        if inside:
+            return self.pieces[inside[0].piece - 1].locate(inside[0].line, column - inside[0].column + 1)
+        return self.pieces[origins[0].piece - 1].locate(origins[0].line, 1)
+
+
+def emit(program: Program) -> EmittedModel:
+    """The C++ of a program."""
+    own_names = _own_names(program)
+    text = _templates().get_template("model.cpp.jinja").render(
+        program=program,
+        its=own_names,
+        version=version("aos"),
+        title=_one_line(program.project),
+        before="" if program.is_one_state else "const ",
+        flags_type=_flags_type(program),
+        has_tables=any(variable.axes for variable in program.variables),
+        has_rollout_policy=any(skill.rollout_policy for skill in program.skills),
+        has_corrections=any(skill.is_corrected for skill in program.skills),
+        special_states=[state for state in program.special_states if state.condition or state.section],
+        watched_skills=_watched_skills(program),
+        saved_variables=_saved_variables(program),
+        members_of=lambda objects: _members_of(objects, own_names["State"]),
+        par_names=lambda variable: ", ".join(f"par{n}" for n, _ in enumerate(variable.axes, 1)),
+        MARK=_MARK,
+        END=_END,
+    )  # fmt: skip
+    cpp, origins = _put_code(re.sub(r"\n{3,}", "\n\n", text), program.pieces)
+    return EmittedModel(
+        project=program.project,
+        cpp=cpp,
+        digest=_sha256(cpp),
+        state_digest=_state_digest(program),
+        snippets=tuple(piece.snippet.span for piece in program.pieces),
+        pieces=program.pieces,
+        origins=origins,
+        locals={skill.name: skill.locals for skill in program.skills if skill.is_corrected},
+        choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
+    )
+
+
+@cache
+def _templates() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        undefined=jinja2.StrictUndefined,
+        autoescape=False,
+        keep_trailing_newline=True,
+    )
+    environment.filters["literal"] = _string_literal
+    environment.filters["number"] = _number_literal
+    return environment
+
+
+# --- putting code in -----------------------------------------------------------------------------------
+
+
+def _put_code(text: str, pieces: tuple[Piece, ...]) -> tuple[str, dict[int, tuple[Origin, ...]]]:
+    """The file with the pieces in their places, and where each line of a piece went."""
+    lines = _Lines()
+    for line in text.split("\n"):
+        places = [pieces[int(number) - 1] for number in _PLACE.findall(line)]
+        if not places:
+            lines.add(line)
+        elif _PLACE.fullmatch(line) or any(_needs_lines(piece) for piece in places):
+            _put_block(lines, _PLACE.split(line), pieces)
+        else:
+            _put_inline(lines, _PLACE.split(line), pieces)
+    return "\n".join(lines.lines), lines.origins
+
+
+class _Lines:
+    """The file as it grows."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.origins: dict[int, tuple[Origin, ...]] = {}
+        self._is_in_document = False
+        self._next: tuple[str, int] = ("", 0)
+
+    def add(self, line: str) -> None:
+        """A line of ours."""
+        if self._is_in_document:
+            self.lines.append(f'#line {len(self.lines) + 2} "{MODEL_FILE}"')
+            self._is_in_document = False
+        self.lines.append(line)
+
+    def add_code(self, line: str, span: Span, origins: tuple[Origin, ...]) -> None:
+        """A line with document code, of which `span` is the document line."""
+        if not self._is_in_document or self._next != (span.file, span.line):
+            self.lines.append(f"#line {span.line} {_string_literal(span.file)}")
+        self.lines.append(line)
+        self.origins[len(self.lines)] = origins
+        self._is_in_document = True
+        self._next = (span.file, span.line + 1)
+
+    def add_plain(self, line: str, origins: tuple[Origin, ...]) -> None:
+        """A line of ours that shows a plain value from a document."""
+        self.add(line)
+        self.origins[len(self.lines)] = origins
+
+
+def _needs_lines(piece: Piece) -> bool:
+    return "\n" in piece.text or "//" in piece.text
+
+
+def _put_block(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> None:
+    """Every piece on lines of its own; the code around it on lines before and after."""
+    for index, part in enumerate(parts):
+        if index % 2 == 0:
+            if part.strip():
+                lines.add(part)
+            continue
+        piece = pieces[int(part) - 1]
+        for number, text in enumerate(piece.text.split("\n"), 1):
+            lines.add_code(text, piece.snippet.locate(number), (Origin(1, len(text), piece.number, number),))
+
+
+def _put_inline(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> None:
+    """The pieces within the line."""
+    line = ""
+    origins: list[Origin] = []
+    for index, part in enumerate(parts):
+        if index % 2 == 1:
+            piece = pieces[int(part) - 1]
+            text = piece.text.strip()
+            lead = len(piece.text) - len(piece.text.lstrip())
+            origins.append(Origin(len(line) + 1 - lead, lead + len(text), piece.number, 1))
+            line += text
+        else:
+            line += part
+    first = pieces[origins[0].piece - 1]
+    if all(_PLAIN_VALUE.fullmatch(pieces[o.piece - 1].text.strip()) for o in origins):
+        lines.add_plain(line, tuple(origins))
+    else:
+        lines.add_code(line, first.snippet.locate(1), tuple(origins))
+
+
+# --- facts for the templates ---------------------------------------------------------------------------
+
+
+def _own_names(program: Program) -> dict[str, str]:
+    taken = {enum.name for enum in program.enums} | {compound.name for compound in program.compounds}
+    taken |= {variable.name for variable in program.variables}
+    taken |= {value for enum in program.enums for value in enum.values} | set(program.low_level_constants)
+    names = {}
+    for name in _OWN_NAMES:
+        free = name
+        while free in taken:
+            free += "_"
+        names[name] = free
+    return names
+
+
+def _flags_type(program: Program) -> str:
+    flags = max((special.bit.bit_length() for special in program.special_states), default=0)
+    return next((f"std::uint{bits}_t" for bits in (8, 16, 32, 64) if flags <= bits), "") if flags else ""
+
+
+def _watched_skills(program: Program) -> list[Skill]:
+    changes = program.extrinsic_changes
+    return [skill for skill in program.skills if changes is not None and changes.uses(skill.name)]
+
+
+def _saved_variables(program: Program) -> tuple[Variable, ...]:
+    """What a saved state holds, whatever the particle of this very model holds."""
+    return tuple(v for v in program.variables if not (v.is_constant and v.is_parameter_value))
+
+
+def _members_of(objects: ObjectList, state: str) -> list[str]:
+    return [f"&{state}::{name}" for name in objects.members]
+
+
+def _state_digest(program: Program) -> str:
+    flags = [(special.number, special.bit) for special in program.special_states if special.bit]
+    compounds = [
+        (c.name, [(field.name, _shape(field.type)) for field in c.fields]) for c in program.compounds
+    ]
+    enums = [(enum.name, enum.values) for enum in program.enums]
+    variables = [(v.name, _shape(v.type)) for v in _saved_variables(program)]
+    return _sha256(json.dumps([enums, compounds, variables, flags]))
+
+
+def _shape(type_text: str) -> str:
+    """A type without the room of its vectors, which depends on all code."""
+    return re.sub(r"(aos::Vector<.*), \d+>", r"\1>", type_text)
+
+
+# --- literals ------------------------------------------------------------------------------------------
+
+
+def _string_literal(text: str) -> str:
+    """A C++ string literal of the UTF-8 bytes of `text`."""
+    pieces = []
+    for byte in text.encode():
+        character = chr(byte)
+        if character in '"\\?':
+            pieces.append("\\" + character)
+        else:
+            pieces.append(character if 32 <= byte < 127 else f"\\{byte:03o}")
+    return f'"{"".join(pieces)}"'
+
+
+def _number_literal(number: float) -> str:
+    """A C++ literal of exactly this number, which is finite."""
+    return repr(float(number))
+
+
+def _one_line(text: str) -> str:
+    return re.sub(r"[^\x20-\x7e]|\\", "?", text)
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,212 @@
+"""From a project's typed documents to the model that is emitted.
+
+A pure function of the project. Mistakes of the documents come back as diagnostics, all at once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
+from aos_protocol.local_types import LocalType, local_type, told_variables
+from aos_runtime.snippets import read_cpp_expression
+from aos_solver.emission.cpp_library import headers_for
+from aos_solver.emission.findings import Findings
+from aos_solver.emission.lower_code import (
+    BELIEF,
+    DYNAMIC,
+    EXTRINSIC,
+    GIVEN,
+    LOOKING,
+    Pieces,
+    SectionLowering,
+    snippets_of,
+)
+from aos_solver.emission.lower_copies import copies_of
+from aos_solver.emission.lower_names import check_names
+from aos_solver.emission.lower_state import (
+    lower_compounds,
+    lower_variables,
+    member_names,
+    object_lists,
+    parameter_values,
+    rooms_of,
+)
+from aos_solver.emission.lower_types import Types, lower_enum
+from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
+from aos_solver.emission.program import Local, Parameter, Program, SpecialState
+from aos_solver.emission.program import Skill as LoweredSkill
+
+__all__ = ["lower"]
+
+_MAX_FLAGS = 64
+
+
+def lower(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """The program, and what is to be said about the documents; no program if there are errors."""
+    findings = Findings()
+    check_names(project, findings)
+    if any(diagnostic.is_error for diagnostic in findings.diagnostics):
+        return None, tuple(findings.diagnostics)
+    program = _Lowering(project, findings).program()
+    has_errors = any(diagnostic.is_error for diagnostic in findings.diagnostics)
+    return None if has_errors else program, tuple(findings.diagnostics)
+
+
+class _Lowering:
+    """One project on its way; the order of the calls is the order of the pieces' numbers."""
+
+    def __init__(self, project: Project, findings: Findings) -> None:
+        environment = project.environment
+        self._project = project
+        self._findings = findings
+        self._changes: Changes = changes_of(project)
+        self._types = Types(
+            environment.enums, environment.compounds, member_names(project), rooms_of(project), findings
+        )
+        self._pieces = Pieces(findings)
+        self._code = SectionLowering(
+            self._types,
+            self._pieces,
+            frozenset(self._changes.object_types),
+            environment.enums,
+            findings,
+        )
+
+    def program(self) -> Program:
+        project, environment, code = self._project, self._project.environment, self._code
+        enums = tuple(lower_enum(enum) for enum in environment.enums)
+        compounds = lower_compounds(environment, self._types, self._pieces, code.outside)
+        variables = lower_variables(
+            environment, self._changes, self._types, self._pieces, code.outside, self._findings
+        )
+        initial_belief = code.section(BELIEF, environment.initial_belief)
+        extrinsic_changes = code.section(EXTRINSIC, environment.extrinsic_changes)
+        special_states = self._special_states(environment)
+        state_heuristic = code.section(LOOKING, environment.state_heuristic)
+        print_state = code.section(LOOKING, environment.print_state)
+        skills = tuple(self._skill(skill) for skill in project.skills)
+        names = frozenset(self._pieces.identifiers)
+        headers = headers_for(names)
+        constants = project.low_level.constants if project.low_level is not None else ()
+        value_types = sorted(self._changes.value_types)
+        return Program(
+            project=project.name,
+            digest=_digest(project),
+            horizon=environment.horizon,
+            discount=environment.discount,
+            is_one_state=environment.is_one_state_model,
+            enums=enums,
+            compounds=compounds,
+            variables=variables,
+            low_level_constants=tuple(dict.fromkeys(constant.name for constant in constants)),
+            object_lists=object_lists(environment, self._changes),
+            enum_lists=tuple(enum for enum in enums if f"{enum.name}Objects" in names),
+            value_lists=tuple(parameter_values(environment.variables, name) for name in value_types),
+            draws_defaults=any(True for _ in drawing_defaults(environment)),
+            initial_belief=initial_belief,
+            extrinsic_changes=extrinsic_changes,
+            state_heuristic=state_heuristic,
+            print_state=print_state,
+            special_states=special_states,
+            skills=skills,
+            standard_headers=headers,
+            pieces=tuple(self._pieces.made),
+        )
+
+    def _special_states(self, environment: Environment) -> tuple[SpecialState, ...]:
+        lowered = []
+        flags = 0
+        for number, special in enumerate(environment.special_states, 1):
+            if special.condition is not None and not read_cpp_expression(special.condition.code).is_empty:
+                condition = self._pieces.expression(special.condition, self._code.outside)
+                section, is_used_up = None, special.is_one_time and not special.is_goal
+            else:
+                condition, section = None, self._code.section(LOOKING, special.code)
+                is_used_up = section is not None and section.uses("__stopEvaluatingState")
+            if is_used_up and flags == _MAX_FLAGS:
+                message = f"more than {_MAX_FLAGS} special states that count once"
+                self._findings.error("AOS124", message, special.span, "Join some of them in one reward_code")
+            bit = 1 << flags if is_used_up else 0
+            flags += is_used_up
+            reward, is_goal, is_one_time = special.reward, special.is_goal, special.is_one_time
+            lowered.append(SpecialState(number, bit, condition, reward, is_goal, is_one_time, section))
+        return tuple(lowered)
+
+    def _skill(self, skill: Skill) -> LoweredSkill:
+        model, mapping, code = skill.model, skill.mapping, self._code
+        variables = self._project.environment.variables
+        copies = copies_of(model, self._project.environment)
+        parameters = tuple(
+            Parameter(
+                parameter.name,
+                self._types.plain(parameter.type, parameter.span),
+                None if model.possible_parameters else parameter_values(variables, parameter.type),
+            )
+            for parameter in model.parameters
+        )
+        lowered = LoweredSkill(
+            name=model.name,
+            document=model.span.file,
+            parameters=parameters,
+            responses=tuple(dict.fromkeys(rule.response for rule in mapping.rules)),
+            has_text_response=bool(mapping.response_variable) or _uses_text_response(model.dynamic_model),
+            violation_penalty=model.violation_penalty,
+            possible_parameters=code.section(LOOKING, model.possible_parameters) if parameters else None,
+            precondition=code.section(LOOKING, model.precondition),
+            execution_time=code.section(LOOKING, model.execution_time),
+            dynamic_model=code.section(DYNAMIC, model.dynamic_model),
+            rollout_policy=code.section(LOOKING, model.rollout_policy),
+            given_observation=code.section(GIVEN, model.state_given_observation),
+            told=told_variables(mapping, self._project.environment),
+            keeps_state=copies.keeps_state,
+            keeps_state_=copies.keeps_state_,
+        )
+        return msgspec.structs.replace(lowered, locals=_locals(mapping, lowered))
+
+
+def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:
+    """The local variables that a correction needs."""
+    needed = set(skill.told)
+    if skill.given_observation is not None:
+        needed |= skill.given_observation.names - {parameter.name for parameter in skill.parameters}
+    return tuple(
+        Local(variable.name, _cpp_type(kind), kind)
+        for variable in mapping.local_variables
+        if variable.name in needed and (kind := local_type(variable.type)) is not None
+    )
+
+
+def _cpp_type(kind: LocalType) -> str:
+    element = "std::string" if kind.element == "string" else kind.element
+    return f"aos::LocalArray<{element}>" if kind.is_array else element
+
+
+def _uses_text_response(assignments: tuple[Assignment, ...]) -> bool:
+    return any(
+        mention.path[0] == "__moduleResponseStr"
+        for _, cpp in snippets_of(assignments)
+        for mention in cpp.mentions
+    )
+
+
+def _digest(project: Project) -> str:
+    """Of all that the model depends on; not of the code in the abstraction mappings."""
+    parts = [
+        project.name,
+        project.environment,
+        [constant.name for constant in project.low_level.constants] if project.low_level is not None else [],
+        [
+            (
+                skill.model,
+                [rule.response for rule in skill.mapping.rules],
+                skill.mapping.response_variable,
+                [(variable.name, variable.type) for variable in skill.mapping.local_variables],
+            )
+            for skill in project.skills
+        ],
+    ]
+    return hashlib.sha256(msgspec.json.encode(parts)).hexdigest()

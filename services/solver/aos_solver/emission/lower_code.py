@@ -1,0 +1,225 @@
+"""Document code: which copies of the state each section sees and changes, and its functions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+import msgspec
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import (
+    Assignment,
+    EnumType,
+    Environment,
+    Iteration,
+    SkillModel,
+    Snippet,
+    TemporaryVariable,
+)
+from aos_runtime.snippets import (
+    Cpp,
+    DeclarationKind,
+    FaultKind,
+    read_cpp,
+    read_cpp_expression,
+    strip_comments,
+)
+from aos_solver.emission.cpp_library import unrepeatable_names
+from aos_solver.emission.findings import Findings
+from aos_solver.emission.lower_types import Types
+from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
+from aos_solver.emission.rewrite import EnumValues, Rewriting, rewrite
+
+__all__ = ["Phase", "Pieces", "SectionLowering", "environment_sections", "skill_sections", "snippets_of"]
+
+
+class Phase(msgspec.Struct, frozen=True):
+    """What a kind of section may do: the copies that loops run over, and the copies it may change."""
+
+    title: str
+    next_copy: str = ""
+    changes: frozenset[str] = frozenset()
+    previous_copy: str = "state"
+
+
+BELIEF = Phase("the initial belief", changes=frozenset({"state"}))
+EXTRINSIC = Phase("extrinsic changes", "state_", frozenset({"state_"}))
+DYNAMIC = Phase("a dynamic model", "state__", frozenset({"state__"}))
+GIVEN = Phase("a state given an observation", "state___", frozenset({"state___"}), "state__")
+LOOKING = Phase("this section")
+
+
+def environment_sections(environment: Environment) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
+    """The environment's code by phase."""
+    yield BELIEF, environment.initial_belief
+    yield EXTRINSIC, environment.extrinsic_changes
+    yield LOOKING, environment.state_heuristic
+    yield LOOKING, environment.print_state
+    for special in environment.special_states:
+        yield LOOKING, special.code
+
+
+def skill_sections(model: SkillModel) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
+    """A skill's code by phase."""
+    yield LOOKING, model.possible_parameters
+    yield LOOKING, model.precondition
+    yield LOOKING, model.execution_time
+    yield LOOKING, model.rollout_policy
+    yield DYNAMIC, model.dynamic_model
+    yield GIVEN, model.state_given_observation
+
+
+def snippets_of(assignments: Iterable[Assignment]) -> Iterator[tuple[Snippet, Cpp]]:
+    """Every snippet of a section, read."""
+    for assignment in assignments:
+        for loop in (*assignment.over_previous, *assignment.over_next):
+            if loop.condition is not None:
+                yield loop.condition, read_cpp_expression(loop.condition.code)
+            if loop.body is not None:
+                yield loop.body, read_cpp(loop.body.code)
+        if assignment.code is not None:
+            yield assignment.code, read_cpp(assignment.code.code)
+
+
+class Pieces:
+    """Makes pieces and numbers them; refuses code that could leave its function or cannot be replayed."""
+
+    def __init__(self, findings: Findings) -> None:
+        self.made: list[Piece] = []
+        self.identifiers: set[str] = set()
+        self._findings = findings
+
+    def code(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
+        """Statements."""
+        return self._make(snippet, read_cpp(snippet.code), rewriting)
+
+    def expression(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
+        """One expression."""
+        return self._make(snippet, read_cpp_expression(snippet.code), rewriting)
+
+    def _make(self, snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> Piece:
+        self._check(snippet, cpp)
+        is_safe = all(fault.kind is FaultKind.SYNTAX for fault in cpp.faults)
+        text, edits = rewrite(snippet, cpp, rewriting) if is_safe else ("", ())
+        piece = Piece(len(self.made) + 1, snippet, text, edits)
+        self.made.append(piece)
+        return piece
+
+    def _check(self, snippet: Snippet, cpp: Cpp) -> None:
+        for fault in cpp.faults:
+            if fault.kind is not FaultKind.SYNTAX:
+                span = snippet.locate(fault.extent.line, fault.extent.column)
+                self._findings.error("AOS108", fault.message, span)
+        code = _without_texts(cpp)
+        self.identifiers.update(re.findall(r"[A-Za-z_]\w*", code))
+        functions = (call.name for call in cpp.calls if len(call.name) == 1 or call.name[:1] == ("std",))
+        named = {part for name in functions for part in name}
+        named |= {part for name, _ in cpp.types for part in name.split("::")}
+        own = {declaration.name for declaration in cpp.declarations}
+        for name in unrepeatable_names(frozenset(named - own), code):
+            at = re.search(rf"\b{re.escape(name)}\b", code)
+            start = at.start() if at is not None else 0
+            line = code.count("\n", 0, start) + 1
+            span = snippet.locate(line, start - code.rfind("\n", 0, start))
+            hint = "Draw with AOS.Bernoulli and its like; keep what changes in the state"
+            self._findings.error(
+                "AOS124", f"`{name}` makes a step that cannot be repeated exactly", span, hint
+            )
+
+
+def _without_texts(cpp: Cpp) -> str:
+    """The code with comments and literals blanked."""
+    characters = list(strip_comments(cpp.code))
+    for literal in cpp.literals:
+        for index in range(literal.start, literal.end):
+            if characters[index] != "\n":
+                characters[index] = " "
+    return "".join(characters)
+
+
+class SectionLowering:
+    """Lowers sections into the functions that they become."""
+
+    def __init__(
+        self,
+        types: Types,
+        pieces: Pieces,
+        object_types: frozenset[str],
+        enums: Iterable[EnumType],
+        findings: Findings,
+    ) -> None:
+        enums = tuple(enums)
+        values = frozenset(value for enum in enums for value in enum.values)
+        self._types = types
+        self._pieces = pieces
+        self._findings = findings
+        self.outside = Rewriting(object_types, {enum.name: None for enum in enums}, values)
+        """What names mean in code that stands alone."""
+
+    def section(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
+        """The section's function; None if there is nothing in it."""
+        read = list(snippets_of(assignments))
+        if not any(a.temporary for a in assignments) and all(cpp.is_empty for _, cpp in read):
+            return None
+        enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
+        rewriting = msgspec.structs.replace(self.outside, enums=enums)
+        statements = [part for a in assignments for part in self._assignment(phase, a, rewriting)]
+        names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)
+        return Section(tuple(statements), names | _looped_copies(phase, assignments))
+
+    def _assignment(self, phase: Phase, assignment: Assignment, rewriting: Rewriting) -> Iterator[Statement]:
+        if assignment.temporary is not None:
+            yield self._temporary(assignment.temporary)
+        if assignment.over_previous:
+            copy = phase.previous_copy
+            yield self._loop(assignment.over_previous, copy, copy in phase.changes, rewriting)
+        if assignment.over_next:
+            if phase.next_copy:
+                yield self._loop(assignment.over_next, phase.next_copy, True, rewriting)
+            else:
+                self._no_next_state(phase, assignment.over_next[0].span)
+        if assignment.code is not None and not read_cpp(assignment.code.code).is_empty:
+            yield self._pieces.code(assignment.code, rewriting)
+
+    def _temporary(self, variable: TemporaryVariable) -> Statement:
+        if variable.enum_values:
+            return EnumVariable(variable.name, variable.enum_name, variable.enum_values)
+        return DeclaredVariable(variable.name, self._types.plain(variable.type, variable.span))
+
+    def _loop(
+        self, loops: tuple[Iteration, ...], copy: str, is_reference: bool, rewriting: Rewriting
+    ) -> Loop:
+        first, rest = loops[0], loops[1:]
+        condition = body = None
+        if first.condition is not None and not read_cpp_expression(first.condition.code).is_empty:
+            condition = self._pieces.expression(first.condition, rewriting)
+        if first.body is not None and not read_cpp(first.body.code).is_empty:
+            body = self._pieces.code(first.body, rewriting)
+        inner = self._loop(rest, copy, is_reference, rewriting) if rest else None
+        return Loop(first.type, first.item, copy, is_reference, condition, body, inner)
+
+    def _no_next_state(self, phase: Phase, span: Span) -> None:
+        hint = "Use IteratePreviousStateVars"
+        self._findings.error("AOS123", f"there is no next state in {phase.title} to iterate over", span, hint)
+
+
+def _looped_copies(phase: Phase, assignments: tuple[Assignment, ...]) -> frozenset[str]:
+    copies = {phase.previous_copy for assignment in assignments if assignment.over_previous}
+    copies |= {phase.next_copy for assignment in assignments if assignment.over_next}
+    return frozenset(copies)
+
+
+def _local_enums(snippets: Iterable[Cpp]) -> dict[str, EnumValues]:
+    """The enums that a section's code declares; with their values where those are not 0, 1, 2, ..."""
+    enums: dict[str, EnumValues] = {}
+    for cpp in snippets:
+        for enum in cpp.declarations:
+            if enum.kind is not DeclarationKind.ENUM or not enum.name:
+                continue
+            values = [
+                d for d in cpp.declarations if d.kind is DeclarationKind.ENUMERATOR and d.type == enum.name
+            ]
+            is_numbered = any(cpp.code[v.extent.end :].lstrip().startswith("=") for v in values)
+            enums[enum.name] = tuple(f"{enum.name}::{v.name}" for v in values) if is_numbered else None
+    return enums

@@ -1,0 +1,144 @@
+"""Which copies of the state a step makes.
+
+Where no code reads an older copy of a variable after it has changed a newer one, the two are one object.
+Where the text leaves a doubt, the copy is made: it costs time, and leaving it out would change the model.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+import msgspec
+
+from aos_protocol.documents import Assignment, Environment, SkillModel
+from aos_runtime.snippets import Access, Cpp, Extent, Mention, strip_comments
+from aos_solver.emission.lower_code import snippets_of
+from aos_solver.emission.lower_writes import LAMBDA
+
+__all__ = ["Copies", "copies_of"]
+
+_WHOLE_STATE = "*"
+_READING_METHODS = frozenset({"at", "back", "contains", "count", "empty", "front", "length", "size"})
+_REPEATED = re.compile(r"\b(?:for|while|do|goto)\b")
+"""Where, as in lambdas, the order of the text is not that of the run."""
+
+
+class Copies(msgspec.Struct, frozen=True):
+    """Whether a step of a skill keeps `state` and `state_` apart from what comes after them."""
+
+    keeps_state: bool
+    keeps_state_: bool
+
+
+class _Use(msgspec.Struct, frozen=True):
+    """A mention of a state variable in the snippet of that number. What a write assigns is read before it; a
+    handle may be read at any time.
+    """
+
+    variable: str
+    snippet: int
+    extent: Extent
+    assigned: Extent | None = None
+    is_handle: bool = False
+
+
+class _Uses(msgspec.Struct, frozen=True):
+    """All uses in a section. The text of `unordered` snippets is not in the order of the run."""
+
+    reads: list[_Use]
+    writes: list[_Use]
+    unordered: frozenset[int]
+
+
+def copies_of(model: SkillModel, environment: Environment) -> Copies:
+    """What a step of this skill needs; models with one state have no copies."""
+    dynamic = model.dynamic_model
+    extrinsic = environment.extrinsic_changes
+    if all(cpp.is_empty for _, cpp in snippets_of(extrinsic)):
+        return Copies(_reads_changed(dynamic, ("state", "state_"), "state__"), keeps_state_=False)
+    changed_before = {use.variable for use in _uses(extrinsic, ("state",), "state_").writes}
+    read_after = {use.variable for use in _uses(dynamic, ("state",), "state__").reads}
+    return Copies(
+        keeps_state=_overlap(changed_before, read_after)
+        or _reads_changed(extrinsic, ("state",), "state_")
+        or _reads_changed(dynamic, ("state",), "state__"),
+        keeps_state_=_reads_changed(dynamic, ("state_",), "state__"),
+    )
+
+
+def _reads_changed(section: tuple[Assignment, ...], older: tuple[str, ...], newer: str) -> bool:
+    """Whether the section may read an older copy of a variable after it has changed the newer one."""
+    if any(assignment.over_previous or assignment.over_next for assignment in section):
+        return True
+    uses = _uses(section, older, newer)
+    return any(
+        _overlap({write.variable}, {read.variable}) and not _is_before(read, write, uses.unordered)
+        for write in uses.writes
+        for read in uses.reads
+    )
+
+
+def _is_before(read: _Use, write: _Use, unordered: frozenset[int]) -> bool:
+    if read.is_handle or read.snippet > write.snippet:
+        return False
+    if read.snippet < write.snippet:
+        return True
+    if read.snippet in unordered:
+        return False
+    is_in_path = _covers(write.extent, read.extent)
+    return read.extent.start < write.extent.start or is_in_path or _covers(write.assigned, read.extent)
+
+
+def _uses(section: tuple[Assignment, ...], older: tuple[str, ...], newer: str) -> _Uses:
+    reads, writes, unordered = [], [], set()
+    for number, (_, cpp) in enumerate(snippets_of(section)):
+        code = strip_comments(cpp.code)
+        has_lambda = LAMBDA.search(code) is not None
+        if has_lambda or _REPEATED.search(code):
+            unordered.add(number)
+        bound = list(_bound(cpp))
+        for mention in cpp.mentions:
+            variable = _variable(mention)
+            if mention.path[0] in older:
+                is_bound = any(_covers(extent, mention.extent) for extent in bound)
+                is_handle = has_lambda or is_bound or _makes_handle(mention)
+                reads.append(_Use(variable, number, mention.extent, is_handle=is_handle))
+            elif mention.path[0] == newer and not _only_reads(mention, cpp):
+                writes.append(_Use(variable, number, mention.extent, mention.assigned))
+    return _Uses(reads, writes, frozenset(unordered))
+
+
+def _variable(mention: Mention) -> str:
+    is_list = len(mention.path) > 1 and mention.path[1].endswith(("Objects", "ObjectsForActions"))
+    return _WHOLE_STATE if len(mention.path) == 1 or is_list else mention.path[1]
+
+
+def _makes_handle(mention: Mention) -> bool:
+    """Whether what it gives may be looked at later, when the variable has changed."""
+    is_method = bool(mention.method) and mention.method not in _READING_METHODS
+    return mention.access is not Access.READ or is_method
+
+
+def _bound(cpp: Cpp) -> Iterator[Extent]:
+    """What references and pointers are made of, the constant ones as well."""
+    for declaration in cpp.declarations:
+        if declaration.initial is not None and declaration.type.endswith(("&", "*", "_view")):
+            yield declaration.initial
+
+
+def _only_reads(mention: Mention, cpp: Cpp) -> bool:
+    """Whether nothing can change through this mention of a copy that may be changed."""
+    arguments = (argument for call in cpp.calls for argument in call.arguments)
+    is_passed_on = any(_covers(argument, mention.extent) for argument in arguments)
+    return mention.access is Access.READ and _variable(mention) != _WHOLE_STATE and not is_passed_on
+
+
+def _covers(outer: Extent | None, inner: Extent) -> bool:
+    return outer is not None and outer.start <= inner.start and inner.end <= outer.end
+
+
+def _overlap(left: Iterable[str], right: Iterable[str]) -> bool:
+    left, right = set(left), set(right)
+    has_whole = _WHOLE_STATE in left | right
+    return bool(left & right) or (has_whole and bool(left) and bool(right))

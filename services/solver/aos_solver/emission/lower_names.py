@@ -1,0 +1,89 @@
+"""Which of the documents' names can be names in C++."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Assignment, Environment, Project, SkillModel
+from aos_runtime.cpp_keywords import CPP_KEYWORDS
+from aos_solver.emission.findings import Findings
+
+__all__ = ["assignments_of", "check_names"]
+
+_OF_THE_LANGUAGE = frozenset({
+    "AOS", "AOSUtils", "EOF", "INFINITY", "NAN", "NULL", "anyValue", "aos", "errno", "state", "state_",
+    "state__", "state___", "std",
+})  # fmt: skip
+_OF_NAMESPACES = frozenset({"model"})
+"""What no type can be called, and everything else can."""
+_OF_EMITTED_SKILLS = frozenset({
+    "Locals", "Parameters", "Response", "execution_time", "given_observation", "groundings",
+    "has_text_response", "locals", "make_groundings", "next_state", "possible_parameters", "precondition",
+    "read_locals", "response_names", "rollout_policy", "violation_penalty",
+})  # fmt: skip
+_OF_EMITTED_ENVIRONMENTS = frozenset({
+    "Chosen", "extrinsic_changes", "has_extrinsic_changes", "initial_belief", "is_one_state", "name_of",
+    "print_state", "special_states", "state_heuristic", "with_action", "with_skill",
+})  # fmt: skip
+
+
+def check_names(project: Project, findings: Findings) -> None:
+    """AOS126 for every declared name that C++ or the emitted model needs for itself."""
+    global_names = _OF_EMITTED_SKILLS | _OF_EMITTED_ENVIRONMENTS
+    for enum in project.environment.enums:
+        for value in enum.values:
+            _check(value, enum.span, findings, global_names)
+    for name, span in _type_names(project.environment):
+        _check(name, span, findings, global_names | _OF_NAMESPACES)
+    for name, span in _member_names(project):
+        _check(name, span, findings, frozenset())
+    for skill in project.skills:
+        for rule in skill.mapping.rules:
+            _check(rule.response, rule.span, findings, _OF_EMITTED_SKILLS)
+
+
+def assignments_of(model: SkillModel) -> Iterator[Assignment]:
+    """All blocks of a skill document."""
+    yield from model.possible_parameters
+    yield from model.precondition
+    yield from model.rollout_policy
+    yield from model.execution_time
+    yield from model.dynamic_model
+    yield from model.state_given_observation
+
+
+def _type_names(environment: Environment) -> Iterator[tuple[str, Span]]:
+    yield from ((enum.name, enum.span) for enum in environment.enums)
+    yield from ((compound.name, compound.span) for compound in environment.compounds)
+
+
+def _member_names(project: Project) -> Iterator[tuple[str, Span]]:
+    environment = project.environment
+    for compound in environment.compounds:
+        yield from ((field.name, field.span) for field in compound.fields)
+    yield from ((variable.name, variable.span) for variable in environment.variables)
+    blocks = [*environment.initial_belief, *environment.extrinsic_changes, *environment.state_heuristic]
+    blocks += environment.print_state
+    blocks += [block for special in environment.special_states for block in special.code]
+    if project.low_level is not None:
+        yield from ((constant.name, constant.span) for constant in project.low_level.constants)
+    for skill in project.skills:
+        yield skill.name, skill.model.span
+        yield from ((parameter.name, parameter.span) for parameter in skill.model.parameters)
+        blocks += assignments_of(skill.model)
+    for block in blocks:
+        if (temporary := block.temporary) is not None:
+            names = (temporary.name, temporary.enum_name, *temporary.enum_values)
+            yield from ((name, temporary.span) for name in names if name)
+        yield from ((loop.item, loop.span) for loop in (*block.over_previous, *block.over_next))
+
+
+def _check(name: str, span: Span, findings: Findings, ours: frozenset[str]) -> None:
+    if not (name.isascii() and name.isidentifier()):
+        hint = "Use letters, digits and underscores"
+        findings.error("AOS126", f"`{name}` is no name in C++", span, hint)
+    elif name in CPP_KEYWORDS or name in _OF_THE_LANGUAGE:
+        findings.error("AOS126", f"`{name}` means something else in model code", span, "Choose another name")
+    elif name in ours:
+        findings.error("AOS126", f"the emitted model uses the name `{name}`", span, "Choose another name")

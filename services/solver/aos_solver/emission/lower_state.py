@@ -1,0 +1,135 @@
+"""Types and variables of the environment."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from aos_protocol.documents import Environment, Project, StateVariable
+from aos_protocol.local_types import told_variables
+from aos_runtime.snippets import read_cpp
+from aos_solver.emission.findings import Findings
+from aos_solver.emission.lower_code import Pieces, environment_sections, skill_sections, snippets_of
+from aos_solver.emission.lower_rooms import Rooms
+from aos_solver.emission.lower_types import Types, ordered_compounds
+from aos_solver.emission.lower_writes import Changes, drawing_defaults
+from aos_solver.emission.program import Compound, Field, ObjectList, ParameterValues, Variable
+from aos_solver.emission.rewrite import Rewriting
+
+__all__ = [
+    "lower_compounds",
+    "lower_variables",
+    "member_names",
+    "object_lists",
+    "parameter_values",
+    "rooms_of",
+]
+
+
+def rooms_of(project: Project) -> Rooms:
+    """The room of every vector, from all code of the project."""
+    rooms = Rooms()
+    environment = project.environment
+    for compound in environment.compounds:
+        for field in compound.fields:
+            if field.default is not None:
+                rooms.read_default(field.name, field.default.code)
+    for variable in environment.variables:
+        if variable.default_value is not None:
+            rooms.read_default(variable.name, variable.default_value.code)
+        if variable.default_code is not None:
+            rooms.read_code([read_cpp(variable.default_code.code)])
+    for skill in project.skills:
+        for name in told_variables(skill.mapping, environment):
+            rooms.tell(name)
+    sections = [*environment_sections(environment)]
+    sections += [section for skill in project.skills for section in skill_sections(skill.model)]
+    for _, assignments in sections:
+        rooms.read_code(cpp for _, cpp in snippets_of(assignments))
+    return rooms
+
+
+def member_names(project: Project) -> frozenset[str]:
+    """All names of variables, fields and parameters."""
+    environment = project.environment
+    names = {variable.name for variable in environment.variables}
+    names |= {field.name for compound in environment.compounds for field in compound.fields}
+    return frozenset(names | {p.name for skill in project.skills for p in skill.model.parameters})
+
+
+def lower_compounds(
+    environment: Environment, types: Types, pieces: Pieces, outside: Rewriting
+) -> tuple[Compound, ...]:
+    """The compounds, each behind those that it holds."""
+    compounds = []
+    for compound in ordered_compounds(environment.compounds):
+        fields = tuple(
+            Field(
+                field.name,
+                types.stored(field.type, field.name, field.span),
+                pieces.expression(field.default, outside) if field.default is not None else None,
+            )
+            for field in compound.fields
+        )
+        compounds.append(Compound(compound.name, fields))
+    return tuple(compounds)
+
+
+def lower_variables(
+    environment: Environment,
+    changes: Changes,
+    types: Types,
+    pieces: Pieces,
+    outside: Rewriting,
+    findings: Findings,
+) -> tuple[Variable, ...]:
+    """The state variables in their order; AOS124 for a parameter value that is drawn at random."""
+    drawn = frozenset(drawing_defaults(environment))
+    lowered = []
+    for variable in environment.variables:
+        if variable.is_parameter_value and variable.name in drawn:
+            message = f"{variable.name} is a value of an action parameter and drawn at random"
+            hint = "Actions are the same in all states; let an initial belief draw another variable"
+            findings.error("AOS124", message, variable.span, hint)
+        axes = tuple(types.axis(key, variable.span) for key in variable.key_types)
+        stored = types.stored(variable.type, variable.name, variable.span, is_array=variable.is_array)
+        if axes:
+            stored = f"aos::Table<{stored}, {', '.join(axis.type for axis in axes)}>"
+        value, code = variable.default_value, variable.default_code
+        is_walked = variable.type in changes.object_types and not variable.is_parameter_value
+        lowered.append(
+            Variable(
+                variable.name,
+                stored,
+                not is_walked and variable.name not in changes.variables,
+                variable.is_parameter_value,
+                pieces.expression(value, outside) if value is not None else None,
+                pieces.code(code, outside) if code is not None else None,
+                axes,
+            )
+        )
+    return tuple(lowered)
+
+
+def object_lists(environment: Environment, changes: Changes) -> tuple[ObjectList, ...]:
+    """`state.<Type>Objects` for the compound types that are walked over."""
+    return tuple(
+        ObjectList(
+            name,
+            tuple(
+                variable.name
+                for variable in environment.variables
+                if variable.type == name and _is_plain(variable) and not variable.is_parameter_value
+            ),
+        )
+        for name in sorted(changes.object_types)
+    )
+
+
+def parameter_values(variables: Iterable[StateVariable], type_name: str) -> ParameterValues:
+    """The values for parameters of exactly this type, in the order of their names."""
+    names = [v.name for v in variables if v.is_parameter_value and v.type == type_name and _is_plain(v)]
+    return ParameterValues(type_name, tuple(sorted(names)))
+
+
+def _is_plain(variable: StateVariable) -> bool:
+    return not variable.is_array and not variable.key_types

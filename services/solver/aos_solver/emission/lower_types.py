@@ -1,0 +1,139 @@
+"""The types of the documents as C++ types of fixed storage."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import CompoundType, EnumType
+from aos_solver.emission.findings import Findings
+from aos_solver.emission.lower_rooms import Rooms
+from aos_solver.emission.program import Axis, Enum
+
+__all__ = ["Types", "lower_enum", "ordered_compounds"]
+
+_PLAIN = frozenset({
+    "anyValue", "bool", "char", "double", "float", "int", "int16_t", "int32_t", "int64_t", "int8_t", "long",
+    "long long", "short", "size_t", "uint16_t", "uint32_t", "uint64_t", "uint8_t", "unsigned",
+    "unsigned char", "unsigned int", "unsigned long",
+})  # fmt: skip
+_RANGE = re.compile(r"\(\s*(-?\d+)\s*,\s*(-?\d+)\s*,\s*([1-9]\d*)\s*\)")
+
+
+def lower_enum(enum: EnumType) -> Enum:
+    """The enum in the smallest type that holds its values and -1."""
+    storage = next(bits for bits in (8, 16, 32) if len(enum.values) < 2 ** (bits - 1))
+    return Enum(enum.name, enum.values, f"std::int{storage}_t")
+
+
+def ordered_compounds(compounds: Iterable[CompoundType]) -> list[CompoundType]:
+    """Compounds so that each stands behind those that it holds; a cycle is left in its order."""
+    by_name = {compound.name: compound for compound in compounds}
+    ordered: dict[str, CompoundType] = {}
+    waiting = list(reversed(by_name.values()))
+    opened: set[str] = set()
+    while waiting:
+        compound = waiting[-1]
+        named = {name for field in compound.fields for name in re.findall(r"\w+", field.type)}
+        needed = [by_name[name] for name in sorted(named & by_name.keys()) if name not in ordered]
+        if compound.name in opened or not needed:
+            waiting.pop()
+            ordered.setdefault(compound.name, compound)
+        else:
+            opened.add(compound.name)
+            waiting += needed
+    return list(ordered.values())
+
+
+class Types:
+    """Resolves type texts. `members` are all names of variables, fields and parameters: a type of the same
+    name as one of them has to be qualified where that one is in scope.
+    """
+
+    def __init__(
+        self,
+        enums: Iterable[EnumType],
+        compounds: Iterable[CompoundType],
+        members: frozenset[str],
+        rooms: Rooms,
+        findings: Findings,
+    ) -> None:
+        self._enums = {enum.name: enum for enum in enums}
+        self._named = self._enums.keys() | {compound.name for compound in compounds}
+        self._members = members
+        self._rooms = rooms
+        self._findings = findings
+
+    def stored(self, text: str, name: str, span: Span, *, is_array: bool = False) -> str:
+        """The type of a variable or field called `name`; AOS110 or AOS124, and `int`, if there is none."""
+        return self._stored(f"{text}[]" if is_array else text, name, span, level=0)
+
+    def plain(self, text: str, span: Span) -> str:
+        """The type of a parameter or a temporary variable, which is not bound to fixed storage."""
+        text = _normal(text)
+        inner = _element_type(text)
+        if inner is not None:
+            return f"std::vector<{self.plain(inner, span)}>"
+        if text == "string":
+            return "std::string"
+        if text in self._named or text in _PLAIN:
+            return self._qualified(text)
+        if re.search(r"\w\s*<", text):
+            return text
+        self._unknown(text, span)
+        return "int"
+
+    def axis(self, key: str, span: Span) -> Axis:
+        """One key of a map variable: an enum's name, or `(start,stop,step)`."""
+        if key in self._enums:
+            name = self._qualified(key)
+            return Axis(f"aos::EnumAxis<{name}, {len(self._enums[key].values)}>", name)
+        match = _RANGE.fullmatch(key.strip())
+        if match is None:
+            hint = "A key is the name of an enum, or (start,stop,step) with a positive step"
+            self._findings.error("AOS110", f"`{key}` cannot be the key of a map variable", span, hint)
+            return Axis("aos::RangeAxis<0, 1, 1>", "int")
+        return Axis(f"aos::RangeAxis<{', '.join(match.groups())}>", "int")
+
+    def _stored(self, text: str, name: str, span: Span, level: int) -> str:
+        text = _normal(text)
+        inner = _element_type(text)
+        if inner is not None:
+            room = self._rooms.room(name, level)
+            return f"aos::Vector<{self._stored(inner, name, span, level + 1)}, {room}>"
+        array = re.fullmatch(r"array<(.+),\s*(\d+)\s*>", text)
+        if array is not None:
+            return f"std::array<{self._stored(array[1], name, span, level + 1)}, {array[2]}>"
+        if text == "string":
+            return "aos::Text"
+        if text in self._named or text in _PLAIN:
+            return self._qualified(text)
+        if re.search(r"\w\s*<", text) or text.endswith(("*", "&")):
+            hint = "Use vector<...>, a compound type, or a map variable over finite keys"
+            self._findings.error("AOS124", f"a state cannot hold a `{text}`", span, hint)
+        else:
+            self._unknown(text, span)
+        return "int"
+
+    def _qualified(self, name: str) -> str:
+        return f"model::{name}" if name in self._named and name in self._members else name
+
+    def _unknown(self, text: str, span: Span) -> None:
+        known = ", ".join(sorted(self._named))
+        hint = f"The types are bool, int, float, double, string, anyValue{', ' + known if known else ''}"
+        self._findings.error("AOS110", f"unknown type `{text}`", span, hint)
+
+
+def _normal(text: str) -> str:
+    text = " ".join(text.replace("std::", "").split())
+    return re.sub(r"\s*([<>,\[\]])\s*", r"\1", text)
+
+
+def _element_type(text: str) -> str | None:
+    """The element type of `T[]` and `vector<T>`; None for other types."""
+    if text.endswith("[]"):
+        return text[:-2]
+    if text.startswith("vector<") and text.endswith(">"):
+        return text[len("vector<") : -1]
+    return None

@@ -1,0 +1,192 @@
+"""Which state variables the code can change: the others are constants, and no particle holds them.
+
+Where the text leaves a doubt, the variable counts as changed. A change that is missed all the same cannot
+pass: constants are constant to the compiler.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from aos_protocol.documents import Assignment, Environment, Project
+from aos_protocol.local_types import told_variables
+from aos_runtime.snippets import (
+    Access,
+    Cpp,
+    DeclarationKind,
+    Extent,
+    Mention,
+    read_cpp,
+    read_cpp_expression,
+)
+from aos_solver.emission.lower_code import Phase, environment_sections, skill_sections, snippets_of
+
+__all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]
+
+_ALL_COPIES = frozenset({"state", "state_", "state__", "state___"})
+LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
+"""Where a lambda begins."""
+
+_CHANGING = (Access.WRITE, Access.UPDATE, Access.BIND)
+_READING_FUNCTIONS = frozenset({
+    "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",
+    "float", "floor", "fmax", "fmin", "fmod", "hypot", "int", "isfinite", "isnan", "log", "log10", "log2",
+    "lround", "make_pair", "make_tuple", "max", "min", "pow", "round", "sin", "sqrt", "static_cast", "string",
+    "tan", "tanh", "to_string", "trunc",
+})  # fmt: skip
+
+
+class Changes:
+    """What changes: `variables` by name, and every variable of the types that are walked as objects."""
+
+    def __init__(self, project: Project) -> None:
+        environment = project.environment
+        self._names = frozenset(variable.name for variable in environment.variables)
+        self.variables: set[str] = set()
+        self.object_types: set[str] = set()
+        self.value_types: set[str] = set()
+        self._compounds = frozenset(compound.name for compound in environment.compounds)
+
+    def read(self, cpp: Cpp, copies: frozenset[str]) -> None:
+        """Takes in a snippet that may change these copies of the state."""
+        passed_on = list(_passed_to_functions(cpp))
+        changed_by_lambda = _changed_by_lambdas(cpp, passed_on)
+        for mention in cpp.mentions:
+            if mention.path[0] not in _ALL_COPIES:
+                continue
+            if mention.extent.start in changed_by_lambda and mention.path[0] in copies:
+                self.variables |= self._names & changed_by_lambda[mention.extent.start]
+                continue
+            if len(mention.path) > 1:
+                self._read_list(mention.path[1])
+            if mention.path[0] in copies and (mention.access in _CHANGING or _is_in(mention, passed_on)):
+                self._change(mention)
+            elif mention.path[0] in copies and len(mention.path) == 1:
+                self.variables |= self._names
+
+    def walk(self, type_name: str) -> None:
+        """The variables of this type are walked over."""
+        if type_name in self._compounds:
+            self.object_types.add(type_name)
+
+    def _read_list(self, name: str) -> None:
+        self.walk(name.removesuffix("Objects"))
+        if name.endswith("ObjectsForActions"):
+            self.value_types.add(name.removesuffix("ObjectsForActions"))
+
+    def _change(self, mention: Mention) -> None:
+        if len(mention.path) == 1:
+            self.variables |= self._names
+        elif mention.path[1] in self._names:
+            self.variables.add(mention.path[1])
+
+
+def changes_of(project: Project) -> Changes:
+    """Everything that the code of the documents can change while a particle lives."""
+    changes = Changes(project)
+    environment = project.environment
+    for skill in project.skills:
+        changes.variables.update(told_variables(skill.mapping, environment))
+    for phase, assignments in _all_sections(project):
+        copies = phase.changes
+        if environment.is_one_state_model and phase.changes:
+            copies = _ALL_COPIES
+        for assignment in assignments:
+            for loop in (*assignment.over_previous, *assignment.over_next):
+                changes.walk(loop.type)
+        for _, cpp in snippets_of(assignments):
+            changes.read(cpp, copies)
+    for special in environment.special_states:
+        if special.condition is not None:
+            changes.read(read_cpp_expression(special.condition.code), frozenset())
+    drawn = frozenset(drawing_defaults(environment))
+    is_drawn = False
+    for variable in environment.variables:
+        is_drawn = is_drawn or variable.name in drawn
+        if variable.default_code is not None:
+            copies = frozenset({"state"}) if is_drawn else frozenset()
+            changes.read(read_cpp(variable.default_code.code), copies)
+        if variable.default_value is not None and is_drawn:
+            changes.variables.add(variable.name)
+    return changes
+
+
+def drawing_defaults(environment: Environment) -> Iterator[str]:
+    """The variables whose default is drawn at random."""
+    for variable in environment.variables:
+        for snippet in (variable.default_code, variable.default_value):
+            if snippet is None:
+                continue
+            mentions = read_cpp(snippet.code).mentions or read_cpp_expression(snippet.code).mentions
+            if any(mention.path[0] in ("AOS", "AOSUtils") for mention in mentions):
+                yield variable.name
+
+
+def _all_sections(project: Project) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
+    yield from environment_sections(project.environment)
+    for skill in project.skills:
+        yield from skill_sections(skill.model)
+
+
+def _passed_to_functions(cpp: Cpp) -> Iterator[range]:
+    """The arguments of calls to functions that may take them by reference."""
+    for call in cpp.calls:
+        is_function = len(call.name) == 1 or call.name[:1] == ("std",)
+        if is_function and call.name[-1] not in _READING_FUNCTIONS:
+            yield from (range(argument.start, argument.end) for argument in call.arguments)
+
+
+def _changed_by_lambdas(cpp: Cpp, passed_on: list[range]) -> dict[int, set[str]]:
+    """The members that a lambda of the code changes, for each place where it is given the whole state."""
+    lambdas = {
+        declaration.name: declaration.initial
+        for declaration in cpp.declarations
+        if declaration.initial is not None and cpp.code[declaration.initial.start] == "["
+    }
+    found = {}
+    for call in cpp.calls:
+        body = lambdas.get(call.name[0]) if len(call.name) == 1 else None
+        parameters = [] if body is None else _parameters(cpp, body)
+        for argument, parameter in zip(call.arguments, parameters, strict=False):
+            changed = _changed_members(cpp, body, parameter, passed_on)
+            if changed is not None:
+                found[argument.start] = changed
+    return {
+        mention.extent.start: found[mention.extent.start]
+        for mention in cpp.mentions
+        if len(mention.path) == 1 and mention.extent.start in found
+    }
+
+
+def _parameters(cpp: Cpp, body: Extent) -> list[str]:
+    """The names of a lambda's parameters; none where another lambda within has parameters, too."""
+    text = cpp.code[body.start : body.end]
+    if len(LAMBDA.findall(text)) != 1:
+        return []
+    return [
+        declaration.name
+        for declaration in cpp.declarations
+        if declaration.kind is DeclarationKind.PARAMETER
+        and declaration.extent.start in range(body.start, body.end)
+    ]
+
+
+def _changed_members(
+    cpp: Cpp, body: Extent | None, parameter: str, passed_on: list[range]
+) -> set[str] | None:
+    """The members of the parameter that the lambda changes; None where it uses the parameter as a whole."""
+    if body is None:
+        return None
+    uses = [
+        mention
+        for mention in cpp.mentions
+        if mention.path[0] == parameter and mention.extent.start in range(body.start, body.end)
+    ]
+    if any(len(mention.path) == 1 for mention in uses):
+        return None
+    return {m.path[1] for m in uses if m.access in _CHANGING or _is_in(m, passed_on)}
+
+
+def _is_in(mention: Mention, ranges: list[range]) -> bool:
+    return any(mention.extent.start in extent for extent in ranges)

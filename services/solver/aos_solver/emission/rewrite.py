@@ -1,0 +1,101 @@
+"""The few edits that make document code C++ in its function. They stay within their lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+import msgspec
+
+from aos_protocol.documents import Snippet
+from aos_runtime.snippets import Call, Cpp, Extent
+from aos_solver.emission.program import Edit
+from aos_solver.emission.rewrite_containers import container_edits
+from aos_solver.emission.rewrite_objects import object_edits
+
+__all__ = ["EnumValues", "Rewriting", "rewrite"]
+
+_STATES = frozenset({"state", "state_", "state__", "state___"})
+
+EnumValues = tuple[str, ...] | None
+"""The values of an enum that does not count from 0 upwards; None for one that does."""
+
+
+class Rewriting(msgspec.Struct, frozen=True):
+    """What names mean in a section.
+
+    `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
+    constants that every section sees.
+    """
+
+    object_types: frozenset[str]
+    enums: Mapping[str, EnumValues]
+    values: frozenset[str] = frozenset()
+
+
+def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tuple[Edit, ...]]:
+    """The text to emit, and what was edited.
+
+    - a missing last `;` is put in
+    - `AOSUtils::` becomes `AOSUtils.`
+    - `state.<Type>Objects`, a view made on demand, gets its `()`
+    - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
+    - `state->x` becomes `state.x`
+    - objects and containers: see `rewrite_objects` and `rewrite_containers`
+    """
+    edits: list[tuple[Extent | int, str]] = list(_of_mentions(cpp, rewriting))
+    unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
+    for start, end, text in unnamed:
+        edits.append((_extent(cpp.code, start, end) if end > start else start, text))
+    for call in cpp.calls:
+        edits += _of_call(call, cpp.code, rewriting)
+    # Last, since a bracket that goes to the same place has to come before it.
+    edits += [(offset, ";") for offset in cpp.missing_semicolons]
+    unique = list(dict.fromkeys(edits))
+    return cpp.replace(unique), tuple(sorted(_placed(unique, cpp.code), key=lambda e: (e.line, e.column)))
+
+
+def _of_mentions(cpp: Cpp, rewriting: Rewriting) -> Iterator[tuple[Extent | int, str]]:
+    for mention in cpp.mentions:
+        if scope := re.compile(r"AOSUtils\s*::").match(cpp.code, mention.root.start):
+            yield _extent(cpp.code, scope.end() - 2, scope.end()), "."
+        if mention.path[0] not in _STATES or len(mention.path) < 2:
+            continue
+        after_root = mention.root.end
+        if arrow := re.compile(r"\s*->").match(cpp.code, after_root):
+            yield _extent(cpp.code, arrow.end() - 2, arrow.end()), "."
+        name = mention.path[1]
+        if name.removesuffix("Objects") in rewriting.object_types and name.endswith("Objects"):
+            pattern = re.compile(rf"\s*(?:\.|->)\s*{name}\b(?!\s*\()")
+            if found := pattern.match(cpp.code, after_root):
+                yield found.end(), "()"
+
+
+def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Extent | int, str]]:
+    if call.name[-1:] != ("SampleDiscrete",) or call.name[0] not in ("AOS", "AOSUtils"):
+        return
+    if len(call.arguments) != 2:
+        return
+    first = call.arguments[0]
+    enum = code[first.start : first.end].strip()
+    if enum not in rewriting.enums:
+        return
+    values = rewriting.enums[enum]
+    yield first, "-1"
+    if values is None:
+        yield call.extent.start, f"{enum}("
+        yield call.extent.end, ")"
+    else:
+        yield call.extent.start, f"aos::nth({{{', '.join(values)}}}, "
+        yield call.extent.end, ")"
+
+
+def _extent(code: str, start: int, end: int) -> Extent:
+    line = code.count("\n", 0, start) + 1
+    return Extent(start, end, line, start - code.rfind("\n", 0, start))
+
+
+def _placed(edits: Iterable[tuple[Extent | int, str]], code: str) -> Iterator[Edit]:
+    for at, text in edits:
+        extent = _extent(code, at, at) if isinstance(at, int) else at
+        yield Edit(extent.line, extent.column, extent.end - extent.start, len(text))

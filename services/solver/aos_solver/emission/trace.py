@@ -1,0 +1,109 @@
+"""A model that tells of every statement that it runs, to find the one where another build of it failed.
+
+A model that is in use tells only which piece of document code runs, since a step is a few statements and
+one more store for each is not free. Statements are counted on from the pieces.
+"""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+from aos_protocol.diagnostics import Span
+from aos_runtime.cpp_statements import Marks, Statement, marked
+from aos_solver.emission.emit import EmittedModel
+from aos_solver.emission.program import Piece
+
+__all__ = ["TracedModel", "traced"]
+
+_RESULTS = ("__reward", "__moduleResponse")
+"""The reward is looked at first, so it has to be the last that tells of itself when the section is over."""
+
+
+class TracedModel(msgspec.Struct, frozen=True):
+    """`emitted.snippets` are the pieces' places and after them those of the statements.
+
+    `pieces[n - 1]` is the number of the piece that place number n is in.
+    """
+
+    emitted: EmittedModel
+    pieces: tuple[int, ...]
+
+    def has_later_statements(self, piece: int) -> bool:
+        """Whether a statement of the piece stands on another line than the piece's first."""
+        first = self.emitted.snippets[piece - 1]
+        places = zip(self.pieces, self.emitted.snippets, strict=True)
+        return any(number == piece and span.line != first.line for number, span in places)
+
+
+def traced(emitted: EmittedModel) -> TracedModel:
+    """The model with a mark at every statement of document code; the lines stay."""
+    lines = emitted.cpp.split("\n")
+    spans = list(emitted.snippets)
+    pieces = list(range(1, len(spans) + 1))
+    for piece in emitted.pieces:
+        tracing = _Tracing(piece, len(spans))
+        text = marked(piece.text, tracing.marks) if _is_statements(piece, emitted, lines) else None
+        if text is None:
+            continue
+        spans += tracing.spans.values()
+        pieces += [piece.number] * len(tracing.spans)
+        text = f"{tracing.start}{text}"
+        for number, line in enumerate(text.split("\n"), 1):
+            lines[_line_of(piece, number, emitted)] = line
+    return TracedModel(
+        msgspec.structs.replace(emitted, cpp="\n".join(lines), snippets=tuple(spans)), tuple(pieces)
+    )
+
+
+class _Tracing:
+    """The marks of one piece."""
+
+    def __init__(self, piece: Piece, places: int) -> None:
+        self._piece = piece
+        self._places = places
+        self._given = [name for name in _RESULTS if _sets(piece.text, name)]
+        self.spans: dict[tuple[int, int], Span] = {}
+        self.marks = Marks(before=self._before, after=self._after, inside="aos::blame::Inside inside__;")
+
+    @property
+    def start(self) -> str:
+        """Before the first statement; the names are the piece's own, since sections have several."""
+        return "".join(f"aos::blame::Giving {self._giver(name)}{{{name}}}; " for name in self._given)
+
+    def _before(self, statement: Statement) -> str:
+        return f"aos::blame::at({self._place(statement)})"
+
+    def _after(self, statement: Statement) -> str:
+        given = [name for name in self._given if _sets(statement.text, name)]
+        return " ".join(f"{self._giver(name)}.by({self._place(statement)});" for name in given)
+
+    def _giver(self, name: str) -> str:
+        return f"{name}__by{self._piece.number}"
+
+    def _place(self, statement: Statement) -> int:
+        key = (statement.line, statement.column)
+        self.spans.setdefault(key, self._piece.locate(*key))
+        return self._places + 1 + list(self.spans).index(key)
+
+
+def _sets(code: str, name: str) -> bool:
+    return re.search(rf"\b{name}\s*([-+*/]?=(?!=))", code) is not None
+
+
+def _line_of(piece: Piece, number: int, emitted: EmittedModel) -> int:
+    """The index of the emitted file's line that is a line of the piece."""
+    return next(
+        line - 1
+        for line, origins in emitted.origins.items()
+        if origins[0].piece == piece.number and origins[0].line == number
+    )
+
+
+def _is_statements(piece: Piece, emitted: EmittedModel, lines: list[str]) -> bool:
+    """Whether the piece is not an expression: then its number alone is told on the line before it."""
+    before = _line_of(piece, 1, emitted) - 1
+    if lines[before].startswith("#line"):
+        before -= 1
+    return lines[before].strip() == f"aos::blame::at({piece.number});"
