@@ -43,6 +43,46 @@ path: /check
 """,
 }
 
+FIELD = {
+    "field.ef": """project: field
+horizon: 50
+discount: 0.9
+
+state_variable: int east
+
+state_variable: int north
+
+action_parameter: bool eastward
+code:
+state.eastward = true;
+
+action_parameter: bool northward
+
+initial_belief:
+state.east = 0;
+state.north = 0;
+""",
+    "walk.sd": """project: field
+
+parameter: bool is_east
+
+dynamic_model:
+if (is_east) state__.east = (state.east + 1) % 150;
+else state__.north = (state.north + 1) % 150;
+__reward = state.east * 0.01 - state.north * 0.005;
+__moduleResponse = done;
+""",
+    "walk.am": """project: field
+
+response: done
+response_rule: True
+
+module_activation: skill
+path: /walk
+""",
+}
+"""22,500 places that all matter."""
+
 
 @pytest.fixture
 async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
@@ -127,6 +167,14 @@ async def test_without_a_discount_another_planner_decides_and_says_why(cache_dir
         plan = await engine.plan(simulations=500, seed=1, planner="sarsop")
     assert plan.planner == "pomcp"
     assert plan.why.startswith("SARSOP cannot be used: without a discount")
+
+
+async def test_more_states_are_listed_when_it_is_asked_for(cache_dir: Path) -> None:
+    async with engine_of(await built_text(FIELD, cache_dir)) as engine:
+        for planner, used in (("auto", "pomcp"), ("sarsop", "sarsop"), ("auto", "pomcp")):
+            plan = await engine.plan(simulations=500, seed=1, planner=planner)
+            assert plan.planner == used, plan.why
+            assert ("too many states to list" in plan.why) == (planner == "auto")
 
 
 @pytest.mark.parametrize(

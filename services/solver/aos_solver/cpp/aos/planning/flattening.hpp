@@ -18,7 +18,7 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_flat_outcomes = 4'000'000;
+inline constexpr std::size_t most_flat_outcomes = 12'000'000;
 
 // States in which the mission has ended are worth nothing, so outcomes that end it are left out.
 template <class Model>
