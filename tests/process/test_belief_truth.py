@@ -218,3 +218,27 @@ async def test_particles_outlive_more_observations_than_they_can_tell_apart(cach
             assert not update.is_impossible, card
     for card, marginal in enumerate(update.summary.marginals):
         assert marginal.values.get("true" if hand[card] else "false", 0.0) > 0.9, card
+
+
+SHAKEN = DEPLETING | {
+    "cards.ef": DEPLETING["cards.ef"].replace(
+        "initial_belief:", "state_variable: double noise\n\ninitial_belief:"
+    ),
+    "turn.sd": DEPLETING["turn.sd"].replace(
+        "dynamic_model:", "dynamic_model:\nstate__.noise = AOS.SampleUniform(0, 1);"
+    ),
+}
+"""The same with noise that differs in all states, so that particles stay many and their ancestors do not."""
+
+
+async def test_what_all_particles_have_by_chance_is_given_up_when_it_is_observed_otherwise(
+    cache_dir: Path,
+) -> None:
+    dice = random.Random(2)
+    hand = [dice.random() < 0.5 for _ in range(CARDS)]
+    async with engine_of(await built_text(SHAKEN, cache_dir)) as engine:
+        for card, is_on in enumerate(hand):
+            update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
+            assert not update.is_impossible, card
+            marginal = update.summary.marginals[card]
+            assert marginal.values.get("true" if is_on else "false", 0.0) > 0.9, card

@@ -79,11 +79,15 @@ class Belief {
         gathering.clear();
       }
     }
+    Unobserved<Model> unobserved;
     for (std::size_t i = 0; i < particle_count; ++i) {
       Model::initial(state, random);
       gathering.add(state, 1.0);
+      unobserved.add(state);
     }
-    return Belief{gathering, 1, Source::drawing};
+    Belief belief{gathering, 1, Source::drawing};
+    belief.unobserved_ = std::move(unobserved);
+    return belief;
   }
 
   // After an action, before any observation.
@@ -103,7 +107,7 @@ class Belief {
       enumerate_outcomes<Model>(particles_, action, most_paths(), add);
     } catch (const NotEnumerable&) {
       odds.clear();
-      total = DrawnOutcomes<Model>{particles_, is_thin(), action, random}.draw(add, [&] { odds.clear(); });
+      total = DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, random}.draw(add, [&] { odds.clear(); });
     }
     ObservationOdds sorted(odds.begin(), odds.end());
     for (auto& [observation, probability] : sorted) probability /= total;
@@ -124,7 +128,9 @@ class Belief {
     for (const auto& [state, weight] : particles_) gathering.add(state, weight * (1 - share));
     for (const auto& [state, weight] : other.particles_) gathering.add(state, weight * share);
     const double error_bound = (1 - share) * error_bound_ + share * other.error_bound_;
-    return Belief{gathering, error_bound, std::max(source_, other.source_)};
+    Belief mixed{gathering, error_bound, std::max(source_, other.source_)};
+    mixed.unobserved_ = unobserved_;
+    return mixed;
   }
 
   const State& sample(Sampler& random) const {
@@ -169,6 +175,7 @@ class Belief {
     for (const auto& [state, weight] : particles_) result.particles_.push_back({state, weight});
     result.cumulative_ = cumulative_;
     result.error_bound_ = error_bound_;
+    result.unobserved_ = unobserved_.template as<To>();
     result.source_ = static_cast<typename Belief<To>::Source>(source_);
     return result;
   }
@@ -219,20 +226,31 @@ class Belief {
         add(next, seen, weight);
         if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
       });
+      if (is_drawn() && gathering.size() < few_particles) throw NotEnumerable{"few of the drawn states agree"};
       gone += gathering.reduce(most, random);
       const double probability = gathering.total();
-      return {Belief{gathering, probability > 0 ? (error_bound_ + gone) / probability : 0, source_}, probability};
+      const double error_bound = probability > 0 ? (error_bound_ + gone) / probability : 0;
+      return {followed(Belief{gathering, error_bound, source_}, action, random), probability};
     } catch (const NotEnumerable&) {
       gathering.clear();
     }
-    const double drawn = DrawnOutcomes<Model>{particles_, is_thin(), action, random}.draw(add, [&] { gathering.clear(); });
+    const double drawn =
+        DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, random}.draw(add, [&] { gathering.clear(); });
     const double probability = gathering.total() / drawn;
     gathering.reduce(particle_count, random);
-    return {Belief{gathering, 1, Source::drawing}, probability};
+    return {followed(Belief{gathering, 1, Source::drawing}, action, random), probability};
+  }
+
+  // What nothing is observed of takes the same action.
+  Belief followed(Belief next, int action, Sampler& random) const {
+    next.unobserved_ = unobserved_;
+    next.unobserved_.step(action, random);
+    return next;
   }
 
   std::vector<Particle> particles_;
   std::vector<double> cumulative_;
+  Unobserved<Model> unobserved_;  // of a drawn belief only
   double error_bound_ = 0;
   Source source_ = Source::enumeration;
 };

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <iterator>
+#include <unordered_map>
 #include <vector>
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/belief/gathering.hpp"
+#include "aos/belief/unobserved.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/values.hpp"
 #include "aos/model/step.hpp"
@@ -17,6 +21,7 @@ namespace aos {
 
 inline constexpr std::size_t particle_count = 5000;
 inline constexpr std::size_t most_drawn_steps = 40 * particle_count;
+inline constexpr std::size_t most_forgetful_steps = 4 * most_drawn_steps;
 inline constexpr std::size_t drawn_at_once = 1000;
 inline constexpr int most_completions = 16;
 inline constexpr double rare_observation = 0.25;
@@ -52,15 +57,22 @@ void enumerate_outcomes(const std::vector<Particle<Model>>& particles, int actio
 // that they do not. There the last draws are enumerated, and each path counts by its probability.
 //
 // Where drawn states have become few, or hardly any agrees with what was observed, what they have in common is chance.
-// There some trials start from mixtures of two of them, which keep how often each variable has each value.
+// There some trials start from mixtures of two of them, which keep how often each variable has each value. If none of
+// these agrees either, some forget a variable that the initial belief leaves open: it has its value in a state that nothing
+// was observed of. Where that does not help they forget four, and at last 16: the fewer, the less of what was observed.
 template <class Model>
 class DrawnOutcomes {
  public:
   using State = typename Model::State;
 
   // `is_thin`: whether the states were drawn, and have become few.
-  DrawnOutcomes(const std::vector<Particle<Model>>& particles, bool is_thin, int action, Sampler& random)
-      : particles_(particles), action_(action), random_(random), trials_per_mixture_(is_thin ? trials_per_mixture : 0) {}
+  DrawnOutcomes(const std::vector<Particle<Model>>& particles, const Unobserved<Model>& unobserved, bool is_thin,
+                int action, Sampler& random)
+      : particles_(particles),
+        unobserved_(unobserved),
+        action_(action),
+        random_(random),
+        trials_per_mixture_(is_thin ? trials_per_mixture : 0) {}
 
   // Calls `visit(next, observation, weight)`, which says whether it has a use for the outcome, and `restart()` where what
   // was visited so far is to be forgotten, as a better way was found. Returns the weight of all outcomes, visited ones and
@@ -70,7 +82,7 @@ class DrawnOutcomes {
     std::size_t trials = 0;
     std::size_t used = 0;
     bool is_rare = false;
-    while (trials == 0 || (steps_ < most_drawn_steps && used < particle_count)) {
+    while (trials == 0 || (steps_ < most_steps_ && used < particle_count)) {
       const bool is_pilot = by_chance_ == unknown;
       const std::size_t used_before = used;
       draw_evenly<Model>(particles_, drawn_at_once, random_, [&](const State& drawn) {
@@ -83,8 +95,12 @@ class DrawnOutcomes {
       const double share = static_cast<double>(used - used_before) / drawn_at_once;
       if (is_pilot && share < rare_observation) {
         is_rare = true;
-      } else if (is_rare && trials_per_mixture_ != trials_per_mixture_at_last && share < desperate_observation) {
+      } else if (is_rare && !is_desperate_ && share < desperate_observation) {
+        is_desperate_ = true;
         trials_per_mixture_ = trials_per_mixture_at_last;
+      } else if (used == 0 && steps_ >= most_steps_ && most_steps_ < most_forgetful_steps && !unobserved_.is_empty()) {
+        most_steps_ += most_drawn_steps;
+        forgotten_ = std::max<std::size_t>(4 * forgotten_, 1);
       } else {
         continue;
       }
@@ -101,6 +117,10 @@ class DrawnOutcomes {
     Observation observation;
     double probability;
   };
+  struct Places {
+    std::vector<Place> all;
+    std::vector<Place> open;  // where the initial belief has several values
+  };
 
   template <class Visit>
   std::size_t try_state(const State& state, bool is_rare, Visit& visit) {
@@ -110,23 +130,54 @@ class DrawnOutcomes {
   // Model code need not make sense of states that cannot be reached; a fault in one says nothing about the model.
   template <class Visit>
   std::size_t try_mixture(const State& drawn, bool is_rare, Visit& visit) {
-    const auto other = static_cast<std::size_t>(random_.below(static_cast<int>(particles_.size())));
     try {
-      return try_state(mixture(drawn, particles_[other].state), is_rare, visit);
+      const bool forgets = forgotten_ > 0 && random_.flag(0.5);
+      return try_state(forgets ? partly_forgotten(drawn) : mixture(drawn, other()), is_rare, visit);
     } catch (const ModelFault&) {
       return 0;
     }
   }
 
+  const State& other() {
+    return particles_[static_cast<std::size_t>(random_.below(static_cast<int>(particles_.size())))].state;
+  }
+
   // Each single value from one or the other, where both have the same ones.
   State mixture(const State& left, const State& right) {
-    const std::vector<Place> places = Model::places(left);
+    const Places& places = places_of(left);
     State mixed = left;
-    if (Model::places(right) != places) return mixed;
-    for (const Place& place : places) {
-      if (random_.flag(0.5)) std::memcpy(bytes_of(mixed) + place.offset, bytes_of(right) + place.offset, place.size);
+    if (&places_of(right) != &places) return mixed;
+    for (const Place& place : places.all) {
+      if (random_.flag(0.5)) copy(place, right, mixed);
     }
     return mixed;
+  }
+  State partly_forgotten(const State& state) {
+    const Places& places = places_of(state);
+    const State& unobserved = unobserved_.draw(random_);
+    State result = state;
+    if (&places_of(unobserved) != &places || places.open.empty()) return result;
+    for (std::size_t i = 0; i < forgotten_; ++i) {
+      const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(places.open.size())));
+      copy(places.open[chosen], unobserved, result);
+    }
+    return result;
+  }
+  static void copy(const Place& place, const State& from, State& to) {
+    std::memcpy(bytes_of(to) + place.offset, bytes_of(from) + place.offset, place.size);
+  }
+
+  // States of the same shape share them.
+  const Places& places_of(const State& state) {
+    leaves_.clear();
+    Model::visit_values(state, leaves_);
+    const auto [entry, is_new] = places_.try_emplace(leaves_.shape);
+    if (is_new) {
+      entry->second.all = Model::places(state);
+      std::copy_if(entry->second.all.begin(), entry->second.all.end(), std::back_inserter(entry->second.open),
+                   [&](const Place& place) { return unobserved_.is_open(place); });
+    }
+    return entry->second;
   }
   static std::byte* bytes_of(State& state) { return reinterpret_cast<std::byte*>(&state); }
   static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
@@ -167,6 +218,7 @@ class DrawnOutcomes {
   }
 
   const std::vector<Particle<Model>>& particles_;
+  const Unobserved<Model>& unobserved_;
   int action_;
   Sampler& random_;
   Enumerator draws_;
@@ -174,7 +226,12 @@ class DrawnOutcomes {
   std::vector<std::size_t> before_last_;
   std::size_t by_chance_ = unknown;
   std::size_t trials_per_mixture_;  // 0: there are none
+  bool is_desperate_ = false;
+  std::size_t forgotten_ = 0;  // how many variables some mixtures forget
   std::size_t steps_ = 0;
+  std::size_t most_steps_ = most_drawn_steps;
+  LeafNumbers leaves_;
+  std::unordered_map<std::uint64_t, Places> places_;  // by shape
 };
 
 }  // namespace aos

@@ -1,0 +1,88 @@
+// What a state might be had nothing been observed: states drawn from the initial belief, after the same actions.
+//
+// Particles that have survived many observations share their ancestors: what has not been observed yet has by chance the
+// same value in all of them, and a later observation may rule out that value. Here it still has all its values.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "aos/base/fault.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/values.hpp"
+
+namespace aos {
+
+template <class Model>
+class Unobserved {
+ public:
+  using State = typename Model::State;
+  static constexpr std::size_t most_bytes = std::size_t{8} << 20;
+  static constexpr std::size_t most_states = std::clamp<std::size_t>(most_bytes / sizeof(State), 1, 1000);
+
+  bool is_empty() const { return states_.empty(); }
+
+  // A state from the initial belief; those after the first `most_states` are not needed.
+  void add(const State& initial) {
+    if (states_.size() == most_states) return;
+    states_.push_back(initial);
+    const std::byte* const first = bytes_of(states_.front());
+    const std::byte* const added = bytes_of(initial);
+    is_open_.resize(sizeof(State));
+    for (std::size_t i = 0; i < sizeof(State); ++i) is_open_[i] = is_open_[i] || first[i] != added[i];
+  }
+
+  // Whether the initial belief leaves open what stands there.
+  bool is_open(const Place& place) const {
+    if (is_empty()) return false;
+    const auto begin = is_open_.begin() + static_cast<std::ptrdiff_t>(place.offset);
+    const auto end = begin + static_cast<std::ptrdiff_t>(place.size);
+    return std::find(begin, end, true) != end;
+  }
+
+  const State& draw(Sampler& random) const {
+    return states_[static_cast<std::size_t>(random.below(static_cast<int>(states_.size())))];
+  }
+
+  // The same for a model with the same states.
+  template <class To>
+  Unobserved<To> as() const {
+    Unobserved<To> result;
+    result.states_ = states_;
+    result.is_open_ = is_open_;
+    return result;
+  }
+
+  // A state that ends, or that the action makes no sense in, makes room for another one, as long as there is one.
+  void step(int action, Sampler& random) {
+    std::size_t running = 0;
+    for (State& state : states_) {
+      if (goes_on(state, action, random)) std::swap(states_[running++], state);
+    }
+    if (running == 0) return;
+    for (std::size_t i = running; i < states_.size(); ++i) {
+      states_[i] = states_[static_cast<std::size_t>(random.below(static_cast<int>(running)))];
+    }
+  }
+
+ private:
+  template <class>
+  friend class Unobserved;
+  static bool goes_on(State& state, int action, Sampler& random) {
+    try {
+      Model::step(state, action, random);
+    } catch (const ModelFault&) {
+      return false;
+    }
+    return Model::ending(state) == Ending::running;
+  }
+  static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
+
+  std::vector<State> states_;
+  std::vector<bool> is_open_;  // by byte of a state
+};
+
+}  // namespace aos
