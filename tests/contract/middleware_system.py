@@ -33,7 +33,7 @@ from aos_runtime.bus import Bus
 from aos_runtime.children import PIPE, Child
 from aos_runtime.told_state import state_when
 
-__all__ = ["SENSE", "Adapter", "Registry", "System", "running_system", "succeed"]
+__all__ = ["SENSE", "Adapter", "Registry", "System", "answering", "hang", "running_system", "succeed"]
 
 PATIENCE_S = 20.0
 
@@ -197,5 +197,19 @@ async def running_system(
         await system.stop()
 
 
-async def succeed(_: SkillCall) -> dict[str, Any]:
-    return {"success": True}
+def answering(fields: dict[str, Any]) -> Callable[[SkillCall], Awaitable[dict[str, Any]]]:
+    """A skill that ends at once with this result."""
+
+    async def answer(_: SkillCall) -> dict[str, Any]:
+        return fields
+
+    return answer
+
+
+succeed = answering({"success": True})
+
+
+async def hang(_: SkillCall) -> dict[str, Any]:
+    """A skill that never ends."""
+    await asyncio.Event().wait()
+    return {}

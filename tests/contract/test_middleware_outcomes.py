@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import SENSE, System, succeed
+from middleware_system import SENSE, System, answering, hang, succeed
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import ActivationId, SkillCall
@@ -101,12 +101,6 @@ async def test_an_adapters_error_becomes_a_defined_outcome(system: System, code:
 
 
 async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System) -> None:
-    never = asyncio.Event()
-
-    async def hang(_: SkillCall) -> dict[str, Any]:
-        await never.wait()
-        return {}
-
     await system.adapter.serve("/sense", hang)
     await system.adapter.serve_cancel()
     outcome = await system.activate("sense")
@@ -119,7 +113,7 @@ async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System
 
 
 async def test_the_activations_deadline_counts_where_it_is_shorter(system: System) -> None:
-    await system.adapter.serve("/pick", lambda _: asyncio.sleep(30, {}))
+    await system.adapter.serve("/pick", hang)
     outcome = await system.activate("pick", deadline_s=0.4)
     assert outcome.status == "timed_out"
     assert 0 < system.adapter.calls[0].deadline_s <= 0.4
@@ -130,7 +124,7 @@ async def test_a_result_that_no_rule_covers_is_a_failure_with_the_values(system:
     text = SENSE.replace("level <= 3", "level < 0")
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
     await system.state(2)
-    await system.adapter.serve("/sense", lambda _: asyncio.sleep(0, {}))
+    await system.adapter.serve("/sense", answering({}))
     outcome = await system.activate("sense")
     assert outcome.status == "failed"
     assert outcome.local_variables == {"level": "0"}
@@ -143,7 +137,7 @@ async def test_a_result_that_no_rule_covers_is_a_failure_with_the_values(system:
 async def test_mapping_code_that_raises_is_a_failure_at_the_documents_line(
     system: System, bundles: Path
 ) -> None:
-    await system.adapter.serve("/pick", lambda _: asyncio.sleep(0, {"sucess": True}))
+    await system.adapter.serve("/pick", answering({"sucess": True}))
     outcome = await system.activate("pick")
     assert outcome.status == "failed"
     assert outcome.fault is not None

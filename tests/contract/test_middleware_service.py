@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import SENSE, System, succeed
+from middleware_system import SENSE, System, answering, succeed
 
 from aos_middleware.activation import SURELY_NOT_STARTED_S
 from aos_protocol.errors import AosError, SkillError
@@ -26,13 +26,13 @@ from aos_runtime.parent import die_with_parent
 
 async def hang(call, key):
     print("called", flush=True)
-    await asyncio.sleep(60)
+    await asyncio.Event().wait()
 
 async def main():
     async with await Bus.open(sys.argv[1], sender="adapter") as bus:
         await bus.answer(Keys("test").call("/serve"), SkillCall, hang)
         print("serving", flush=True)
-        await asyncio.sleep(60)
+        await asyncio.Event().wait()
 
 die_with_parent()
 asyncio.run(main())
@@ -51,7 +51,7 @@ async def test_it_takes_the_project_from_the_registry_and_shows_the_modules(syst
 async def test_a_new_revision_is_used_and_the_one_before_it_stays_for_the_running_model(
     system: System,
 ) -> None:
-    await system.adapter.serve("/sense", lambda _: asyncio.sleep(0, {}))
+    await system.adapter.serve("/sense", answering({}))
     assert (await system.activate("sense", 1)).response == "quiet"
     renamed = skill_of(SENSE.replace("quiet", "silent"), "sense.am")
     others = tuple(skill for skill in system.registry.current.project.skills if skill.name != "sense")
@@ -64,7 +64,7 @@ async def test_a_new_revision_is_used_and_the_one_before_it_stays_for_the_runnin
 
 
 async def test_a_revision_that_cannot_be_loaded_changes_nothing_and_is_reported(system: System) -> None:
-    await system.adapter.serve("/sense", lambda _: asyncio.sleep(0, {}))
+    await system.adapter.serve("/sense", answering({}))
     text = SENSE.replace("path:", "imports: import: no_such_module_at_all\npath:")
     project = system.registry.current.project
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
