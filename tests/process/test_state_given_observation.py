@@ -272,6 +272,15 @@ async def test_a_fault_of_the_code_is_told_at_its_place_and_leaves_the_belief_to
     assert values(update.summary, "at") == pytest.approx({"Hill": 0.5, "Lake": 0.5})
 
 
+async def test_the_statement_of_the_same_fault_is_looked_for_once(
+    engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    faulty = {**SEEN, "distances": "[1,2,3]"}
+    first = await engine.update("drive", "arrived", faulty)
+    monkeypatch.delattr("aos_solver.child.engine.at_its_statement")
+    assert (await engine.update("drive", "arrived", faulty)).remark == first.remark
+
+
 async def test_an_array_beyond_its_state_variables_room_is_told_by_name(engine: Engine) -> None:
     update = await engine.update("drive", "arrived", {**SEEN, "heights": str(list(range(500)))})
     assert "heights: a vector of" in update.remark

@@ -73,6 +73,7 @@ class Engine:
         self._child: EngineChild | None = None
         self._beliefs: SharedMemory | None = None
         self._changes = 0
+        self._correction_faults: dict[EngineFault, ModelError] = {}
         self._world: list[str] = []
         self._asking = asyncio.Lock()
         self.description: EngineDescription
@@ -205,11 +206,17 @@ class Engine:
         return msgspec.structs.replace(update, remark=remark)
 
     async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> ModelError:
-        """Why local variables did not correct the belief that was there after so many changes."""
-        assert self._child is not None
-        error = self._child.fault(fault.code, fault.text, fault.piece)
-        commands = [*self._restoration(before), command]
-        return await at_its_statement(error, self._built, self._start, commands)
+        """Why local variables did not correct the belief that was there after so many changes.
+
+        The statement is looked for once: the mission waits for it, and meets the fault at every outcome.
+        """
+        if fault not in self._correction_faults:
+            assert self._child is not None
+            error = self._child.fault(fault.code, fault.text, fault.piece)
+            commands = [*self._restoration(before), command]
+            found = await at_its_statement(error, self._built, self._start, commands)
+            self._correction_faults[fault] = found
+        return self._correction_faults[fault]
 
     async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
         """The mixture of "it ran" and "it did not"."""
