@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "aos/base/enumerator.hpp"
-#include "aos/belief/gathering.hpp"
 #include "aos/base/json.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/gathering.hpp"
 #include "aos/belief/marginals.hpp"
 #include "aos/belief/outcomes.hpp"
-#include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/belief/gathering.hpp"
 #include "aos/base/json.hpp"
+#include "aos/belief/gathering.hpp"
 #include "aos/model/values.hpp"
 
 namespace aos {

@@ -11,11 +11,11 @@
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
+#include "aos/base/random.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/unobserved.hpp"
-#include "aos/base/random.hpp"
-#include "aos/model/values.hpp"
 #include "aos/model/step.hpp"
+#include "aos/model/values.hpp"
 
 namespace aos {
 

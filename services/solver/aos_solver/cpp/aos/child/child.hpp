@@ -22,10 +22,10 @@
 #include <string_view>
 #include <vector>
 
+#include "aos/base/fault.hpp"
+#include "aos/child/commands.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/child/commands.hpp"
-#include "aos/base/fault.hpp"
 
 namespace aos {
 

@@ -14,20 +14,20 @@
 #include <vector>
 
 #include "aos/base/base64.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/model/blame.hpp"
 #include "aos/base/clock.hpp"
-#include "aos/model/correction.hpp"
-#include "aos/planning/exact.hpp"
-#include "aos/child/exploration.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/json.hpp"
+#include "aos/belief/belief.hpp"
 #include "aos/belief/kept_beliefs.hpp"
-#include "aos/planning/planner.hpp"
+#include "aos/child/exploration.hpp"
 #include "aos/child/reachability.hpp"
+#include "aos/child/worlds.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/correction.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/walk.hpp"
-#include "aos/child/worlds.hpp"
+#include "aos/planning/exact.hpp"
+#include "aos/planning/planner.hpp"
 
 namespace aos {
 

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/belief/belief.hpp"
 #include "aos/base/json.hpp"
+#include "aos/belief/belief.hpp"
 
 namespace aos {
 

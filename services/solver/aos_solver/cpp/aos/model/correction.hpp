@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "aos/base/fault.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/containers.hpp"
-#include "aos/base/fault.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/step.hpp"
 

@@ -10,10 +10,10 @@
 #include <tuple>
 #include <vector>
 
+#include "aos/base/fault.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/containers.hpp"
 #include "aos/model/correction.hpp"
-#include "aos/base/fault.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/model_table.hpp"
 #include "aos/model/reflection.hpp"

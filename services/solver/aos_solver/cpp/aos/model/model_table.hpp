@@ -10,10 +10,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "aos/model/blame.hpp"
 #include "aos/base/enumerator.hpp"
-#include "aos/model/grounding.hpp"
 #include "aos/base/random.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/rollout.hpp"
 #include "aos/model/state_text.hpp"

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "aos/model/containers.hpp"
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/model/grounding.hpp"
 #include "aos/base/random.hpp"
+#include "aos/model/containers.hpp"
+#include "aos/model/grounding.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/text.hpp"
 #include "aos/model/transition.hpp"

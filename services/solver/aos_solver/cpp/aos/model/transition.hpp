@@ -7,8 +7,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "aos/model/blame.hpp"
 #include "aos/base/fault.hpp"
+#include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {

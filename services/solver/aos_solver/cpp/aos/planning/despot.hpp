@@ -21,12 +21,12 @@
 #include <vector>
 
 #include "aos/base/arena.hpp"
-#include "aos/belief/belief.hpp"
-#include "aos/planning/budget.hpp"
 #include "aos/base/clock.hpp"
 #include "aos/base/random.hpp"
-#include "aos/planning/scenarios.hpp"
+#include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/scenarios.hpp"
 
 namespace aos {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "aos/base/enumerator.hpp"
-#include "aos/planning/relevant_states.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/relevant_states.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos {

@@ -12,13 +12,13 @@
 #include <string_view>
 #include <vector>
 
+#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot.hpp"
 #include "aos/planning/point_based.hpp"
 #include "aos/planning/pomcp.hpp"
-#include "aos/base/random.hpp"
-#include "aos/model/step.hpp"
 
 namespace aos {
 

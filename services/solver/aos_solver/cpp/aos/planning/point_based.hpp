@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
-#include "aos/belief/belief.hpp"
-#include "aos/planning/budget.hpp"
 #include "aos/base/clock.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
 #include "aos/planning/flattening.hpp"
 #include "aos/planning/relevant_states.hpp"
-#include "aos/model/step.hpp"
 #include "point_based/online.hpp"
 
 namespace aos {

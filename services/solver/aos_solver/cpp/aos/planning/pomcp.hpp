@@ -26,13 +26,13 @@
 #include <thread>
 #include <vector>
 
-#include "aos/belief/belief.hpp"
-#include "aos/model/blame.hpp"
-#include "aos/planning/bounds.hpp"
-#include "aos/planning/budget.hpp"
 #include "aos/base/clock.hpp"
 #include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/bounds.hpp"
+#include "aos/planning/budget.hpp"
 #include "aos/planning/tree_search.hpp"
 
 namespace aos {

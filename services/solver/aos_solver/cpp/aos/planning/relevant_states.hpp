@@ -16,9 +16,9 @@
 #include <tuple>
 #include <vector>
 
-#include "aos/belief/belief.hpp"
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
+#include "aos/belief/belief.hpp"
 #include "aos/model/values.hpp"
 
 namespace aos {

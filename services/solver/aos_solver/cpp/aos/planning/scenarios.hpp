@@ -10,11 +10,11 @@
 #include <limits>
 #include <vector>
 
-#include "aos/belief/belief.hpp"
-#include "aos/planning/bounds.hpp"
 #include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/bounds.hpp"
 
 namespace aos {
 

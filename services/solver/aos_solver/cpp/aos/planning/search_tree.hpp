@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "aos/base/arena.hpp"
-#include "aos/planning/budget.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
 
 namespace aos {
 

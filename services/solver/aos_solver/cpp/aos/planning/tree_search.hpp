@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
 #include "aos/planning/bounds.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/base/random.hpp"
 #include "aos/planning/search_tree.hpp"
-#include "aos/model/step.hpp"
 
 namespace aos {
 
