@@ -33,5 +33,11 @@ if [ -n "$failed" ]; then
     exit 1
 fi
 
-printf '== tests: %s\n' "$BIN/pytest $*"
-exec "$BIN/pytest" "$@"
+cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
+if [ $# = 0 ] && [ "$cores" -gt 1 ]; then
+    set -- "$BIN/python" tests/side_by_side.py
+else
+    set -- "$BIN/pytest" "$@"
+fi
+printf '== tests: %s\n' "$*"
+exec "$@"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
+from side_by_side import CACHE_VARIABLE
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -33,4 +35,5 @@ def corpus() -> Path:
 @pytest.fixture(scope="session")
 def cache_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Compiled models, shared by all tests of one run."""
-    return tmp_path_factory.mktemp("cache")
+    shared = os.environ.get(CACHE_VARIABLE)
+    return Path(shared) if shared else tmp_path_factory.mktemp("cache")

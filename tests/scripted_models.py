@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
+import os
 import re
 import subprocess
 from collections.abc import Mapping
@@ -142,8 +143,10 @@ def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
     if not executable.exists():
         source.write_text(_TABLE.sub(_MAIN, emitted.cpp))
         compiler = asyncio.run(find_compiler())
-        object_file = str(source.with_suffix(".o"))
-        compilation = compiler.compilation(str(source), object_file, str(SOURCES), "-O0", f"-I{_DRIVER}")
-        for command in (compilation, compiler.linking([object_file], str(executable))):
+        # Another process may want the same; it is there for all when it is complete.
+        own = source.with_suffix(f".{os.getpid()}")
+        compilation = compiler.compilation(str(source), f"{own}.o", str(SOURCES), "-O0", f"-I{_DRIVER}")
+        for command in (compilation, compiler.linking([f"{own}.o"], str(own))):
             subprocess.run(command, check=True, timeout=240)
+        own.rename(executable)
     return ScriptedModel(emitted, executable)

@@ -27,6 +27,10 @@ state_variable: int total
 """
 
 
+BEING_BUILT = f"*.{os.getpid()}.*.building"
+"""Entries that this process makes."""
+
+
 def emitted_skill(code: str, home: str = HOME) -> EmittedModel:
     """A model with one skill, whose dynamic model starts in line 3 of act.sd."""
     act = f"project: test\ndynamic_model:\n{code}\n"
@@ -60,7 +64,7 @@ async def test_two_builds_of_one_model_at_the_same_time_give_one_entry(cache_dir
         both = [tasks.create_task(build(emitted, cache_dir=cache_dir)) for _ in range(2)]
     first, second = (task.result() for task in both)
     assert first.executable == second.executable
-    assert entries(cache_dir, "*.building") == []
+    assert entries(cache_dir, BEING_BUILT) == []
     assert await answers(first)
 
 
@@ -151,7 +155,7 @@ async def test_a_compiler_that_does_not_finish_is_stopped(cache_dir: Path) -> No
     emitted = emitted_skill("state__.total = 6;")
     error = await build_error(emitted, cache_dir, deadline_s=0.3)
     assert error.code == "AOS202"
-    assert entries(cache_dir, "*.building") == []
+    assert entries(cache_dir, BEING_BUILT) == []
 
 
 async def test_a_failed_build_leaves_nothing_that_could_be_taken_for_a_model(tmp_path: Path) -> None:
