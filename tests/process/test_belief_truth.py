@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import random
+import signal
 from pathlib import Path
 
 import pytest
 from models import built_text, engine_of
+from processes import descendants, until_ended
+
+from aos_solver.child.engine import Engine
 
 STATES, ACTIONS, RESPONSES = 5, 2, 3
 
@@ -242,3 +247,28 @@ async def test_what_all_particles_have_by_chance_is_given_up_when_it_is_observed
             assert not update.is_impossible, card
             marginal = update.summary.marginals[card]
             assert marginal.values.get("true" if is_on else "false", 0.0) > 0.9, card
+
+
+async def test_what_has_not_been_observed_outlives_a_crash_and_a_change_of_engines(cache_dir: Path) -> None:
+    dice = random.Random(3)
+    hand = [dice.random() < 0.5 for _ in range(CARDS)]
+
+    async def turn(engine: Engine, card: int) -> None:
+        update = await engine.update(f"turn(number={card})", "yes" if hand[card] else "no")
+        assert not update.is_impossible, card
+        marginal = update.summary.marginals[card]
+        assert marginal.values.get("true" if hand[card] else "false", 0.0) > 0.9, card
+
+    built = await built_text(SHAKEN, cache_dir)
+    async with engine_of(built) as first, engine_of(built) as second:
+        for card in range(CARDS // 2):
+            await turn(first, card)
+        assert first.pid is not None
+        children = descendants(first.pid)
+        os.kill(first.pid, signal.SIGKILL)
+        await until_ended(children)
+        for card in range(CARDS // 2, 3 * CARDS // 4):
+            await turn(first, card)
+        await second.import_belief(await first.export_belief())
+        for card in range(3 * CARDS // 4, CARDS):
+            await turn(second, card)

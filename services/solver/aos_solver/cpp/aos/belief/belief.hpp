@@ -44,6 +44,8 @@ class Belief {
   bool is_exact() const { return error_bound_ == 0; }
   // Whether its states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
+  // Of a drawn one; there are none where the initial belief was enumerated.
+  const Unobserved<Model>& unobserved() const { return unobserved_; }
   // No event's probability is further than this from the exact belief's; 1 where steps were sampled.
   double error_bound() const { return error_bound_; }
   // How many states of equal weight would tell as much.
@@ -162,10 +164,14 @@ class Belief {
     json.member("is_exact", is_exact()).member("error_bound", error_bound_).end_object();
   }
 
-  static Belief of(const std::vector<Particle>& particles, double error_bound, bool is_drawn) {
+  // One that was kept.
+  static Belief of(const std::vector<Particle>& particles, Unobserved<Model> unobserved, double error_bound,
+                   bool is_drawn) {
     Gathering<Model> gathering;
     for (const auto& [state, weight] : particles) gathering.add(state, weight);
-    return Belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
+    Belief belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
+    belief.unobserved_ = std::move(unobserved);
+    return belief;
   }
 
   // The same belief, for a model with the same states.

@@ -12,8 +12,10 @@
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 
 namespace aos {
@@ -34,36 +36,53 @@ class KeptBeliefs {
     ++changes_;
     if (file_ < 0) return;
     const auto& particles = belief.particles();
-    const std::size_t bytes = particles.size() * sizeof(Particle);
+    const auto& unobserved = belief.unobserved().states();
     const Head none{};
-    const Head head{changes_, particles.size(), belief.error_bound(), belief.is_drawn()};
-    if (!write(&none, sizeof none, 0) || !write(particles.data(), bytes, sizeof head)) return;
-    write(&head, sizeof head, 0);
+    const Head head{changes_, particles.size(), unobserved.size(), belief.error_bound(), belief.is_drawn()};
+    if (!write(&none, sizeof none, 0) || !write_all(particles, sizeof head)) return;
+    if (write_all(unobserved, sizeof head + bytes_of(particles))) write(&head, sizeof head, 0);
   }
 
   // The belief after the change of this number, from which counting goes on; nothing where it was not kept.
-  std::optional<Belief<Model>> restore(std::uint64_t change) {
+  std::optional<Belief<Model>> restore(std::uint64_t change, Sampler& random) {
     changes_ = change;
     Head head;
     if (file_ < 0 || !read(&head, sizeof head, 0) || head.change != change || head.particles == 0) return std::nullopt;
     std::vector<Particle> particles(head.particles);
-    if (!read(particles.data(), particles.size() * sizeof(Particle), sizeof head)) return std::nullopt;
-    return Belief<Model>::of(particles, head.error_bound, head.is_drawn);
+    std::vector<State> unobserved(head.unobserved);
+    if (!read_all(particles, sizeof head)) return std::nullopt;
+    if (!read_all(unobserved, sizeof head + bytes_of(particles))) return std::nullopt;
+    return Belief<Model>::of(particles, {std::move(unobserved), random}, head.error_bound, head.is_drawn);
   }
 
  private:
+  using State = typename Model::State;
   using Particle = aos::Particle<Model>;
   static_assert(std::is_trivially_copyable_v<Particle>);
 
   struct Head {
     std::uint64_t change;
     std::uint64_t particles;
+    std::uint64_t unobserved;
     double error_bound;
     bool is_drawn;
   };
 
   // Far apart, in a file that takes memory only for what is written.
   off_t begin() const { return static_cast<off_t>(changes_ % 2) << 36; }
+
+  template <class Element>
+  static std::size_t bytes_of(const std::vector<Element>& elements) {
+    return elements.size() * sizeof(Element);
+  }
+  template <class Element>
+  bool write_all(const std::vector<Element>& elements, std::size_t offset) const {
+    return write(elements.data(), bytes_of(elements), offset);
+  }
+  template <class Element>
+  bool read_all(std::vector<Element>& elements, std::size_t offset) const {
+    return read(elements.data(), bytes_of(elements), offset);
+  }
 
   bool write(const void* bytes, std::size_t count, std::size_t offset) const {
     const auto* next = static_cast<const char*>(bytes);

@@ -23,7 +23,20 @@ class Unobserved {
   static constexpr std::size_t most_bytes = std::size_t{8} << 20;
   static constexpr std::size_t most_states = std::clamp<std::size_t>(most_bytes / sizeof(State), 1, 1000);
 
+  Unobserved() = default;
+  // One that was kept with these states, of this model or of one with the same states before it. What is open is found by
+  // drawing from the initial belief again.
+  Unobserved(std::vector<State> states, Sampler& random) {
+    State initial{};
+    for (std::size_t i = 0; i < most_states && !states.empty(); ++i) {
+      Model::initial(initial, random);
+      add(initial);
+    }
+    states_ = std::move(states);
+  }
+
   bool is_empty() const { return states_.empty(); }
+  const std::vector<State>& states() const { return states_; }
 
   // A state from the initial belief; those after the first `most_states` are not needed.
   void add(const State& initial) {

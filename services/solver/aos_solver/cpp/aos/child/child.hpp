@@ -98,7 +98,8 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "update_without_observation") return engine.update_without_observation(json, whole(1), real(2));
   if (command == "export_belief") return engine.export_belief(json, large(1));
   if (command == "import_belief") {
-    return engine.import_belief(json, real(1), whole(2) != 0, large(3), {fields.begin() + 4, fields.end()});
+    const SavedCounts counts{large(3), large(4)};
+    return engine.import_belief(json, real(1), whole(2) != 0, counts, {fields.begin() + 5, fields.end()});
   }
   if (command == "restore_belief") return engine.restore_belief(json, large(1));
   if (command == "reset_world") return engine.reset_world(json, large(1));

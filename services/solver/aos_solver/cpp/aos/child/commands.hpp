@@ -21,10 +21,10 @@
 #include "aos/belief/kept_beliefs.hpp"
 #include "aos/child/exploration.hpp"
 #include "aos/child/reachability.hpp"
+#include "aos/child/saved_beliefs.hpp"
 #include "aos/child/worlds.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/correction.hpp"
-#include "aos/model/state_text.hpp"
 #include "aos/model/walk.hpp"
 #include "aos/planning/exact.hpp"
 #include "aos/planning/planner.hpp"
@@ -189,43 +189,19 @@ class Engine {
     json.end_object();
   }
 
-  // The particles from number `first` on, as many as fit one answer, each as its weight and its state as text; what is the
-  // same in all states only with the first of them.
-  void export_belief(JsonWriter& json, std::size_t first) const {
-    const auto& particles = belief_.particles();
-    const SavedConstants constants = first == 0 ? Model::save_constants() : SavedConstants{};
-    json.begin_object().member("error_bound", belief_.error_bound()).member("is_drawn", belief_.is_drawn());
-    json.member("states", particles.size()).key("constants").begin_object();
-    for (const auto& [name, text] : constants.texts()) json.member(name, text);
-    json.end_object().key("particles").begin_array();
-    const std::size_t most_bytes = json.text().size() + most_answer_bytes;
-    for (std::size_t number = first; number < particles.size() && json.text().size() < most_bytes; ++number) {
-      json.begin_array().value(particles[number].weight).value(Model::save_state(particles[number].state)).end_array();
-    }
-    json.end_array().end_object();
-  }
+  // From the particle of this number on.
+  void export_belief(JsonWriter& json, std::size_t first) const { save_belief(json, belief_, first); }
 
-  // The fields are as many pairs of a constant's name and text as there are constants, then pairs of weight and state.
-  void import_belief(JsonWriter& json, double error_bound, bool is_drawn, std::size_t constants,
+  void import_belief(JsonWriter& json, double error_bound, bool is_drawn, SavedCounts counts,
                      const std::vector<std::string_view>& fields) {
-    SavedConstants saved;
-    std::vector<typename Belief<Model>::Particle> particles;
-    for (std::size_t i = 0; i + 1 < fields.size(); i += 2) {
-      if (i < 2 * constants) {
-        saved.add_text(fields[i], fields[i + 1]);
-        continue;
-      }
-      State state{};
-      Model::load_state(state, fields[i + 1], saved);
-      particles.push_back({state, std::stod(std::string{fields[i]})});
-    }
-    if (particles.empty()) throw BadCommand{"an empty belief"};
-    become(json, Belief<Model>::of(particles, error_bound, is_drawn));
+    auto belief = load_belief<Model>(error_bound, is_drawn, counts, fields, random_);
+    if (belief.particles().empty()) throw BadCommand{"an empty belief"};
+    become(json, std::move(belief));
   }
 
   // After the change of this number, of an engine before this one.
   void restore_belief(JsonWriter& json, std::uint64_t change) {
-    auto kept = kept_.restore(change);
+    auto kept = kept_.restore(change, random_);
     if (!kept) throw BadCommand{"that belief was not kept"};
     belief_ = *std::move(kept);
     search_.forget();
@@ -282,8 +258,6 @@ class Engine {
   }
 
  private:
-  static constexpr std::size_t most_answer_bytes = std::size_t{16} << 20;  // about
-
   struct Thought {
     int action;
     Budget budget;
