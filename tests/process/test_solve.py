@@ -47,15 +47,16 @@ async def enumerated(bundle: Path, cache_dir: Path) -> Enumeration:
         return await enumerate_model(engine)
 
 
-def saved(model: ExplicitModel, digest: str, states: tuple[str, ...], solution: Solution) -> Policy:
+def saved(found: Enumeration, digest: str, solution: Solution) -> Policy:
     header = PolicyHeader(
-        model=model.name,
+        model=found.model.name,
         model_digest=digest,
-        discount=model.discount,
+        discount=found.model.discount,
         lower=solution.bounds.lower,
         upper=solution.bounds.upper,
-        actions=model.actions,
-        states=states,
+        actions=found.model.actions,
+        states=found.state_texts,
+        left_out=found.left_out.numbers,
     )
     return Policy(header, solution.vectors)
 
@@ -159,6 +160,30 @@ async def test_a_bundle_is_enumerated_once_over_and_solved(root: Path, cache_dir
     assert solution.bounds.lower == pytest.approx(19.3714, abs=1e-3)
 
 
+async def test_variables_that_change_nothing_are_left_out_where_states_are_many(
+    root: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    folder = root / "tests" / "data" / "bundles" / "tiger"
+    files = {path.name: path.read_text() for path in folder.iterdir()}
+    files["tiger.ef"] += "\nstate_variable: int listened\n\nstate_variable: bool heard []\n"
+    files["tiger.ef"] += "code:\nstate.heard = {false, false};\n"
+    files["listen.sd"] += "state__.listened += 1;\nstate__.heard[0] = __moduleResponse == hears_left;\n"
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        found = await enumerate_model(engine, most_states=50)
+        assert [variable.name for variable in found.left_out.variables] == ["listened", "heard[0]"]
+        assert found.model.size.states == 3
+        solution = await solve(found.model, QUICK, cache_dir=cache_dir)
+        assert solution.bounds.lower == pytest.approx(19.3714, abs=1e-3)
+        saved(found, engine.model_digest, solution).save(tmp_path / "tiger.policy")
+        search = PolicySearch(policy=Policy.load(tmp_path / "tiger.policy"), simulations=1, seed=1)
+        decided = [(await search.run(engine, 1)).best]
+        for _ in range(2):
+            await engine.update("listen", "hears_left")
+            decided.append((await search.run(engine, 1)).best)
+    assert [value.action for value in decided] == ["listen", "listen", "open_right"]
+    assert decided[0].q == pytest.approx(solution.bounds.lower, abs=1e-3)
+
+
 async def test_a_policy_decides_online_and_returns_what_it_promises(
     bundles: Path, cache_dir: Path, tmp_path: Path
 ) -> None:
@@ -166,7 +191,7 @@ async def test_a_policy_decides_online_and_returns_what_it_promises(
     async with engine_of(built) as engine:
         found = await enumerate_model(engine)
         solution = await solve(found.model, SolvingLimits(precision=1e-3, cpu_s=5), cache_dir=cache_dir)
-        saved(found.model, engine.model_digest, found.state_texts, solution).save(tmp_path / "a.policy")
+        saved(found, engine.model_digest, solution).save(tmp_path / "a.policy")
         policy = Policy.load(tmp_path / "a.policy")
         limits = MissionLimits(goal_probability=1.0, step_limit=60, stop_below_value=None)
         first = await PolicySearch(policy=policy, simulations=1, seed=1).run(engine, 1)
@@ -187,7 +212,7 @@ async def test_a_policy_for_other_documents_is_refused(
     folder = root / "tests" / "data" / "bundles" / "tiger"
     found = await enumerated(folder, cache_dir)
     solution = await solve(found.model, QUICK, cache_dir=cache_dir)
-    policy = saved(found.model, "of yesterday", found.state_texts, solution)
+    policy = saved(found, "of yesterday", solution)
     async with engine_of(await built_bundle(folder, cache_dir)) as engine:
         with pytest.raises(PlanningError, match="solved for other documents of tiger") as caught:
             await PolicySearch(policy=policy, simulations=1, seed=1).run(engine, 1)
@@ -205,7 +230,7 @@ async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cac
     mapping = (
         "project: gauge\n\nresponse: high\nresponse_rule: True\n\nmodule_activation: skill\npath: /read\n"
     )
-    skill = "project: gauge\n\ndynamic_model:\n{step}\n__reward = -1;\n__moduleResponse = high;\n"
+    skill = "project: gauge\n\ndynamic_model:\n{step}\n__reward = state__.level;\n__moduleResponse = high;\n"
     environment = "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: {kind} level\n"
     for kind, step, reason in (
         ("double", "state__.level += AOS.SampleNormal(0, 1);", "a draw is continuous"),

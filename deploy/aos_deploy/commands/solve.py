@@ -21,6 +21,7 @@ from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import DeployError, PlanningError
+from aos_solver.child.answers import LeftOut
 from aos_solver.offline.enumeration import MOST_STATES, Extent, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.graph_writers import c_header, graphviz, write_text
@@ -34,6 +35,7 @@ from aos_solver.offline.stopping import with_stopping
 
 __all__ = ["register"]
 
+_TOLD_NAMES = 12
 _GRAPH_ENDINGS = (".dot", ".svg")
 _MEANINGS = {
     "precision": "the bounds are as near as asked for",
@@ -49,18 +51,25 @@ def register(app: typer.Typer) -> None:
 
 
 class _Target(msgspec.Struct, frozen=True):
-    """What is solved: `digest` is of the compiled model or the file, `states` are the texts of its states."""
+    """What is solved: `digest` is of the compiled model or the file, `states` are the texts of its states,
+    which are not told apart by what is `left_out`."""
 
     model: ExplicitModel
     digest: str
     states: tuple[str, ...]
+    left_out: LeftOut = LeftOut()
 
 
 class Report(msgspec.Struct):
-    """What `aos solve --json` prints. `history` is every progress; `graph_value` is what the graph gives."""
+    """What `aos solve --json` prints.
+
+    States are not told apart by the variables `left_out`. `history` is every progress; `graph_value` is what
+    the graph gives.
+    """
 
     model: str
     size: ModelSize
+    left_out: tuple[str, ...]
     discount: float
     lower: float
     upper: float
@@ -114,7 +123,7 @@ def solve(
         write_problem(found.model, path)
         written.append(str(path))
     if not as_json:
-        _print_size(found.model)
+        _print_size(found)
     solution = asyncio.run(_solve(found.model, limits, _ignore if as_json else _print_bounds))
     if out is not None:
         _policy(found, solution, stop_value).save(out)
@@ -123,7 +132,7 @@ def solve(
     if drawn is not None:
         written += _write_graph(drawn, graph, header)
     if as_json:
-        print_json(_report(found.model, solution, drawn, written))
+        print_json(_report(found, solution, drawn, written))
     else:
         _print_end(solution, drawn, written)
 
@@ -160,7 +169,7 @@ async def _enumerated(bundle: Path, most_states: int, discount: float | None) ->
             found = await enumerate_model(
                 engine, most_states=most_states, discount=discount, on_progress=progress
             )
-        return _Target(found.model, engine.model_digest, found.state_texts)
+        return _Target(found.model, engine.model_digest, found.state_texts, found.left_out)
 
 
 async def _solve(
@@ -186,6 +195,7 @@ def _policy(target: _Target, solution: Solution, stop_value: float | None) -> Po
         stop_value=stop_value,
         actions=target.model.actions,
         states=target.states,
+        left_out=target.left_out.numbers,
     )
     return Policy(header, solution.vectors)
 
@@ -225,12 +235,21 @@ def _ignore(_: Bounds) -> None:
     return
 
 
-def _print_size(model: ExplicitModel) -> None:
-    size = model.size
+def _print_size(target: _Target) -> None:
+    model, size = target.model, target.model.size
     spaces = f"{count(size.states, 'state')}, {count(size.actions, 'action')}"
     sensing = count(size.observations, "observation")
     typer.echo(f"{model.name}: {spaces}, {sensing}, discount {model.discount:g}")
+    _print_left_out(target.left_out)
     typer.echo(f"{'seconds':>9} {'at least':>12} {'at most':>12} {'gap':>10} {'vectors':>9}")
+
+
+def _print_left_out(left_out: LeftOut) -> None:
+    names = [variable.name for variable in left_out.variables]
+    if names:
+        more = f" and {len(names) - _TOLD_NAMES} more" if len(names) > _TOLD_NAMES else ""
+        told = f"{', '.join(names[:_TOLD_NAMES])}{more}"
+        typer.echo(f"left out, as they change neither what is earned nor what is observed: {told}")
 
 
 def _print_bounds(bounds: Bounds) -> None:
@@ -252,14 +271,13 @@ def _print_end(solution: Solution, drawn: PolicyGraph | None, written: list[str]
         typer.echo(f"wrote {path}")
 
 
-def _report(
-    model: ExplicitModel, solution: Solution, drawn: PolicyGraph | None, written: list[str]
-) -> Report:
+def _report(target: _Target, solution: Solution, drawn: PolicyGraph | None, written: list[str]) -> Report:
     bounds = solution.bounds
     return Report(
-        model=model.name,
-        size=model.size,
-        discount=model.discount,
+        model=target.model.name,
+        size=target.model.size,
+        left_out=tuple(variable.name for variable in target.left_out.variables),
+        discount=target.model.discount,
         lower=bounds.lower,
         upper=bounds.upper,
         seconds=bounds.seconds,

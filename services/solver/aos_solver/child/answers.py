@@ -17,6 +17,8 @@ __all__ = [
     "Explored",
     "ExportedBelief",
     "GroundedAction",
+    "LeftOut",
+    "LeftOutVariable",
     "Plan",
     "Prediction",
     "Reach",
@@ -144,6 +146,23 @@ class Explored(msgspec.Struct, frozen=True):
     rewards: list[float]
     counts: list[int]
     outcomes: list[tuple[int, int, float]]
+
+
+class LeftOutVariable(msgspec.Struct, frozen=True):
+    """A variable, or part of one, by its number in the model and its name."""
+
+    number: int
+    name: str
+
+
+class LeftOut(msgspec.Struct, frozen=True):
+    """What states need not be told apart by."""
+
+    variables: tuple[LeftOutVariable, ...] = ()
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        return tuple(variable.number for variable in self.variables)
 
 
 class Prediction(msgspec.Struct, frozen=True):

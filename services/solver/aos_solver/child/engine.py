@@ -26,6 +26,7 @@ from aos_solver.child.answers import (
     ExactValues,
     Explored,
     ExportedBelief,
+    LeftOut,
     Plan,
     Prediction,
     Reach,
@@ -167,10 +168,14 @@ class Engine:
         """Which states the actions can lead to from the current belief, looked at for so long at most."""
         return await self._ask(f"reach\t{time_s}", Reach, deadline_s=time_s + ANSWER_DEADLINE_S)
 
-    async def explore(self, *, is_new: bool, time_s: float) -> Explored:
+    async def explore(self, *, is_new: bool, time_s: float, left_out: Sequence[int] = ()) -> Explored:
         """A piece of the model as numbers, from the current belief on; ModelError AOS220 if it has no end."""
-        command = f"explore\t{int(is_new)}\t{time_s}"
+        command = "\t".join(("explore", str(int(is_new)), str(time_s), *map(str, left_out)))
         return await self._ask(command, Explored, deadline_s=time_s + ANSWER_DEADLINE_S)
+
+    async def propose_left_out(self) -> LeftOut:
+        """What changes neither what is earned nor what is observed, as far as was tried in a second or so."""
+        return await self._ask("propose_left_out", LeftOut, deadline_s=PLANNING_DEADLINE_S)
 
     async def predict(self, index: int) -> Prediction:
         """What may be observed after an action."""
@@ -223,12 +228,16 @@ class Engine:
         command = f"update_without_observation\t{self._index(action)}\t{ran_probability}"
         return await self._change_belief(command, BeliefUpdate)
 
-    async def export_belief(self) -> ExportedBelief:
-        """The whole belief, however many pieces it takes; nobody changes it meanwhile."""
-        belief = await self._ask("export_belief\t0", ExportedBelief)
+    async def export_belief(self, left_out: Sequence[int] = ()) -> ExportedBelief:
+        """The whole belief, however many pieces it takes; nobody changes it meanwhile.
+
+        States that differ only in what is left out have the same text.
+        """
+        omitted = "".join(f"\t{number}" for number in left_out)
+        belief = await self._ask(f"export_belief\t0{omitted}", ExportedBelief)
         particles = list(belief.particles)
         while len(particles) < belief.states:
-            piece = await self._ask(f"export_belief\t{len(particles)}", ExportedBelief)
+            piece = await self._ask(f"export_belief\t{len(particles)}{omitted}", ExportedBelief)
             particles += piece.particles
         return msgspec.structs.replace(belief, particles=tuple(particles))
 

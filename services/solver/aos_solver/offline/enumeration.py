@@ -8,13 +8,15 @@ import msgspec
 import numpy as np
 
 from aos_protocol.errors import ModelError
-from aos_solver.child.answers import Explored
+from aos_solver.child.answers import Explored, LeftOut
 from aos_solver.child.engine import Engine
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
 
-__all__ = ["ENDED", "MOST_STATES", "Enumeration", "Extent", "enumerate_model"]
+__all__ = ["ENDED", "MANY_STATES", "MOST_STATES", "Enumeration", "Extent", "enumerate_model"]
 
 MOST_STATES = 1_000_000
+MANY_STATES = 100_000
+"""With more it is tried whether all variables matter."""
 ENDED = "ended"
 """The name of the state that stands for all in which the mission is over."""
 
@@ -30,10 +32,14 @@ class Extent(msgspec.Struct, frozen=True):
 
 
 class Enumeration(msgspec.Struct, frozen=True):
-    """The model, and the engine's texts of its states but the last one, in which the mission is over."""
+    """The model, and the engine's texts of its states but the last one, in which the mission is over.
+
+    States are not told apart by what is `left_out`.
+    """
 
     model: ExplicitModel
     state_texts: tuple[str, ...]
+    left_out: LeftOut
 
 
 async def enumerate_model(
@@ -45,14 +51,45 @@ async def enumerate_model(
 ) -> Enumeration:
     """All that can happen from the initial belief on; `discount` None is the documents'.
 
+    Models of many states are listed without the variables that change neither what is earned nor what is
+    observed, if there are any.
     ModelError AOS220 if a draw is continuous, or there are more than `most_states` states.
     """
-    pieces = _Pieces()
     await engine.reset_belief()
-    belief = await engine.export_belief()
-    while not pieces.is_done:
+    left_out = LeftOut()
+    pieces = _Pieces()
+    await _explore(engine, pieces, left_out, min(most_states, MANY_STATES), on_progress)
+    if not pieces.is_done:
+        left_out = await engine.propose_left_out()
+        if left_out.variables:
+            pieces = _Pieces()
+        await _explore(engine, pieces, left_out, most_states, on_progress)
+    if not pieces.is_done:
+        message = f"{engine.description.project} has more than {most_states} states that can be reached"
+        raise ModelError(message, code="AOS220", hint=_HINT)
+    belief = await engine.export_belief(left_out.numbers)
+    states = pieces.states
+    # Particles that have ended already are worth nothing and are left out.
+    numbers = {text: number for number, text in enumerate(states)}
+    start: dict[int, float] = {}
+    for weight, text in belief.particles:
+        if (number := numbers.get(text)) is not None:
+            start[number] = start.get(number, 0.0) + weight
+    return Enumeration(_explicit(engine, pieces, start, discount), tuple(states), left_out)
+
+
+async def _explore(
+    engine: Engine,
+    pieces: _Pieces,
+    left_out: LeftOut,
+    most_states: int,
+    on_progress: Callable[[Extent], None],
+) -> None:
+    """Adds pieces until all are there, or more states than that are known."""
+    while not pieces.is_done and len(pieces.states) <= most_states:
+        is_new = not pieces.states
         try:
-            pieces.take(await engine.explore(is_new=not pieces.states, time_s=_PIECE_S))
+            pieces.take(await engine.explore(is_new=is_new, time_s=_PIECE_S, left_out=left_out.numbers))
         except ModelError as error:
             if error.code != "AOS220":
                 raise
@@ -62,14 +99,6 @@ async def enumerate_model(
                 hint="Use draws with a finite number of outcomes, or plan online (aos plan, aos-up)",
             ) from error
         on_progress(Extent(pieces.explored, len(pieces.states)))
-        if len(pieces.states) > most_states:
-            message = f"{engine.description.project} has more than {most_states} states that can be reached"
-            raise ModelError(message, code="AOS220", hint=_HINT)
-    states = pieces.states
-    # Particles that have ended already are worth nothing and are left out.
-    numbers = {text: number for number, text in enumerate(states)}
-    start = [(numbers[text], weight) for weight, text in belief.particles if text in numbers]
-    return Enumeration(_explicit(engine, pieces, start, discount), tuple(states))
 
 
 class _Pieces:
@@ -107,7 +136,7 @@ class _Pieces:
 
 
 def _explicit(
-    engine: Engine, pieces: _Pieces, start: list[tuple[int, float]], discount: float | None
+    engine: Engine, pieces: _Pieces, start: dict[int, float], discount: float | None
 ) -> ExplicitModel:
     description = engine.description
     actions = len(description.actions)
@@ -122,7 +151,7 @@ def _explicit(
     probability = np.concatenate([probability, np.ones(actions)])
     row_count = (ended + 1) * actions
     outcomes, sensings, readings = _with_sensings(rows, after, observation, probability, row_count)
-    numbers, weights = np.array([n for n, _ in start]), np.array([w for _, w in start])
+    numbers, weights = np.array(list(start)), np.array(list(start.values()))
     return ExplicitModel(
         name=description.project,
         discount=description.discount if discount is None else discount,

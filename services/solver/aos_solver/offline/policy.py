@@ -36,8 +36,9 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     """What a policy is about.
 
     `model_digest` is the compiled model's, or the problem file's. `states` are the engine's texts of states,
-    or the problem file's names. From the start the policy gives at least `lower`, and none gives more than
-    `upper`; both discounted. With a `stop_value` the last action is to end the mission, which is worth that.
+    which are not told apart by what is `left_out`, or the problem file's names. From the start the policy
+    gives at least `lower`, and none gives more than `upper`; both discounted. With a `stop_value` the last
+    action is to end the mission, which is worth that.
     """
 
     format: str = FORMAT
@@ -49,6 +50,7 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     stop_value: float | None = None
     actions: tuple[str, ...]
     states: tuple[str, ...]
+    left_out: tuple[int, ...] = ()
     regions: tuple[_RegionSize, ...] = ()
 
 
@@ -102,7 +104,10 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
             )
 
     def choose(self, belief: ExportedBelief) -> Choice:
-        """The choice at an engine's belief; PlanningError AOS322 if no state of it is known."""
+        """The choice at an engine's belief, exported without what the header leaves out.
+
+        PlanningError AOS322 if no state of it is known.
+        """
         weights = np.zeros(len(self.header.states))
         for weight, text in belief.particles:
             number = self._numbers.get(text)
@@ -154,7 +159,7 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         """
         begun_s = time.perf_counter()
         self.policy.check_model(engine.model_digest)
-        choice = self.policy.choose(await engine.export_belief())
+        choice = self.policy.choose(await engine.export_belief(self.policy.header.left_out))
         names = [action.name for action in engine.description.actions]
         best = int(np.argmax(choice.values[: len(names)]))
         prediction = await engine.predict(best)

@@ -19,7 +19,9 @@
 #include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/kept_beliefs.hpp"
+#include "aos/child/bad_command.hpp"
 #include "aos/child/exploration.hpp"
+#include "aos/child/left_out.hpp"
 #include "aos/child/reachability.hpp"
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/worlds.hpp"
@@ -30,11 +32,6 @@
 #include "aos/planning/planner.hpp"
 
 namespace aos {
-
-// A command that cannot be carried out as it was given.
-struct BadCommand {
-  std::string text;
-};
 
 template <class Model>
 class Engine {
@@ -176,9 +173,12 @@ class Engine {
     json.end_object();
   }
 
+  // What may be left out where the model is explored from the current belief on.
+  void propose_left_out(JsonWriter& json) const { LeftOut<Model>::tell_proposal(json, belief_); }
+
   // The model as numbers from the current belief on: `is_new` begins, each further call goes on for about so long.
-  void explore(JsonWriter& json, bool is_new, double seconds) {
-    if (is_new || !exploration_) exploration_.emplace(belief_);
+  void explore(JsonWriter& json, bool is_new, double seconds, const std::vector<std::size_t>& left_out) {
+    if (is_new || !exploration_) exploration_.emplace(belief_, LeftOut<Model>{left_out});
     exploration_->go_on(json, seconds, [](int action, Observation seen) { return response_text(action, seen); });
   }
 
@@ -189,8 +189,10 @@ class Engine {
     json.end_object();
   }
 
-  // From the particle of this number on.
-  void export_belief(JsonWriter& json, std::size_t first) const { save_belief(json, belief_, first); }
+  // From the particle of this number on; states have stand-ins for what is left out.
+  void export_belief(JsonWriter& json, std::size_t first, const std::vector<std::size_t>& left_out) const {
+    save_belief(json, belief_, first, LeftOut<Model>{left_out});
+  }
 
   void import_belief(JsonWriter& json, double error_bound, bool is_drawn, SavedCounts counts,
                      const std::vector<std::string_view>& fields) {

@@ -14,18 +14,19 @@
 
 #include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/child/left_out.hpp"
 
 namespace aos {
 
 // States are numbered in the order of discovery, those of the belief first. States that have ended get no number: what
-// leads to one leads to -1.
+// leads to one leads to -1. Those that differ only in what is left out have one number.
 template <class Model>
 class Exploration {
  public:
   using State = typename Model::State;
 
   // Throws NotEnumerable.
-  explicit Exploration(const Belief<Model>& belief) {
+  Exploration(const Belief<Model>& belief, LeftOut<Model> left_out) : left_out_(std::move(left_out)) {
     if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
     for (const auto& particle : belief.particles()) number_of(particle.state);
   }
@@ -61,7 +62,8 @@ class Exploration {
 
   std::int64_t number_of(const State& state) {
     if (Model::ending(state) != Ending::running) return -1;
-    const auto [entry, is_new] = numbers_.try_emplace(state, static_cast<std::int64_t>(states_.size()));
+    const auto number = static_cast<std::int64_t>(states_.size());
+    const auto [entry, is_new] = numbers_.try_emplace(left_out_.rest_of(state), number);
     if (is_new) states_.push_back(&entry->first);
     return entry->second;
   }
@@ -130,6 +132,7 @@ class Exploration {
     json.end_array().end_object();
   }
 
+  LeftOut<Model> left_out_;
   Enumerator draws_;
   std::unordered_map<State, std::int64_t, Hash> numbers_;
   std::vector<const State*> states_;  // elements of `numbers_`, which stay where they are

@@ -121,6 +121,7 @@ struct LeafNumbers final : ValueVisitor {
 
 // Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
 struct Place {
+  std::string name;
   std::size_t offset;
   std::size_t size;
   friend bool operator==(const Place&, const Place&) = default;
@@ -139,7 +140,7 @@ std::vector<Place> places_in(const void* state, Visit&& visit) {
     if (!owner.empty() && owner == compound) {
       places.back().size = offset + leaf.size - places.back().offset;
     } else {
-      places.push_back({offset, leaf.size});
+      places.push_back({owner.empty() ? name : owner, offset, leaf.size});
     }
     compound = owner;
   };

@@ -78,6 +78,15 @@ class RelevantStates {
   const std::vector<std::size_t>& branch_ends() const { return branch_ends_; }
   const std::vector<Branch>& branches() const { return branches_; }
 
+  // What has several values and does not matter.
+  std::vector<Place> ignored() const {
+    std::vector<Place> places;
+    for (const Variable& variable : variables_) {
+      if (!variable.matters) places.push_back(variable.place);
+    }
+    return places;
+  }
+
   // `none` for a state that cannot be reached.
   std::uint32_t find(const State& state) const { return numbers_[slot_of(key_of(state))]; }
 
