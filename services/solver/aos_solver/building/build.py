@@ -48,8 +48,9 @@ _OPTIONS: dict[BuildKind, tuple[str, ...]] = {
 
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
-_ENGINE_OBJECTS = ("engine.o", "point_based.o")
-"""Each from the source of its name; point-based search is mostly loops over numbers."""
+_ENGINE_OBJECT = "engine.o"
+_NUMBERS_OBJECT = "point_based.o"
+"""Point-based search: mostly loops over numbers, and the same for states of any size."""
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
@@ -111,6 +112,7 @@ async def build_engine(
 ) -> Path:
     """The directory of the engine's object files for states of up to `state_bytes`; errors as in `build`.
 
+    What does not depend on states is only in that of the smallest size.
     Setting up a machine may call it, so that its first model is compiled as quickly as the later ones.
     """
     compiler = compiler or await find_compiler()
@@ -119,16 +121,12 @@ async def build_engine(
         on_progress(f"compiling the engine with {compiler.version}, once for all models")
         if compiler.family == "zig":
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
-        options = ((f"-DAOS_STATE_BYTES={state_bytes}",), ("-O3",))
-        commands = [
-            compiler.compilation(str((SOURCES / part).with_suffix(".cpp")), part, str(SOURCES), *more)
-            for part, more in zip(_ENGINE_OBJECTS, options, strict=True)
-        ]
-        if state_bytes == STATE_BYTES[0] and (
-            command := compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"])
-        ):
-            (staging / _SUPPORT).parent.mkdir(parents=True)
-            commands.append(command)
+        commands = [_part(compiler, _ENGINE_OBJECT, f"-DAOS_STATE_BYTES={state_bytes}")]
+        if state_bytes == STATE_BYTES[0]:
+            commands.append(_part(compiler, _NUMBERS_OBJECT, "-O3"))
+            if command := compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"]):
+                (staging / _SUPPORT).parent.mkdir(parents=True)
+                commands.append(command)
         deadline_s = compiler.deadline_s
         runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
         for output, status in await _together(runs):
@@ -136,6 +134,11 @@ async def build_engine(
                 raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
 
     return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make)
+
+
+def _part(compiler: Compiler, part: str, option: str) -> list[str]:
+    """The command that compiles a part of the engine from the source of its name."""
+    return compiler.compilation(str((SOURCES / part).with_suffix(".cpp")), part, str(SOURCES), option)
 
 
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
@@ -170,8 +173,9 @@ class _Build:
         except ExceptionGroup as errors:
             raise errors.exceptions[0] from None
         state_bytes = self._state_bytes(staging / _OBJECT)
-        engine = usual_engine.result() if state_bytes == STATE_BYTES[0] else await self._engine(state_bytes)
-        await self._link(staging, engine)
+        usual = usual_engine.result()
+        engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(state_bytes)
+        await self._link(staging, [engine / _ENGINE_OBJECT, usual / _NUMBERS_OBJECT])
 
     async def _engine(self, state_bytes: int) -> Path:
         return await build_engine(
@@ -207,10 +211,9 @@ class _Build:
         message = f"a state of {self._emitted.project} takes {needed} bytes; {STATE_BYTES[-1]} is the limit"
         raise ModelError(message, hint="Use smaller vectors and maps for state variables")
 
-    async def _link(self, staging: Path, engine: Path) -> None:
+    async def _link(self, staging: Path, engine: list[Path]) -> None:
         model = staging / _OBJECT
-        objects = [str(model), *(str(engine / part) for part in _ENGINE_OBJECTS)]
-        linking = self._compiler.linking(objects, _EXECUTABLE)
+        linking = self._compiler.linking([str(part) for part in (model, *engine)], _EXECUTABLE)
         output, status = await self._run(linking, staging)
         if status != 0:
             raise internal_error(self._emitted.project, output, status, self._kept_source())
