@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import json
-import os
 import re
 import subprocess
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,8 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_registry.load import load_bundle, load_files
 from aos_solver.building.build import SOURCES
-from aos_solver.building.compiler import find_compiler
+from aos_solver.building.build_cache import BuildCache, digest_of
+from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
 
@@ -34,9 +34,11 @@ __all__ = [
 ]
 
 _DRIVER = Path(__file__).parent / "cpp"
+_HEADER = "scripted.hpp"
+_OPTIONS = ("-O0", f"-I{SOURCES}")
+_EXECUTABLE = "scripted"
 _TABLE = re.compile(r"constinit const aos::ModelTable .*table_of<(.*)>\(\);")
-_MAIN = r"""#include "scripted.hpp"
-int main(int argc, char** argv) { return aos::run<\1>(argc, argv); }"""
+_MAIN = r"""int main(int argc, char** argv) { return aos::run<\1>(argc, argv); }"""
 
 
 class Played(msgspec.Struct, frozen=True):
@@ -137,16 +139,28 @@ def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
 def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
     """The model of a project, compiled for the script."""
     emitted, _ = lowered(project)
-    driver = (_DRIVER / "scripted.hpp").read_text()
-    digest = hashlib.sha256((emitted.cpp + driver).encode()).hexdigest()[:24]
-    source, executable = cache_dir / f"scripted-{digest}.cpp", cache_dir / f"scripted-{digest}"
-    if not executable.exists():
-        source.write_text(_TABLE.sub(_MAIN, emitted.cpp))
-        compiler = asyncio.run(find_compiler())
-        # Another process may want the same; it is there for all when it is complete.
-        own = source.with_suffix(f".{os.getpid()}")
-        compilation = compiler.compilation(str(source), f"{own}.o", str(SOURCES), "-O0", f"-I{_DRIVER}")
-        for command in (compilation, compiler.linking([f"{own}.o"], str(own))):
-            subprocess.run(command, check=True, timeout=240)
-        own.rename(executable)
-    return ScriptedModel(emitted, executable)
+    return ScriptedModel(emitted, asyncio.run(_compiled(emitted, BuildCache(cache_dir))) / _EXECUTABLE)
+
+
+async def _compiled(emitted: EmittedModel, cache: BuildCache) -> Path:
+    compiler = await find_compiler()
+    driver = (_DRIVER / _HEADER).read_text()
+    precompiled = await cache.fill(f"script-{digest_of([driver])}", partial(_precompile, compiler))
+
+    async def make(staging: Path) -> None:
+        # Only what is included first is taken as precompiled.
+        (staging / "scripted.cpp").write_text(f'#include "{_HEADER}"\n{_TABLE.sub(_MAIN, emitted.cpp)}')
+        options = [*_OPTIONS, *compiler.precompiled(_HEADER, str(precompiled))]
+        _run(compiler.compilation("scripted.cpp", "scripted.o", str(_DRIVER), *options), staging)
+        _run(compiler.linking(["scripted.o"], _EXECUTABLE), staging)
+
+    return await cache.fill(f"scripted-{digest_of([emitted.cpp, driver])}", make)
+
+
+async def _precompile(compiler: Compiler, staging: Path) -> None:
+    """Reads the driver, and with it what models include, once for all of them."""
+    _run(compiler.precompilation(_HEADER, str(_DRIVER), *_OPTIONS), staging)
+
+
+def _run(command: list[str], staging: Path) -> None:
+    subprocess.run(command, cwd=staging, check=True, timeout=240)

@@ -123,10 +123,9 @@ async def build_engine(
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
         commands = [_part(compiler, _ENGINE_OBJECT, f"-DAOS_STATE_BYTES={state_bytes}")]
         if state_bytes == STATE_BYTES[0]:
+            (staging / _SUPPORT).parent.mkdir(parents=True)
             commands.append(_part(compiler, _NUMBERS_OBJECT, "-O3"))
-            if command := compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"]):
-                (staging / _SUPPORT).parent.mkdir(parents=True)
-                commands.append(command)
+            commands.append(compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"]))
         deadline_s = compiler.deadline_s
         runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
         for output, status in await _together(runs):
@@ -142,7 +141,9 @@ def _part(compiler: Compiler, part: str, option: str) -> list[str]:
 
 
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
-    return f"engine-{state_bytes}-{digest_of(_circumstances(compiler))}"
+    # Clang looks there for what was precompiled.
+    place = [] if compiler.family == "gcc" else [str(SOURCES)]
+    return f"engine-{state_bytes}-{digest_of([*_circumstances(compiler), *place])}"
 
 
 class _Build:
@@ -197,9 +198,11 @@ class _Build:
 
     @property
     def _precompiled(self) -> list[str]:
-        """Where to search first for what quick builds include, if that is compiled already."""
+        """The options for what quick builds include, if that is compiled already."""
         entry = self._cache.find(_engine_name(self._compiler, STATE_BYTES[0]))
-        return [] if entry is None or self._options != _OPTIONS["quick"] else ["-I", str(entry)]
+        if entry is None or self._options != _OPTIONS["quick"]:
+            return []
+        return self._compiler.precompiled(_SUPPORT, str(entry))
 
     def _state_bytes(self, model: Path) -> int:
         """The smallest size of engine that takes the model's states."""

@@ -42,6 +42,9 @@ class Compiler(msgspec.Struct, frozen=True):
 
         Messages read `file:line:column: error: text`; columns count bytes.
         """
+        return [*self._command(include, *more), "-c", source, "-o", output]
+
+    def _command(self, include: str, *more: str) -> list[str]:
         common = ["-std=c++20", "-O2", "-ffp-contract=off", "-fno-math-errno", "-w"]
         if self.family == "gcc":
             own = ["-Wno-narrowing", "-fdiagnostics-column-unit=byte", "-fdiagnostics-color=never"]
@@ -52,20 +55,30 @@ class Compiler(msgspec.Struct, frozen=True):
             own = ["-Wno-c++11-narrowing", "-fno-color-diagnostics", "-fno-caret-diagnostics"]
             # A null pointer shall crash where it is used, and not be optimised into a trap elsewhere.
             own += ["-ferror-limit=40", "-fno-delete-null-pointer-checks"]
-            own += [*(["-fno-sanitize=all"] if self.family == "zig" else [])]
-        return [*self.command, *common, *own, *more, "-I", include, "-c", source, "-o", output]
+        if self.family == "zig":
+            # It adds checks and information for debuggers by itself.
+            own += ["-fno-sanitize=all", "-g0"]
+        return [*self.command, *common, *own, *more, "-I", include]
 
-    def precompilation(self, header: str, include: str, *more: str) -> list[str] | None:
-        """The command that reads a header for all files that include it first; None if it would not help.
+    def precompilation(self, header: str, include: str, *more: str) -> list[str]:
+        """The command that reads a header for all files that include it first.
 
-        The result is called `header`.gch below the directory where the command runs. A compilation that has
-        the same options and searches that directory before `include` uses it, and reads the header itself
-        where it does not fit.
+        What comes of it is put below the directory where the command runs. There a compilation finds it that
+        has the same options `more` and those of `precompiled`.
         """
-        if self.family != "gcc":
-            # Clang uses one only where it is named in place of the inclusion.
-            return None
-        return self.compilation(f"{include}/{header}", f"{header}.gch", include, *more, "-x", "c++-header")
+        suffix = "gch" if self.family == "gcc" else "pch"
+        # Clang would refuse it once the header has been written anew, although it says the same.
+        own = [] if self.family == "gcc" else ["-Xclang", "-fno-pch-timestamp"]
+        language = ["-x", "c++-header", f"{include}/{header}"]
+        return [*self._command(include, *more, *own), *language, "-o", f"{header}.{suffix}"]
+
+    def precompiled(self, header: str, directory: str) -> list[str]:
+        """The options that make a compilation use a header precompiled in a directory.
+
+        Gcc reads the header itself where that does not fit. To clang the header has to be there still, at the
+        place where it was.
+        """
+        return ["-I", directory] if self.family == "gcc" else ["-include", f"{directory}/{header}"]
 
     def linking(self, objects: list[str], output: str) -> list[str]:
         """The command that links object files into an executable, with the quickest linker that is there."""
