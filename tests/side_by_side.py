@@ -13,6 +13,7 @@ from __future__ import annotations
 import itertools
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -79,12 +80,14 @@ def main(arguments: list[str]) -> int:
         command = [sys.executable, __file__, _SHARE, name]
         with (
             (folder / "last.txt").open("w+") as report,
+            subprocess.Popen([*command, "first", *arguments], env=environment) as first,
             subprocess.Popen(
                 [*command, "last", *arguments], env=environment, stdout=report, stderr=subprocess.STDOUT
             ) as last,
         ):
-            first = subprocess.run([*command, "first", *arguments], env=environment, check=False)
-            statuses = (first.returncode, last.wait())
+            # Both hear of Ctrl-C themselves, and need some time to end what they have started.
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+            statuses = (first.wait(), last.wait())
             report.seek(0)
             print(report.read())
         print(f"both: {_sum(folder)} in {time.monotonic() - started_s:.0f} s")
@@ -94,7 +97,7 @@ def main(arguments: list[str]) -> int:
 def _sum(folder: Path) -> str:
     counts = [json.loads(path.read_text()) for path in folder.glob("*.json")]
     sums = {outcome: sum(count[outcome] for count in counts) for outcome in _OUTCOMES}
-    return ", ".join(f"{number} {outcome}" for outcome, number in sums.items() if number > 0)
+    return ", ".join(f"{number} {outcome}" for outcome, number in sums.items() if number > 0) or "none"
 
 
 if __name__ == "__main__":
