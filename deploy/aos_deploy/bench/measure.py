@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from aos_deploy.bench.problems import Problem
-from aos_solver.child.engine import Engine, Planner
+from aos_solver.child.engine import Engine, Planner, Stepping
 from aos_solver.endings import MissionLimits
 from aos_solver.search import Search
 from aos_solver.simulation import simulate_mission
 
-__all__ = ["SIMULATIONS", "discounted_returns", "sampling_rate", "search_rate", "threaded_search_rate"]
+__all__ = ["SIMULATIONS", "discounted_returns", "sampling_rate", "search_rate", "threaded_search_rates"]
 
 SIMULATIONS = 65_536
 """Of one search from a fresh root, here and in the baselines."""
+
+THREADED_SEARCH_S = 0.3
+"""Of a search by one thread that several are compared with: long beside the start of a thread, which may wait
+some milliseconds for a core."""
 
 _NEVER = 2.0
 """A probability that no belief reaches: a mission ends when its world does."""
 
 
-async def sampling_rate(engine: Engine, repetitions: int, seconds: float, seed: int) -> list[float]:
-    """Samples of (next state, observation, reward) with random actions, per second of processor time."""
-    counts = [await engine.rate(seconds, seed + turn) for turn in range(repetitions)]
-    return [count.samples / count.cpu_seconds for count in counts]
+async def sampling_rate(
+    engine: Engine, repetitions: int, seconds: float, seed: int, stepping: Stepping
+) -> list[float]:
+    """Samples of (next state, observation, reward) with random actions, per second of processor time.
+
+    None where there is no table to step by.
+    """
+    counts = [await engine.rate(seconds, seed + turn, stepping) for turn in range(repetitions)]
+    return [count.samples / count.cpu_seconds for count in counts if count.samples > 0]
 
 
 async def search_rate(engine: Engine, repetitions: int, seed: int) -> list[float]:
@@ -38,14 +47,24 @@ async def search_rate(engine: Engine, repetitions: int, seed: int) -> list[float
     return rates[1:]
 
 
-async def threaded_search_rate(engine: Engine, threads: int, repetitions: int, seed: int) -> list[float]:
-    """The same with several threads at once, per second of real time."""
-    rates = []
+async def threaded_search_rates(
+    engines: Mapping[int, Engine], repetitions: int, seed: int
+) -> dict[int, list[float]]:
+    """Simulations per second of real time, by the number of threads, for each of which there is an engine.
+
+    The engines search in turns. A first search of each warms up.
+    """
+    sizing = await engines[1].plan(simulations=SIMULATIONS, seed=seed, planner="pomcp")
+    simulations = max(SIMULATIONS, round(THREADED_SEARCH_S * sizing.simulations / sizing.cpu_seconds))
+    rates: dict[int, list[float]] = {threads: [] for threads in engines}
     for turn in range(repetitions + 1):
-        await engine.reset_belief()
-        plan = await engine.plan(simulations=SIMULATIONS, seed=seed + turn, planner="pomcp", threads=threads)
-        rates.append(plan.simulations / plan.seconds)
-    return rates[1:]
+        for threads, engine in engines.items():
+            await engine.reset_belief()
+            plan = await engine.plan(
+                simulations=simulations, seed=seed + turn, planner="pomcp", threads=threads
+            )
+            rates[threads].append(plan.simulations / plan.seconds)
+    return {threads: known[1:] for threads, known in rates.items()}
 
 
 async def discounted_returns(

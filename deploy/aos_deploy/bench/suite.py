@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from aos_deploy.bench.measure import (
     discounted_returns,
     sampling_rate,
     search_rate,
-    threaded_search_rate,
+    threaded_search_rates,
 )
 from aos_deploy.bench.problems import Problem
 from aos_deploy.bench.rows import OURS, Report, Row, Skipped, figure, this_machine, with_ratios
@@ -22,12 +22,13 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError
 from aos_registry.load import load_bundle
 from aos_solver.building.compiler import find_compiler
-from aos_solver.child.engine import Engine, Planner
+from aos_solver.child.engine import Engine, Planner, Stepping
 from aos_solver.hot_plug import build_project
 
 __all__ = ["METRICS", "Effort", "Suite"]
 
 METRICS = ("steps", "simulations", "return")
+STEPS_BY_CODE = "steps, by code"
 
 Step = Callable[[str], None]
 """Told before each piece of work, with its name."""
@@ -95,11 +96,11 @@ class Suite:
         async with self._engine(project) as engine:
             self._on_step(f"{problem.name}: rates")
             if "steps" in effort.metrics:
-                rates = await sampling_rate(engine, effort.repetitions, effort.seconds, effort.seed)
-                self._rows.append(figure(OURS, problem.name, "steps", rates, "1/s"))
+                await self._sampling_rates(engine, problem)
             if "simulations" in effort.metrics and problem.is_searched:
                 await self._search_rate(engine, problem, "simulations")
-                await self._two_threads(engine, problem)
+                async with self._engine(project) as other:
+                    await self._two_threads({1: engine, 2: other}, problem)
         if "simulations" in effort.metrics and (plain := without_policies(project)) is not project:
             async with self._engine(plain) as engine:
                 await self._search_rate(engine, problem, baseline.WITHOUT_KNOWLEDGE)
@@ -107,15 +108,28 @@ class Suite:
             for planner in effort.planners:
                 self._rows.append(await self._returns(problem, planner, project, runs))
 
+    async def _sampling_rates(self, engine: Engine, problem: Problem) -> None:
+        """Of steps as POMCP makes them; where that is by a table, of those by the code, too."""
+        effort = self._effort
+
+        async def rates(stepping: Stepping) -> list[float]:
+            return await sampling_rate(engine, effort.repetitions, effort.seconds, effort.seed, stepping)
+
+        by_table = await rates("table")
+        if by_table:
+            self._rows.append(figure(OURS, problem.name, "steps", by_table, "1/s"))
+        metric = STEPS_BY_CODE if by_table else "steps"
+        self._rows.append(figure(OURS, problem.name, metric, await rates("code"), "1/s"))
+
     async def _search_rate(self, engine: Engine, problem: Problem, metric: str) -> None:
         rates = await search_rate(engine, self._effort.repetitions, self._effort.seed)
         self._rows.append(figure(OURS, problem.name, metric, rates, "1/s"))
 
-    async def _two_threads(self, engine: Engine, problem: Problem) -> None:
+    async def _two_threads(self, engines: Mapping[int, Engine], problem: Problem) -> None:
         """In real time, and so of use only where two cores are idle."""
+        rates = await threaded_search_rates(engines, self._effort.repetitions, self._effort.seed)
         for threads, name in ((2, OURS), (1, "one thread")):
-            rates = await threaded_search_rate(engine, threads, self._effort.repetitions, self._effort.seed)
-            row = figure(name, problem.name, "simulations, two threads", rates, "1/s")
+            row = figure(name, problem.name, "simulations, two threads", rates[threads], "1/s")
             self._rows.append(row)
 
     async def _returns(self, problem: Problem, planner: Planner, project: Project, runs: int) -> Row:
@@ -159,9 +173,15 @@ class Suite:
             ]
             for turns in zip(*repetitions, strict=True):
                 metric = turns[0].metric
-                if metric.partition(",")[0] in effort.metrics:
-                    values = [turn.value for turn in turns]
-                    self._rows.append(figure(baseline.NAME, problem.name, metric, values, "1/s"))
+                if metric.partition(",")[0] not in effort.metrics:
+                    continue
+                row = figure(baseline.NAME, problem.name, metric, [turn.value for turn in turns], "1/s")
+                self._rows.append(row)
+                if metric == "steps" and self._has(problem, STEPS_BY_CODE):
+                    self._rows.append(msgspec.structs.replace(row, metric=STEPS_BY_CODE))
+
+    def _has(self, problem: Problem, metric: str) -> bool:
+        return any((row.problem, row.metric) == (problem.name, metric) for row in self._rows)
 
     @asynccontextmanager
     async def _engine(self, project: Project) -> AsyncIterator[Engine]:

@@ -42,9 +42,12 @@ from aos_solver.child.local_values import UnusableLocals, local_values_line
 from aos_solver.child.replay import at_its_statement
 from aos_solver.child.shared_memory import SharedMemory
 
-__all__ = ["Engine", "ImpossiblePolicy", "Planner"]
+__all__ = ["Engine", "ImpossiblePolicy", "Planner", "Stepping"]
 
 Planner = Literal["pomcp", "despot", "sarsop", "auto"]
+
+Stepping = Literal["code", "table"]
+"""How steps are made: by the documents' code, or by a table of all steps, which POMCP has of small models."""
 
 log = logging.getLogger(__name__)
 
@@ -269,10 +272,11 @@ class Engine:
         """Runs an action in each world, by the bytes of an int32 for each; -1 starts a world anew."""
         return await self._ask(f"step_worlds\t{b64encode(indices).decode()}", WorldSteps)
 
-    async def rate(self, seconds: float, seed: int) -> SampleCount:
-        """Draws samples with random actions for so long."""
+    async def rate(self, seconds: float, seed: int, stepping: Stepping = "code") -> SampleCount:
+        """Draws samples with random actions for so long; by a table none at all where searches use none."""
+        command = "rate" if stepping == "code" else "rate_by_table"
         return await self._ask(
-            f"rate\t{seconds}\t{seed}", SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S
+            f"{command}\t{seconds}\t{seed}", SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S
         )
 
     def variables_of(self, action: str) -> dict[str, str]:

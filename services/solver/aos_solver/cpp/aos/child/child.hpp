@@ -114,6 +114,7 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "reset_worlds") return engine.reset_worlds(json, numbers_from<std::uint64_t>(fields, 1));
   if (command == "step_worlds") return engine.step_worlds(json, fields.at(1));
   if (command == "rate") return engine.rate(json, real(1), large(2));
+  if (command == "rate_by_table") return engine.rate_by_table(json, real(1), large(2));
   throw BadCommand{"unknown command: " + std::string{command}};
 }
 

@@ -30,6 +30,7 @@
 #include "aos/model/walk.hpp"
 #include "aos/planning/exact.hpp"
 #include "aos/planning/planner.hpp"
+#include "aos/planning/table_walk.hpp"
 
 namespace aos {
 
@@ -240,26 +241,45 @@ class Engine {
     json.begin_object().member("state", Model::state_text(hidden_)).end_object();
   }
 
-  // Samples of (next state, observation, reward) for random actions, from initial states: see walk.hpp.
+  // Samples of (next state, observation, reward) for random actions, from initial states, by the documents' code: see
+  // walk.hpp.
   void rate(JsonWriter& json, double seconds, std::uint64_t seed) const {
     Sampler random{seed};
-    const auto start = std::chrono::steady_clock::now();
-    const auto processor_start = processor_time();
-    std::chrono::duration<double> spent{};
-    std::uint64_t samples = 0;
-    double rewards = 0;
-    for (std::uint64_t steps = 64; spent.count() < seconds; steps = std::min<std::uint64_t>(2 * steps, 1 << 16)) {
-      const Walked walked = Model::walk(steps, random);
-      samples += walked.steps;
-      rewards += walked.rewards;
-      spent = std::chrono::steady_clock::now() - start;
-    }
-    json.begin_object().member("samples", samples).member("seconds", spent.count());
-    json.member("cpu_seconds", seconds_since(processor_start));
-    json.member("mean_reward", rewards / static_cast<double>(samples)).end_object();
+    count_samples(json, seconds, [&](std::uint64_t steps) { return Model::walk(steps, random); });
+  }
+
+  // The same by the table that POMCP steps a small model with; none of a model that has no table.
+  void rate_by_table(JsonWriter& json, double seconds, std::uint64_t seed) const {
+    Sampler random{seed};
+    const auto belief = Belief<Model>::initial(random);
+    StepTable<Model> table;
+    if (!belief.is_exact() || !table.prepare(belief)) return write_samples(json, Walked{}, 0, 0);
+    TableWalks<Model> walks{table, random};
+    count_samples(json, seconds, [&](std::uint64_t steps) { return walks.walk(steps, random); });
   }
 
  private:
+  // By walks of more and more steps, for so long.
+  template <class Walk>
+  static void count_samples(JsonWriter& json, double seconds, Walk&& walk) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto processor_start = processor_time();
+    std::chrono::duration<double> spent{};
+    Walked all;
+    for (std::uint64_t steps = 64; spent.count() < seconds; steps = std::min<std::uint64_t>(2 * steps, 1 << 16)) {
+      const Walked walked = walk(steps);
+      all.steps += walked.steps;
+      all.rewards += walked.rewards;
+      spent = std::chrono::steady_clock::now() - start;
+    }
+    write_samples(json, all, spent.count(), seconds_since(processor_start));
+  }
+  static void write_samples(JsonWriter& json, const Walked& walked, double seconds, double cpu_seconds) {
+    json.begin_object().member("samples", walked.steps).member("seconds", seconds).member("cpu_seconds", cpu_seconds);
+    const double mean = walked.steps > 0 ? walked.rewards / static_cast<double>(walked.steps) : 0;
+    json.member("mean_reward", mean).end_object();
+  }
+
   struct Thought {
     int action;
     Budget budget;

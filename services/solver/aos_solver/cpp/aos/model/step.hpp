@@ -18,6 +18,8 @@ inline constexpr const char* default_observation_text = "DefaultObservation";
 struct Step {
   double reward = 0;
   Observation observation = default_observation;
+
+  bool operator==(const Step&) const = default;
 };
 
 // The number of a text observation: 63 bits of FNV-1a, the same in every process.

@@ -40,11 +40,14 @@ class SeenValues {
     }
     if (known == states_.size() && horizon == horizon_) return true;
     horizon_ = horizon;
+    ++iterations_;
     iterate();
     return true;
   }
 
   std::size_t states() const { return states_.size(); }
+  // How often values were worked out anew, and with them perhaps the numbers of states.
+  std::uint64_t iterations() const { return iterations_; }
 
   // Of a state; `RelevantStates::none` for one that was not reckoned with, which is worth the most.
   std::uint32_t number_of(const State& state) const { return states_.find(state); }
@@ -133,6 +136,7 @@ class SeenValues {
 
   bool is_too_large_ = false;
   int horizon_ = 0;
+  std::uint64_t iterations_ = 0;
   double highest_ = 0;
   RelevantStates<Model> states_;
   std::vector<std::vector<double>> layers_;

@@ -5,6 +5,8 @@
 //   (bounds.hpp): a step earns its reward and the change of that worth. Nothing changes in which action is best, but luck
 //   of the state no longer blurs the returns, and what is left to find is the cost of not seeing. A new history starts at
 //   0, as if all were seen from there on. Where there are too many states it starts with a rollout.
+// - Where the states are few, told apart by all that is in them, simulations step by a table of the model and not by the
+//   documents' code (step_table.hpp).
 // - The exploration bonus of an action follows the spread of its own returns: immediate rewards say little about it, and a
 //   constant that is too small is the commonest way for POMCP to fail. It falls polynomially, not logarithmically, as
 //   values that drift while the tree below them grows need (Shah, Xie and Xu, 2020).
@@ -33,6 +35,7 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/bounds.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/simulated_state.hpp"
 #include "aos/planning/tree_search.hpp"
 
 namespace aos {
@@ -120,8 +123,21 @@ class Pomcp {
       for (std::size_t i = 0; i < threads; ++i) trees_.push_back(std::make_unique<Tree>(most_search_bytes / threads));
     }
     if (belief.probability_of(Ending::running) <= 0) return 0;
-    for (const auto& tree : trees_) tree->begin(has_values ? &values_ : nullptr, horizon);
+    for (const auto& tree : trees_) tree->begin(horizon);
+    if (has_values && listed_.prepare(belief, values_)) {
+      const auto start_state = [&](Sampler& own) { return ListedState<Model>{listed_, own}; };
+      return simulate_all(start_state, budget, start, random, first, is_over);
+    }
+    const SeenValues<Model>* const values = has_values ? &values_ : nullptr;
+    const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), values}; };
+    return simulate_all(start_state, budget, start, random, first, is_over);
+  }
 
+  // `start_state(random)` is a state of the belief, as of simulated_state.hpp.
+  template <class StartState, class IsOver>
+  std::uint64_t simulate_all(StartState&& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
+                             int first, IsOver&& is_over) {
+    const std::size_t threads = trees_.size();
     std::vector<Work> works(threads);
     {
       std::vector<std::jthread> others;
@@ -130,10 +146,10 @@ class Pomcp {
         others.emplace_back([&, i, seed] {
           blame::use_line(static_cast<int>(i));
           Sampler own{seed};
-          works[i] = work(*trees_[i], belief, share(budget, i), start, own, first, is_over);
+          works[i] = work(*trees_[i], start_state, share(budget, i), start, own, first, is_over);
         });
       }
-      works[0] = work(*trees_[0], belief, share(budget, 0), start, random, first, is_over);
+      works[0] = work(*trees_[0], start_state, share(budget, 0), start, random, first, is_over);
     }
     std::uint64_t simulations = 0;
     for (const Work& done : works) {
@@ -152,8 +168,8 @@ class Pomcp {
     return budget;
   }
 
-  template <class IsOver>
-  static Work work(Tree& tree, const Belief<Model>& belief, Budget budget, PlanningClock::time_point start,
+  template <class StartState, class IsOver>
+  static Work work(Tree& tree, const StartState& start_state, Budget budget, PlanningClock::time_point start,
                    Sampler& random, int first, IsOver&& is_over) {
     constexpr std::uint64_t between_looks = 64;
     Work done;
@@ -164,8 +180,8 @@ class Pomcp {
           if (is_over() || (budget.seconds > 0 && is_enough(tree, budget.seconds, start, done.simulations, first))) break;
         }
         ++done.simulations;
-        const State& state = belief.sample(random);
-        if (Model::ending(state) == Ending::running) tree.simulate(state, first, random);
+        auto state = start_state(random);
+        if (!state.has_ended()) tree.simulate(state, first, random);
       }
     } catch (...) {
       done.fault = std::current_exception();
@@ -197,6 +213,7 @@ class Pomcp {
 
   std::vector<std::unique_ptr<Tree>> trees_;
   SeenValues<Model> values_;
+  ListedModel<Model> listed_;
   double seen_worth_ = 0;
 };
 

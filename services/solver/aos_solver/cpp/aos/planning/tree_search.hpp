@@ -12,9 +12,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
-#include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/bounds.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/search_tree.hpp"
 
@@ -33,24 +31,23 @@ inline bool is_well_visited(std::uint32_t n, std::uint32_t most) {
 template <class Model>
 class TreeSearch {
  public:
-  using State = typename Model::State;
-
   // Takes no more than `bytes` for its tree, and for a copy of what is kept of it when a step is taken.
   explicit TreeSearch(std::size_t bytes)
       : tree_(Model::action_count(), bytes / 2), spare_(Model::action_count(), bytes / 2) {
     forget();
   }
 
-  // Begins a decision. `values` are what states are worth to somebody who sees them; null where they are not known.
-  void begin(const SeenValues<Model>* values, int horizon) {
-    values_ = values;
+  // Begins a decision.
+  void begin(int horizon) {
     horizon_ = horizon;
     lowest_ = std::numeric_limits<double>::infinity();
     highest_ = -lowest_;
   }
 
-  // One simulation from a running state. `first` is the first action; -1 leaves it to the search.
-  void simulate(State state, int first, Sampler& random) {
+  // One simulation from a running state, as of simulated_state.hpp, which goes on with it. `first` is the first action; -1
+  // leaves it to the search.
+  template <class SimulatedState>
+  void simulate(SimulatedState& state, int first, Sampler& random) {
     if (!tree_.give_actions(0)) return;
     if (++simulations_ % renewal == 0 || simulations_ == settled_visits) renew_spread();
     if (first < 0 && simulations_ % turns == 0) {
@@ -138,18 +135,19 @@ class TreeSearch {
   }
 
   // Goes down to a history that is new, or to an end, and back up. Returns the discounted return.
-  double descend(State& state, std::uint32_t a, Sampler& random) {
+  template <class SimulatedState>
+  double descend(SimulatedState& state, std::uint32_t a, Sampler& random) {
     visits_.clear();
     std::uint32_t history = 0;
     int left = horizon_;
-    double value = value_of(state, left);
+    double value = state.value(left);
     double later = 0;
     double change = 0;  // of n * v of the history that the last action led to
     while (true) {
-      const Step step = Model::step(state, static_cast<int>(a), random);
-      const bool goes_on = --left > 0 && Model::ending(state) == Ending::running;
+      const Step step = state.step(static_cast<int>(a), random);
+      const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
-      value = goes_on ? value_of(state, left) : 0;
+      value = goes_on ? state.value(left) : 0;
       visits_.push_back({history, a, step.reward + Model::discount * value - before});
       if (!goes_on) break;
 
@@ -158,7 +156,7 @@ class TreeSearch {
       const bool is_new = child == no_node;
       if (is_new) child = tree_.add_child(action, step.observation);
       if (is_new || !tree_.give_actions(child)) {
-        later = values_ != nullptr ? 0 : Model::rollout(state, left, random);
+        later = state.leaf(left, random);
         change = child == no_node ? later : add_return(tree_.history(child), later);
         break;
       }
@@ -172,10 +170,6 @@ class TreeSearch {
     return later;
   }
 
-  double value_of(const State& state, int horizon) const {
-    return values_ != nullptr ? values_->value(values_->number_of(state), horizon) : 0;
-  }
-
   // Of a history without actions. Returns the change of n * v.
   static double add_return(HistoryNode& node, double seen) {
     ++node.n;
@@ -183,8 +177,8 @@ class TreeSearch {
     return seen;
   }
 
-  // Returns the change of n * v of the history.
-  double back_up(const Visit& visit, double change, double seen) {
+  // Returns the change of n * v of the history. As often as a step, and so without a call, as is `choose`.
+  [[gnu::always_inline]] double back_up(const Visit& visit, double change, double seen) {
     HistoryNode& parent = tree_.history(visit.history);
     ActionNode* const actions = tree_.actions(parent);
     ActionNode& node = actions[visit.action];
@@ -224,7 +218,7 @@ class TreeSearch {
 
   // The highest upper confidence bound; every action once first. An action's spread is its own, and as if `prior_visits`
   // more had the spread of all actions here, which is in the same way filled up with the root's.
-  std::uint32_t choose(std::uint32_t number) const {
+  [[gnu::always_inline]] std::uint32_t choose(std::uint32_t number) const {
     const HistoryNode& history = tree_.history(number);
     const ActionNode* const actions = tree_.actions(history);
     const double root_n = std::sqrt(static_cast<double>(history.n) + 1);
@@ -246,7 +240,6 @@ class TreeSearch {
 
   SearchTree tree_;
   SearchTree spare_;
-  const SeenValues<Model>* values_ = nullptr;
   int horizon_ = 0;
   std::vector<Visit> visits_;
   std::uint64_t simulations_ = 0;

@@ -1,0 +1,83 @@
+// The state of the world in a simulation of a search: a block of bytes that the documents' code steps, or, in a model with
+// few states, the number of one in a table.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/bounds.hpp"
+#include "aos/planning/step_table.hpp"
+
+namespace aos {
+
+template <class Model>
+class ComputedState {
+ public:
+  using State = typename Model::State;
+
+  // `values` are what states are worth to somebody who sees them; null where they are not known.
+  ComputedState(const State& state, const SeenValues<Model>* values) : state_(state), values_(values) {}
+
+  Step step(int action, Sampler& random) { return Model::step(state_, action, random); }
+  bool has_ended() const { return Model::ending(state_) != Ending::running; }
+  // With `left` decisions to go; 0 where values are not known.
+  double value(int left) const { return values_ != nullptr ? values_->value(values_->number_of(state_), left) : 0; }
+  // What a new history starts with, beyond the value.
+  double leaf(int left, Sampler& random) const { return values_ != nullptr ? 0 : Model::rollout(state_, left, random); }
+
+ private:
+  State state_;
+  const SeenValues<Model>* values_;
+};
+
+// What searches look up of a model with few states: its steps, and what the states are worth.
+template <class Model>
+class ListedModel {
+ public:
+  // After the values. Returns whether the model is small enough; see StepTable.
+  bool prepare(const Belief<Model>& belief, const SeenValues<Model>& values) {
+    if (!steps_.prepare(belief)) return false;
+    values_ = &values;
+    if (known_iterations_ == values.iterations() && value_numbers_.size() == steps_.size()) return true;
+    known_iterations_ = values.iterations();
+    value_numbers_.clear();
+    for (std::uint32_t number = 0; number < steps_.size(); ++number) {
+      value_numbers_.push_back(values.number_of(steps_[number]));
+    }
+    return true;
+  }
+
+  const StepTable<Model>& steps() const { return steps_; }
+  double value(std::uint32_t number, int left) const { return values_->value(value_numbers_[number], left); }
+
+ private:
+  StepTable<Model> steps_;
+  const SeenValues<Model>* values_ = nullptr;
+  std::uint64_t known_iterations_ = 0;
+  std::vector<std::uint32_t> value_numbers_;
+};
+
+template <class Model>
+class ListedState {
+ public:
+  // A state of the belief that the model was prepared for.
+  ListedState(const ListedModel<Model>& model, Sampler& random)
+      : model_(model), number_(model.steps().start(random.bits())) {}
+
+  Step step(int action, Sampler& random) {
+    const auto& outcome = model_.steps().outcome(number_, action, random.bits());
+    number_ = outcome.next;
+    return outcome.step;
+  }
+  bool has_ended() const { return number_ == StepTable<Model>::ended; }
+  double value(int left) const { return model_.value(number_, left); }
+  double leaf(int, Sampler&) const { return 0; }
+
+ private:
+  const ListedModel<Model>& model_;
+  std::uint32_t number_;
+};
+
+}  // namespace aos

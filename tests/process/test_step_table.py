@@ -1,0 +1,102 @@
+"""A model with few states is stepped by a table, with the odds of its documents; any other by their code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+ODDS = (0.02, 0.5, 0.18, 0.3)
+FIRST_ODDS = (0.25, 0.0, 0.7, 0.05)
+WORTH = (1000, 10, -3, 0)
+HORIZON = 3
+
+
+def documents(move: str) -> dict[str, str]:
+    """A die with four faces: a step earns what the face is worth, and one of two actions throws the die."""
+    return {
+        "die.ef": f"""project: die
+horizon: {HORIZON}
+discount: 0.5
+
+state_variable: int face
+
+state_variable: double height
+
+state_variable: int throws
+
+state_variable: int worth []
+code:
+state.worth = {{{", ".join(map(str, WORTH))}}};
+
+initial_belief:
+std::vector<double> odds = {{{", ".join(map(str, FIRST_ODDS))}}};
+state.face = AOS.SampleDiscrete(odds);
+""",
+        "play.sd": f"""project: die
+parameter: bool throws
+
+available_parameters_code:
+__possibleParameters.push_back(std::make_tuple(false));
+__possibleParameters.push_back(std::make_tuple(true));
+
+dynamic_model:
+__reward = state.worth[state.face];
+std::vector<double> odds = {{{", ".join(map(str, ODDS))}}};
+if (throws) {{
+    state__.face = AOS.SampleDiscrete(odds);
+    {move}
+}}
+__moduleResponse = AOS.Bernoulli(0.9) == (state__.face < 2) ? low : high;
+""",
+        "play.am": """project: die
+
+response: low
+response_rule: face < 2
+response: high
+response_rule: True
+
+module_activation: skill
+path: /play
+
+local_variable: face
+type: int
+from_ros_service_response: true
+code:
+face = __input.face
+""",
+    }
+
+
+async def test_walks_by_the_table_earn_what_the_odds_say(cache_dir: Path) -> None:
+    first = sum(odds * worth for odds, worth in zip(FIRST_ODDS, WORTH, strict=True))
+    thrown = sum(odds * worth for odds, worth in zip(ODDS, WORTH, strict=True))
+    # The die has been thrown after half of the steps: what is left of the first face halves each time.
+    means = [thrown + (first - thrown) * 0.5**step for step in range(HORIZON)]
+    async with engine_of(await built_text(documents(""), cache_dir)) as engine:
+        walked = await engine.rate(0.2, seed=1, stepping="table")
+        assert walked.samples > 100_000
+        assert walked.mean_reward == pytest.approx(sum(means) / HORIZON, rel=0.01)
+
+
+async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path) -> None:
+    async with engine_of(await built_text(documents(""), cache_dir)) as engine:
+        best = max((await engine.exact(HORIZON)).actions, key=lambda value: value.q)
+        plan = await engine.plan(simulations=100_000, seed=1, planner="pomcp")
+    assert (plan.best.action, plan.best.q) == (best.action, pytest.approx(best.q, rel=0.01))
+
+
+@pytest.mark.parametrize(
+    "move",
+    [
+        "state__.height = AOS.SampleNormal(0, 1);",
+        "state__.throws++;",
+        "if (AOS.Bernoulli(1e-12)) state__.face = state.worth.at(4);",
+    ],
+    ids=["a draw without end", "states without end", "a fault that hardly ever happens"],
+)
+async def test_there_is_no_table_of(move: str, cache_dir: Path) -> None:
+    async with engine_of(await built_text(documents(move), cache_dir)) as engine:
+        assert (await engine.rate(0.05, seed=1, stepping="table")).samples == 0
+        assert (await engine.rate(0.05, seed=1)).samples > 0
