@@ -160,17 +160,14 @@ struct skill__navigate : aos::SkillDefaults {
       visit("destination", self.destination);
     }
   };
-  inline static std::vector<aos::Grounding<Parameters>> groundings;
 
-  static void make_groundings(const Draft& __draft) {
-    groundings.clear();
+  static void make_groundings(const Draft& __draft, aos::Groundings __groundings) {
     for (const auto& destination : std::initializer_list<aos::NamedValue<Destination>>{
              {"corridor", __draft.corridor},
              {"easy_table", __draft.easy_table},
              {"hard_table", __draft.hard_table},
          }) {
-      groundings.push_back(
-          {aos::action_name("navigate", {{"destination", destination.name}}), {destination.value}});
+      __groundings.add({{"destination", destination.name}}, new Parameters{destination.value});
     }
   }
 
@@ -179,7 +176,7 @@ struct skill__navigate : aos::SkillDefaults {
     aos::blame::at(19);
 #line 5 "navigate.sd"
 __meetPrecondition = state.robot_at != Unknown;
-#line 183 "model.cpp"
+#line 180 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -194,7 +191,7 @@ bool is_there = AOS.Bernoulli(1.0);
 if (is_there) state__.robot_at = destination.place;
 __moduleResponse = is_there ? arrived : failed;
 __reward = -5;
-#line 198 "model.cpp"
+#line 195 "model.cpp"
   }
 };
 
@@ -202,13 +199,6 @@ __reward = -5;
 struct skill__observe_arm_outstretched : aos::SkillDefaults {
   enum Response : int { outstretched = 1, not_outstretched };
   static constexpr std::array<const char*, 2> response_names{"outstretched", "not_outstretched"};
-  inline static std::vector<aos::Grounding<Parameters>> groundings;
-
-  static void make_groundings(const Draft&) {
-    groundings.clear();
-    groundings.push_back(
-        {aos::action_name("observe_arm_outstretched", {}), {}});
-  }
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
@@ -219,7 +209,7 @@ struct skill__observe_arm_outstretched : aos::SkillDefaults {
 #line 4 "observe_arm_outstretched.sd"
 __moduleResponse = state.arm_outstretched ? outstretched : not_outstretched;
 __reward = -1;
-#line 223 "model.cpp"
+#line 213 "model.cpp"
   }
 };
 
@@ -227,13 +217,6 @@ __reward = -1;
 struct skill__observe_holding : aos::SkillDefaults {
   enum Response : int { holding = 1, not_holding };
   static constexpr std::array<const char*, 2> response_names{"holding", "not_holding"};
-  inline static std::vector<aos::Grounding<Parameters>> groundings;
-
-  static void make_groundings(const Draft&) {
-    groundings.clear();
-    groundings.push_back(
-        {aos::action_name("observe_holding", {}), {}});
-  }
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
@@ -245,7 +228,7 @@ struct skill__observe_holding : aos::SkillDefaults {
 // In 2 of 11 runs the fingers report nothing although they hold the can; never the other way round.
 __moduleResponse = state.holding_can && AOS.Bernoulli(0.818) ? holding : not_holding;
 __reward = -1;
-#line 249 "model.cpp"
+#line 232 "model.cpp"
   }
 };
 
@@ -254,13 +237,6 @@ struct skill__pick : aos::SkillDefaults {
   enum Response : int { pick_succeeded = 1, pick_failed };
   static constexpr std::array<const char*, 2> response_names{"pick_succeeded", "pick_failed"};
   static constexpr double violation_penalty = -10.0;
-  inline static std::vector<aos::Grounding<Parameters>> groundings;
-
-  static void make_groundings(const Draft&) {
-    groundings.clear();
-    groundings.push_back(
-        {aos::action_name("pick", {}), {}});
-  }
 
   static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
                            auto& AOS) {
@@ -268,7 +244,7 @@ struct skill__pick : aos::SkillDefaults {
 #line 4 "pick.sd"
 bool can_in_reach = state.easy_can_at == state.robot_at || state.hard_can_at == state.robot_at;
 __meetPrecondition = can_in_reach && !state.holding_can;
-#line 272 "model.cpp"
+#line 248 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -298,7 +274,7 @@ state__.arm_outstretched = ending == GraspedArmOut;
 // The skill notices an arm that stays out, and neither a missed nor a dropped can.
 __moduleResponse = ending == GraspedArmOut ? pick_failed : pick_succeeded;
 __reward = -2;
-#line 302 "model.cpp"
+#line 278 "model.cpp"
   }
 };
 
@@ -307,20 +283,13 @@ struct skill__serve : aos::SkillDefaults {
   enum Response : int { delivered = 1, not_delivered };
   static constexpr std::array<const char*, 2> response_names{"delivered", "not_delivered"};
   static constexpr double violation_penalty = -12.0;
-  inline static std::vector<aos::Grounding<Parameters>> groundings;
-
-  static void make_groundings(const Draft&) {
-    groundings.clear();
-    groundings.push_back(
-        {aos::action_name("serve", {}), {}});
-  }
 
   static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
                            auto& AOS) {
     aos::blame::at(25);
 #line 4 "serve.sd"
 __meetPrecondition = state.holding_can && !state.arm_outstretched && state.robot_at == Corridor;
-#line 324 "model.cpp"
+#line 293 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -336,7 +305,7 @@ state__.drink_served = __meetPrecondition && !state__.person_injured;
 // All 21 runs reported a delivery, whether or not there was a can in the hand.
 __moduleResponse = AOS.Bernoulli(1.0) ? delivered : not_delivered;
 __reward = state__.person_injured ? -20 : -8;
-#line 340 "model.cpp"
+#line 309 "model.cpp"
   }
 };
 
@@ -345,7 +314,7 @@ struct Environment : aos::EnvironmentDefaults {
     aos::blame::at(15);
 #line 64 "armadillo.ef"
 state.robot_at = state.hard_table.place;
-#line 349 "model.cpp"
+#line 318 "model.cpp"
   }
 
   static void special_state__1(const State& state, double& __reward, bool& __isGoalState,
@@ -356,7 +325,7 @@ if (state.drink_served) {
     __reward = 30;
     __isGoalState = true;
 }
-#line 360 "model.cpp"
+#line 329 "model.cpp"
   }
 
   static void special_state__2(const State& state, double& __reward, bool& __isGoalState,
@@ -367,7 +336,7 @@ if (state.person_injured) {
     __reward = -10;
     __isGoalState = true;
 }
-#line 371 "model.cpp"
+#line 340 "model.cpp"
   }
 
   static void special_state__3(const State& state, double& __reward, bool& __isGoalState,
@@ -378,7 +347,7 @@ if (state.person_injured) {
 if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
     __isGoalState = true;
 }
-#line 382 "model.cpp"
+#line 351 "model.cpp"
   }
 
   static constexpr bool has_special_states = true;
@@ -448,16 +417,11 @@ struct Model {
     constants = draft;
     start = draft;
     actions.clear();
-    skill__navigate::make_groundings(draft);
-    aos::add_actions(actions, 0, skill__navigate::groundings);
-    skill__observe_arm_outstretched::make_groundings(draft);
-    aos::add_actions(actions, 1, skill__observe_arm_outstretched::groundings);
-    skill__observe_holding::make_groundings(draft);
-    aos::add_actions(actions, 2, skill__observe_holding::groundings);
-    skill__pick::make_groundings(draft);
-    aos::add_actions(actions, 3, skill__pick::groundings);
-    skill__serve::make_groundings(draft);
-    aos::add_actions(actions, 4, skill__serve::groundings);
+    skill__navigate::make_groundings(draft, {actions, 0, "navigate"});
+    skill__observe_arm_outstretched::make_groundings(draft, {actions, 1, "observe_arm_outstretched"});
+    skill__observe_holding::make_groundings(draft, {actions, 2, "observe_holding"});
+    skill__pick::make_groundings(draft, {actions, 3, "pick"});
+    skill__serve::make_groundings(draft, {actions, 4, "serve"});
     if (actions.empty()) throw aos::ModelFault{"AOS119", "no skill has a grounded action"};
   }
 
@@ -500,7 +464,7 @@ struct Model {
     const auto weigh = [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       take(aos::rollout_weight<Skill>(state, parameters, random));
     };
-    aos::with_each_grounding<skill__navigate, skill__observe_arm_outstretched, skill__observe_holding, skill__pick, skill__serve>(weigh);
+    aos::with_each_grounding<skill__navigate, skill__observe_arm_outstretched, skill__observe_holding, skill__pick, skill__serve>(actions, weigh);
   }
   static void correct(const State& before, State& next, int action, auto& random) {
     with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -59,24 +58,10 @@ class Enumerator : public Draws<Enumerator> {
 
   // How many paths there were if all had as many alternatives as the one that was just drawn; on average this is right
   // (Knuth, 1975). Infinite where a draw is continuous.
-  double combinations() const {
-    double product = 1;
-    for (const Choice& choice : choices_) {
-      if (choice.alternatives == no_alternatives) return std::numeric_limits<double>::infinity();
-      product *= choice.alternatives;
-    }
-    return product;
-  }
+  double combinations() const;
 
   // How many draws of the path that was just drawn come before those that have at most `most` combinations together.
-  std::size_t draws_before_last(int most) const {
-    std::size_t first = choices_.size();
-    for (long combinations = 1; first > 0; --first) {
-      const int alternatives = choices_[first - 1].alternatives;
-      if (alternatives == no_alternatives || (combinations *= alternatives) > most) break;
-    }
-    return first;
-  }
+  std::size_t draws_before_last(int most) const;
 
   // Calls `run(enumerator)` once for each path that agrees with `by_chance` first draws, which are left to chance. Gives
   // up after `most` paths, and then returns false.
@@ -94,8 +79,7 @@ class Enumerator : public Draws<Enumerator> {
   // One path at random that agrees with the last one in its `by_chance` first draws.
   template <class Run>
   void redraw_after(std::size_t by_chance, Run&& run) {
-    if (choices_.size() > by_chance) choices_.resize(by_chance);
-    by_chance_ = all_draws;
+    keep(by_chance);
     run_once(run);
   }
 
@@ -111,42 +95,17 @@ class Enumerator : public Draws<Enumerator> {
     double value = 0;  // of a continuous draw
   };
 
-  // The first outcome at or after `from` that can happen; -1 if there is none.
-  static int next_outcome(const double* weights, int count, int from) {
-    for (int i = from; i < count; ++i) {
-      if (weights[i] > 0) return i;
-    }
-    return none;
-  }
-
-  int choose_by_chance(const double* weights, int count, double total) {
-    if (depth_ == choices_.size()) {
-      int alternatives = 0;
-      for (int i = 0; i < count; ++i) alternatives += weights[i] > 0 ? 1 : 0;
-      choices_.push_back({chance_->choose(weights, count, total), none, alternatives});
-    }
-    return choices_[depth_++].taken;
-  }
-
-  void start(Sampler* chance, std::size_t by_chance) {
-    chance_ = chance;
-    by_chance_ = by_chance;
-    choices_.clear();
-  }
+  int choose_by_chance(const double* weights, int count, double total);
+  void start(Sampler* chance, std::size_t by_chance);
+  // Of the last path so many choices; what follows is left to chance.
+  void keep(std::size_t choices);
+  bool advance();
 
   template <class Run>
   void run_once(Run& run) {
     depth_ = 0;
     probability_ = 1;
     run(*this);
-  }
-
-  bool advance() {
-    choices_.resize(depth_);
-    while (!choices_.empty() && choices_.back().following < 0) choices_.pop_back();
-    if (choices_.empty()) return false;
-    choices_.back().taken = choices_.back().following;
-    return true;
   }
 
   std::vector<Choice> choices_;

@@ -1,4 +1,5 @@
-// Where draws come from. Document code sees one interface; `Sampler` draws, `Enumerator` (enumerator.hpp) walks.
+// Where draws come from. Document code sees one interface; `Sampler` draws, `Enumerator` (enumerator.hpp) walks, and
+// `AnySource` stands for either.
 #pragma once
 
 #include <array>
@@ -136,6 +137,31 @@ class Sampler : public Draws<Sampler> {
 
  private:
   std::array<std::uint64_t, 4> words_;
+};
+
+class Enumerator;
+
+// A source that lives as long as this is used. What draws from it is compiled once, and not for each kind of source.
+class AnySource : public Draws<AnySource> {
+ public:
+  struct Functions {
+    bool (*flag)(void* source, double probability);
+    int (*choose)(void* source, const double* weights, int count, double total);
+    double (*uniform)(void* source);
+  };
+
+  explicit AnySource(Sampler& sampler);
+  explicit AnySource(Enumerator& enumerator);
+
+  bool flag(double probability) { return functions_.flag(source_, probability); }
+  int choose(const double* weights, int count, double total) {
+    return functions_.choose(source_, weights, count, total);
+  }
+  double uniform() { return functions_.uniform(source_); }
+
+ private:
+  void* source_;
+  const Functions& functions_;
 };
 
 }  // namespace aos

@@ -10,6 +10,7 @@
 
 #include "aos/model/model_table.hpp"
 #include "aos/model/values.hpp"
+#include "aos/model/walk.hpp"
 
 namespace aos {
 
@@ -89,8 +90,16 @@ struct ErasedModel {
   static double rollout(const State& state, int horizon, Sampler& random) {
     return compiled_model.rollout(state.bytes, horizon, random);
   }
-  // Many steps in one call: see walk.hpp.
-  static Walked walk(std::uint64_t steps, Sampler& random) { return compiled_model.walk(steps, random); }
+  // The same action in each of so many states; the sum of the rewards.
+  static double step_all(int action, int count, auto&& state_at, Sampler& random) {
+    double rewards = 0;
+    for (int place = 0; place < count; ++place) rewards += step(state_at(place), action, random).reward;
+    return rewards;
+  }
+  // Many steps in one call, or one by one where the model is built quickly: see walk.hpp.
+  static Walked walk(std::uint64_t steps, Sampler& random) {
+    return compiled_model.walk != nullptr ? compiled_model.walk(steps, random) : aos::walk<ErasedModel>(steps, random);
+  }
 
  private:
   static const GroundedAction& grounded(int action) { return (*compiled_model.actions)[static_cast<std::size_t>(action)]; }

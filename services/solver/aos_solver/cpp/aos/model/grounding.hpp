@@ -1,4 +1,4 @@
-// Grounded actions: a skill with values for its parameters.
+// Grounded actions: a skill with values for its parameters. A model has them once, from its start on.
 #pragma once
 
 #include <initializer_list>
@@ -11,13 +11,7 @@
 
 namespace aos {
 
-template <class Parameters>
-struct Grounding {
-  std::string name;
-  Parameters parameters;
-};
-
-// `parameters` are of the skill's type; the grounding that holds them stays where it is.
+// `parameters` are of the skill's type; they and the name stay where they are.
 struct GroundedAction {
   int skill = 0;
   const void* parameters = nullptr;
@@ -67,19 +61,30 @@ struct Argument {
   std::string_view value;
 };
 
-// `skill(parameter=value, ...)`; the skill alone where there are no parameters.
-std::string action_name(std::string_view skill, std::initializer_list<Argument> arguments);
+// Takes the groundings of one skill to the actions of the model.
+class Groundings {
+ public:
+  Groundings(std::vector<GroundedAction>& actions, int skill, const char* name)
+      : actions_(actions), skill_(skill), name_(name) {}
 
-template <class Parameters>
-void add_actions(std::vector<GroundedAction>& actions, int skill, const std::vector<Grounding<Parameters>>& groundings) {
-  for (const auto& grounding : groundings) actions.push_back({skill, &grounding.parameters, grounding.name.c_str()});
-}
+  // An action called `skill(parameter=value, ...)`, or as the skill where there are no parameters. It keeps `parameters`,
+  // which are of the skill's type and are there for good, as actions are.
+  void add(std::initializer_list<Argument> arguments, const void* parameters);
+
+ private:
+  std::vector<GroundedAction>& actions_;
+  int skill_;
+  const char* name_;
+};
 
 // Calls `use` with a skill's type and the parameters of each of its groundings, skill by skill.
 template <class... Skills>
-void with_each_grounding(auto&& use) {
+void with_each_grounding(const std::vector<GroundedAction>& actions, auto&& use) {
+  auto action = actions.begin();
+  int number = 0;
   const auto groundings_of = [&]<class Skill>(std::type_identity<Skill> skill) {
-    for (const auto& grounding : Skill::groundings) use(skill, grounding.parameters);
+    for (; action != actions.end() && action->skill == number; ++action) use(skill, parameters_of<Skill>(*action));
+    ++number;
   };
   (groundings_of(std::type_identity<Skills>{}), ...);
 }

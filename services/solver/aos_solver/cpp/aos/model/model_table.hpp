@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "aos/base/build_kind.hpp"
 #include "aos/base/enumerator.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/blame.hpp"
@@ -65,7 +66,7 @@ struct ModelTable {
   DrawingFunctions<Enumerator> enumerating;
   bool (*meets_precondition)(const void* state, int action, Enumerator& random);
   double (*rollout)(const void* state, int horizon, Sampler& random);
-  Walked (*walk)(std::uint64_t steps, Sampler& random);
+  Walked (*walk)(std::uint64_t steps, Sampler& random);  // null in a quick build
 };
 
 // The model that this executable is linked with.
@@ -75,20 +76,40 @@ template <class Model, class Random>
 constexpr DrawingFunctions<Random> drawing_functions() {
   using State = typename Model::State;
   return {
-      .initial = [](void* state, Random& random) { Model::initial(*static_cast<State*>(state), random); },
+      .initial =
+          [](void* state, Random& random) {
+            ModelSource<Random> draws{random};
+            Model::initial(*static_cast<State*>(state), draws);
+          },
       .step =
           [](void* state, int action, Random& random) {
-            const Step step = Model::step(*static_cast<State*>(state), action, random);
+            ModelSource<Random> draws{random};
+            const Step step = Model::step(*static_cast<State*>(state), action, draws);
             blame::at(0);
             return step;
           },
       .correct =
           [](const void* before, void* next, int action, Random& random) {
             if constexpr (Model::has_corrections) {
-              Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, random);
+              ModelSource<Random> draws{random};
+              Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, draws);
             }
           },
   };
+}
+
+// Rates are measured in thorough builds.
+template <class Model>
+constexpr auto walk_function() -> Walked (*)(std::uint64_t steps, Sampler& random) {
+  if constexpr (is_quick_build) {
+    return nullptr;
+  } else {
+    return [](std::uint64_t steps, Sampler& random) {
+      const Walked walked = aos::walk<Model>(steps, random);
+      blame::at(0);
+      return walked;
+    };
+  }
 }
 
 template <class Model>
@@ -126,7 +147,8 @@ constexpr ModelTable table_of() {
       .enumerating = drawing_functions<Model, Enumerator>(),
       .meets_precondition =
           [](const void* state, int action, Enumerator& random) {
-            const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, random);
+            ModelSource<Enumerator> draws{random};
+            const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, draws);
             blame::at(0);
             return meets;
           },
@@ -136,12 +158,7 @@ constexpr ModelTable table_of() {
             blame::at(0);
             return value;
           },
-      .walk =
-          [](std::uint64_t steps, Sampler& random) {
-            const Walked walked = aos::walk<Model>(steps, random);
-            blame::at(0);
-            return walked;
-          },
+      .walk = walk_function<Model>(),
   };
 }
 

@@ -48,22 +48,24 @@ struct Leaf {
 };
 
 template <class T>
-Leaf leaf_of(const T& value) {
+constexpr Leaf::Kind leaf_kind() {
   using Kind = Leaf::Kind;
-  if constexpr (std::is_enum_v<T>) {
-    Leaf leaf{Kind::enumerated, sizeof value, &value};
-    if constexpr (requires { name_of(value); }) leaf.name = name_of(value);
-    return leaf;
-  } else {
-    constexpr Kind kind = std::same_as<T, bool>          ? Kind::boolean
-                          : std::same_as<T, Text>        ? Kind::text
-                          : std::same_as<T, std::string> ? Kind::string
-                          : std::floating_point<T>       ? Kind::real
-                          : std::is_signed_v<T>          ? Kind::signed_number
-                                                         : Kind::unsigned_number;
-    static_assert(kind != Kind::unsigned_number || std::integral<T>);
-    return {kind, sizeof value, &value};
-  }
+  constexpr Kind kind = std::is_enum_v<T>              ? Kind::enumerated
+                        : std::same_as<T, bool>        ? Kind::boolean
+                        : std::same_as<T, Text>        ? Kind::text
+                        : std::same_as<T, std::string> ? Kind::string
+                        : std::floating_point<T>       ? Kind::real
+                        : std::is_signed_v<T>          ? Kind::signed_number
+                                                       : Kind::unsigned_number;
+  static_assert(kind != Kind::unsigned_number || std::integral<T>);
+  return kind;
+}
+
+template <class T>
+Leaf leaf_of(const T& value) {
+  Leaf leaf{leaf_kind<T>(), sizeof value, &value};
+  if constexpr (requires { name_of(value); }) leaf.name = name_of(value);
+  return leaf;
 }
 
 // The text of a single value: enums by name, `true` and `false`, the shortest decimal that reads back.

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "aos/base/inlining.hpp"
+#include "aos/base/build_kind.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 
@@ -35,20 +35,21 @@ inline void leave_out(double* sums, int count, int action) {
 // precondition holds; else any.
 template <class Model>
 int rollout_action(const typename Model::State& state, double* sums, int count, Sampler& random) {
+  ModelSource<Sampler> draws{random};
   if constexpr (Model::has_rollout_policy) {
     double total = 0;
     int filled = 0;
-    Model::rollout_weights(state, random, [&](double weight) { sums[filled++] = total += weight; });
+    Model::rollout_weights(state, draws, [&](double weight) { sums[filled++] = total += weight; });
     for (int left = count; total > 0 && left > 0; --left) {
       const int action = action_at(sums, count, random.uniform() * total);
-      if (Model::meets_precondition(state, action, random)) return action;
+      if (Model::meets_precondition(state, action, draws)) return action;
       leave_out(sums, count, action);
       total = sums[count - 1];
     }
   }
   for (int attempt = 0; attempt < 2 * count; ++attempt) {
     const int action = random.below(count);
-    if (Model::meets_precondition(state, action, random)) return action;
+    if (Model::meets_precondition(state, action, draws)) return action;
   }
   return random.below(count);
 }
@@ -63,17 +64,19 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
   if constexpr (Model::has_rollout_policy) sums_of_weights.resize(static_cast<std::size_t>(count));
   double* const sums = sums_of_weights.data();
   Sampler draws = random;  // what nothing else points to, a compiler keeps in registers
+  ModelSource<Sampler> model_draws{draws};
   typename Model::State state = start;
   double sum = 0;
   double discount = 1;
   for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
     if constexpr (Model::has_state_heuristic) {
       if (draws.flag(heuristic_ending)) {
-        sum += discount * Model::state_value(state, draws);
+        sum += discount * Model::state_value(state, model_draws);
         break;
       }
     }
-    const Step step = Model::step(state, detail::rollout_action<Model>(state, sums, count, draws), draws);
+    const int action = detail::rollout_action<Model>(state, sums, count, draws);
+    const Step step = Model::step(state, action, model_draws);
     sum += discount * step.reward;
     discount *= Model::discount;
   }

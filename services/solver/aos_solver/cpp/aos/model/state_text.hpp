@@ -1,7 +1,6 @@
 // A state as one line of text and back, for beliefs that outlive their process.
 #pragma once
 
-#include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -43,13 +42,11 @@ class StateReader {
     } else if constexpr (std::derived_from<T, std::vector<bool>>) {
       value.resize(static_cast<std::size_t>(next()));
       for (auto element : value) element = next() != 0;
-    } else if constexpr (Sequence<T> || std::same_as<T, Text> || std::same_as<T, std::string>) {
+    } else if constexpr (Sequence<T>) {
       resize(value, static_cast<std::size_t>(next()));
       for (auto& element : value) read(element);
-    } else if constexpr (std::floating_point<T>) {
-      value = static_cast<T>(std::bit_cast<double>(next()));
     } else {
-      value = static_cast<T>(next());
+      read_leaf(leaf_kind<T>(), sizeof value, &value);
     }
   }
   void finish() const {
@@ -63,35 +60,47 @@ class StateReader {
   static void resize(T& value, std::size_t size) {
     if constexpr (requires { value.resize(size); }) {
       value.resize(size);
-    } else if constexpr (std::same_as<T, Text>) {
-      value = std::string(size, ' ');
     } else if (size != value.size()) {
       malformed();
     }
   }
+  // A single value of that kind and size in bytes.
+  void read_leaf(Leaf::Kind kind, std::size_t size, void* place);
+  std::string next_characters();
   std::int64_t next();
 
   std::string_view rest_;
+};
+
+// A variable of any type that lives as long as this is used.
+class AnyVariable {
+ public:
+  template <class T>
+  AnyVariable(T& variable)
+      : place_(const_cast<std::remove_const_t<T>*>(&variable)), is_constant_(std::is_const_v<T>), read_(read_as<T>) {}
+  bool is_constant() const { return is_constant_; }
+  void read(StateReader& text) const { read_(place_, text); }
+
+ private:
+  template <class T>
+  static void read_as(void* variable, StateReader& text) {
+    text.read(*static_cast<T*>(variable));
+  }
+
+  void* place_;
+  bool is_constant_;
+  void (*read_)(void* variable, StateReader& text);
 };
 
 // The variables that are constants where states are saved, by name: what need not be saved with each of them.
 class SavedConstants {
  public:
   void add(std::string_view name, AnyValue value);
-  void add_text(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
+  void add_text(std::string_view name, std::string_view text);
   const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
 
   // The value of a variable from here if it was a constant, or else from the rest of a saved state.
-  template <class T>
-  void read(std::string_view name, T& value, StateReader& state) const {
-    const std::string* const constant = find(name);
-    if (constant == nullptr) return state.read(value);
-    if constexpr (!std::is_const_v<T>) {
-      StateReader text{*constant};
-      text.read(value);
-      text.finish();
-    }
-  }
+  void read(std::string_view name, const AnyVariable& variable, StateReader& state) const;
 
  private:
   const std::string* find(std::string_view name) const;

@@ -5,12 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <initializer_list>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 
-#include "aos/base/enumerator.hpp"
+#include "aos/base/draw_sources.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/containers.hpp"
@@ -74,29 +75,15 @@ std::string_view observation_text(Observation number) {
   return known == texts.end() ? std::string_view{} : std::string_view{known->second};
 }
 
-std::string action_name(std::string_view skill, std::initializer_list<Argument> arguments) {
+void Groundings::add(std::initializer_list<Argument> arguments, const void* parameters) {
+  static std::deque<std::string> names;  // which stay where they are
   std::string list;
   for (const auto& [parameter, value] : arguments) {
     if (!list.empty()) list += ", ";
     ((list += parameter) += '=') += value;
   }
-  std::string name{skill};
-  return list.empty() ? name : name + "(" + list + ")";
-}
-
-int Enumerator::choose(const double* weights, int count, double total) {
-  if (depth_ < by_chance_) return choose_by_chance(weights, count, total);
-  if (depth_ == choices_.size()) choices_.push_back({next_outcome(weights, count, 0), 0, 0});
-  Choice& choice = choices_[depth_++];
-  choice.following = next_outcome(weights, count, choice.taken + 1);
-  probability_ *= weights[choice.taken] / total;
-  return choice.taken;
-}
-
-double Enumerator::uniform() {
-  if (chance_ == nullptr) throw NotEnumerable{"a draw is continuous"};
-  if (depth_ == choices_.size()) choices_.push_back({0, none, no_alternatives, chance_->uniform()});
-  return choices_[depth_++].value;
+  const std::string& name = names.emplace_back(list.empty() ? name_ : name_ + ("(" + list + ")"));
+  actions_.push_back({skill_, parameters, name.c_str()});
 }
 
 }  // namespace aos

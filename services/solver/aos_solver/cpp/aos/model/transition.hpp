@@ -9,6 +9,7 @@
 
 #include "aos/base/fault.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/model/grounding.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
@@ -36,6 +37,10 @@ struct SkillDefaults {
   // Whether the code of a step reads `state` (`state_`) where it has already changed a later copy.
   static constexpr bool keeps_state = false;
   static constexpr bool keeps_state_ = false;
+  static void make_groundings(const auto&, Groundings groundings) {
+    static constexpr Parameters none{};
+    groundings.add({}, &none);
+  }
   static void precondition(const auto&, bool&, const auto&, auto&) {}
   static void execution_time(const auto&, int&, const auto&, auto&) {}
   static void next_state(auto&, auto&, auto&, bool, int, auto&, const auto&, auto&) {}

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -158,6 +159,34 @@ void StateWriter::write(AnyValue value) {
   value.visit(visitor);
 }
 
+void StateReader::read_leaf(Leaf::Kind kind, std::size_t size, void* place) {
+  const auto store = [place](auto value) { std::memcpy(place, &value, sizeof value); };
+  if (kind == Leaf::Kind::text) {
+    *static_cast<Text*>(place) = next_characters();
+  } else if (kind == Leaf::Kind::string) {
+    *static_cast<std::string*>(place) = next_characters();
+  } else if (kind == Leaf::Kind::real) {
+    const auto number = std::bit_cast<double>(next());
+    size == sizeof(float) ? store(static_cast<float>(number)) : store(number);
+  } else if (kind == Leaf::Kind::boolean) {
+    store(next() != 0);
+  } else if (size == 1) {
+    store(static_cast<std::int8_t>(next()));
+  } else if (size == 2) {
+    store(static_cast<std::int16_t>(next()));
+  } else if (size == 4) {
+    store(static_cast<std::int32_t>(next()));
+  } else {
+    store(next());
+  }
+}
+
+std::string StateReader::next_characters() {
+  std::string characters;
+  for (std::int64_t left = next(); left > 0; --left) characters += static_cast<char>(next());
+  return characters;
+}
+
 void StateReader::malformed() { throw ModelFault{"AOS215", "a saved state that does not fit this model"}; }
 
 std::int64_t StateReader::next() {
@@ -173,6 +202,17 @@ void SavedConstants::add(std::string_view name, AnyValue value) {
   StateWriter text;
   text.write(value);
   add_text(name, text.text());
+}
+
+void SavedConstants::add_text(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
+
+void SavedConstants::read(std::string_view name, const AnyVariable& variable, StateReader& state) const {
+  const std::string* const constant = find(name);
+  if (constant == nullptr) return variable.read(state);
+  if (variable.is_constant()) return;
+  StateReader text{*constant};
+  variable.read(text);
+  text.finish();
 }
 
 const std::string* SavedConstants::find(std::string_view name) const {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "aos/base/inlining.hpp"
+#include "aos/base/build_kind.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 
