@@ -31,11 +31,15 @@ _LAUNCH_GUARD = (
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True):
-    """What a guarded command may use; None is unlimited. `grace_s` lies between SIGTERM and SIGKILL."""
+    """What a guarded command may use; None is unlimited. `grace_s` lies between SIGTERM and SIGKILL.
+
+    The `niceness` is added to this process's own: of a command with 19, all others come first.
+    """
 
     address_space_bytes: int | None = None
     cpu_s: int | None = None
     file_bytes: int | None = None
+    niceness: int | None = None
     grace_s: float = 0.5
 
 

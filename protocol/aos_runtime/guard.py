@@ -1,7 +1,7 @@
 r"""A small process around a command that must leave nothing behind: compilers, engines, mapping workers.
 
-    python -m aos_runtime.guard [--address-space-bytes N] [--cpu-s N] [--file-bytes N] [--grace-s S] \
-        -- command...
+    python -m aos_runtime.guard [--address-space-bytes N] [--cpu-s N] [--file-bytes N] [--niceness N] \
+        [--grace-s S] -- command...
 
 The command runs in a process group of its own, under the limits, on the guard's own stdin, stdout and
 stderr. When it ends, when the guard is told to stop (SIGTERM, SIGINT, SIGHUP), or when the guard's parent
@@ -34,6 +34,7 @@ _STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 _NOT_STARTED = 127
 _GRACE_S = 0.5
 
+_NICENESS = "--niceness"
 _LIMITS = {
     "--address-space-bytes": resource.RLIMIT_AS,
     "--cpu-s": resource.RLIMIT_CPU,
@@ -43,41 +44,45 @@ _LIMITS = {
 
 def main(arguments: list[str]) -> NoReturn:
     """Runs the command named in the arguments and ends as it ends."""
-    grace_s, limits, command = _parse(arguments)
+    grace_s, niceness, limits, command = _parse(arguments)
     signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, signal.SIGCHLD})
     die_with_parent(signal.SIGTERM)
     adopt_orphans()
     guard_pid = os.getpid()
     pid = os.fork()
     if pid == 0:
-        _become(command, limits, guard_pid)
+        _become(command, niceness, limits, guard_pid)
     status = _wait(pid, grace_s)
     _end_descendants(grace_s)
     _end_like(status)
 
 
-def _parse(arguments: list[str]) -> tuple[float, dict[int, int], list[str]]:
-    """The grace, the limits by kind, and the command."""
+def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], list[str]]:
+    """The grace, the niceness, the limits by kind, and the command."""
     split = arguments.index("--") if "--" in arguments else len(arguments)
     options, command = arguments[:split], arguments[split + 1 :]
     if len(options) % 2 or not command:
         _fail("usage: guard [--option value]... -- command...")
     grace_s = _GRACE_S
+    niceness = 0
     limits: dict[int, int] = {}
     for name, text in zip(options[::2], options[1::2], strict=True):
         if name == "--grace-s":
             grace_s = float(text)
+        elif name == _NICENESS:
+            niceness = int(text)
         elif name in _LIMITS:
             limits[_LIMITS[name]] = int(text)
         else:
             _fail(f"unknown option {name}")
-    return grace_s, limits, command
+    return grace_s, niceness, limits, command
 
 
-def _become(command: list[str], limits: dict[int, int], guard_pid: int) -> NoReturn:
-    """In the child: own process group, limits, and the command in place of this program."""
+def _become(command: list[str], niceness: int, limits: dict[int, int], guard_pid: int) -> NoReturn:
+    """In the child: own process group, niceness, limits, and the command in place of this program."""
     try:
         os.setpgid(0, 0)
+        _give_way(niceness)
         request_death_signal(signal.SIGKILL, guard_pid)
         for kind, value in {resource.RLIMIT_CORE: 0, **limits}.items():
             _limit(kind, value)
@@ -88,6 +93,20 @@ def _become(command: list[str], limits: dict[int, int], guard_pid: int) -> NoRet
         os.execvp(command[0], command)
     except OSError as error:
         _fail(f"cannot start {command[0]}: {error.strerror}")
+
+
+def _give_way(niceness: int) -> None:
+    """Makes this process nicer, and its session: where Linux shares processors among sessions first
+    (`sched_autogroup_enabled`), the niceness of a process counts within its own only.
+    """
+    if niceness == 0:
+        return
+    os.nice(niceness)
+    try:
+        with open("/proc/self/autogroup", "w") as session:  # noqa: PTH123
+            session.write(str(niceness))
+    except OSError:
+        pass  # There are none here, or it is another's session.
 
 
 def _limit(kind: int, value: int) -> None:

@@ -42,6 +42,14 @@ async def test_a_command_that_does_not_exist_is_named() -> None:
     assert b"cannot start no-such-compiler: No such file" in await child.stderr.read()
 
 
+async def test_a_nicer_command_is_nicer_than_the_processes_of_every_session() -> None:
+    child = await start("nice; cat /proc/self/autogroup || echo none", Limits(niceness=7))
+    nice, session = (await child.stdout.read()).decode().splitlines()
+    assert int(nice) == min(os.nice(0) + 7, 19)
+    assert session == "none" or session.endswith("nice 7")
+    await child.wait()
+
+
 async def test_what_a_command_leaves_running_is_ended_with_it() -> None:
     child = await start(SLEEPERS.format(tail="read line"))
     await child.stdout.readline()

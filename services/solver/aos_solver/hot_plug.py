@@ -30,6 +30,11 @@ __all__ = ["ModelShelf", "RunningModel", "build_project"]
 
 log = logging.getLogger(__name__)
 
+_LAST = 19
+"""The niceness of what nobody waits for: of all that wants a processor it is served last."""
+
+_UNHURRIED_DEADLINE_S = 1800.0
+
 
 class RunningModel(msgspec.Struct, frozen=True):
     """A compiled model with its engine child."""
@@ -111,9 +116,15 @@ class ModelShelf:
         self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
 
     async def _build_thoroughly(self, emitted: EmittedModel) -> None:
-        """Into the cache; the running mission needs none, so a fault is told and no more."""
+        """Into the cache; the running mission needs none, so all else goes first and a fault is only told."""
         try:
-            await build(emitted, cache_dir=self._cache_dir, kind="thorough")
+            await build(
+                emitted,
+                cache_dir=self._cache_dir,
+                kind="thorough",
+                niceness=_LAST,
+                deadline_s=_UNHURRIED_DEADLINE_S,
+            )
         except AosError as error:
             log.warning("%s was not built thoroughly: %s", emitted.project, error)
 

@@ -77,10 +77,12 @@ async def build(
     on_progress: Callable[[str], None] = lambda text: None,
     deadline_s: float | None = None,
     kind: BuildKind = "quick",
+    niceness: int = 0,
 ) -> BuiltModel:
     """The executable of a model, from the cache or compiled now.
 
-    A thorough build that is in the cache is taken for a quick one.
+    A thorough build that is in the cache is taken for a quick one. With a `niceness` of up to 19 the compiler
+    leaves the processor to other work.
     ModelError AOS201 carries the compiler's errors as diagnostics at the documents' places, or names the
     emitted file where an error is not in document code; AOS202 when the compiler ran out of time or memory;
     AOS203 without a compiler.
@@ -95,7 +97,8 @@ async def build(
     for known in ("thorough", "quick") if kind == "quick" else (kind,):
         if (entry := cache.find(names[known])) is not None:
             return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
-    work = _Build(emitted, cache, compiler, on_progress, deadline_s or compiler.deadline_s, _OPTIONS[kind])
+    deadline_s = deadline_s or compiler.deadline_s
+    work = _Build(emitted, cache, compiler, on_progress, deadline_s, _OPTIONS[kind], niceness)
     started_s = time.monotonic()
     entry = await cache.fill(names[kind], work.make)
     seconds = time.monotonic() - started_s
@@ -157,6 +160,7 @@ class _Build:
         on_progress: Callable[[str], None],
         deadline_s: float,
         options: tuple[str, ...],
+        niceness: int,
     ) -> None:
         self._emitted = emitted
         self._cache = cache
@@ -164,6 +168,7 @@ class _Build:
         self._on_progress = on_progress
         self._deadline_s = deadline_s
         self._options = options
+        self._niceness = niceness
 
     async def make(self, staging: Path) -> None:
         self._on_progress(f"compiling {self._emitted.project} with {self._compiler.version}")
@@ -224,7 +229,13 @@ class _Build:
 
     async def _run(self, command: list[str], staging: Path) -> tuple[str, int]:
         return await run_compiler(
-            self._compiler, command, staging, self._deadline_s, self._emitted.project, LIMIT_HINT
+            self._compiler,
+            command,
+            staging,
+            self._deadline_s,
+            self._emitted.project,
+            LIMIT_HINT,
+            niceness=self._niceness,
         )
 
     def _failure(self, output: str, status: int) -> ModelError:

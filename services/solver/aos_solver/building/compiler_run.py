@@ -29,6 +29,8 @@ async def run_compiler(
     deadline_s: float,
     what: str,
     hint: str = _OUR_LIMIT_HINT,
+    *,
+    niceness: int = 0,
 ) -> tuple[str, int]:
     """What the command says in `directory`, and its status.
 
@@ -36,7 +38,12 @@ async def run_compiler(
     """
     memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
     # The deadline is of the wall clock; this is for what outlives even the guard's end. Zig has threads.
-    limits = Limits(address_space_bytes=memory, cpu_s=int(deadline_s * 4) + 1, file_bytes=_FILE_BYTES)
+    limits = Limits(
+        address_space_bytes=memory,
+        cpu_s=int(deadline_s * 4) + 1,
+        file_bytes=_FILE_BYTES,
+        niceness=niceness,
+    )
     child = await Child.start(
         guarded(command, limits),
         cwd=directory,
