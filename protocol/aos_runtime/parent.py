@@ -10,7 +10,12 @@ from __future__ import annotations
 
 import ctypes
 import os
-import signal
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import signal
+else:
+    import _signal as signal  # as in guard.py, which has to start quickly
 
 __all__ = ["PARENT_VARIABLE", "adopt_orphans", "die_with_parent", "request_death_signal"]
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import msgspec
+import pytest
 from scripted_models import bundle_project, lowered
 
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.child.answers import BeliefUpdate, Plan
 from aos_solver.child.engine import Engine
+from aos_solver.hot_plug import emitted_model
 
 
 async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_is_there(
@@ -22,6 +24,12 @@ async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_i
     assert quick.executable != thorough.executable
     assert (await build(emitted, cache_dir=cache_dir)).executable == thorough.executable
     assert await decided(quick) == await decided(thorough)
+    assert await mean_reward(quick) == pytest.approx(await mean_reward(thorough), abs=0.3)
+
+
+def test_documents_that_come_back_are_not_emitted_again(bundles: Path) -> None:
+    first, again = (emitted_model(bundle_project(bundles / "armadillo-finer")) for _ in range(2))
+    assert again is first
 
 
 async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
@@ -35,3 +43,12 @@ async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
         await engine.close()
     return [msgspec.structs.replace(before, seconds=0, cpu_seconds=0), update,
             msgspec.structs.replace(after, seconds=0, cpu_seconds=0)]  # fmt: skip
+
+
+async def mean_reward(built: BuiltModel) -> float:
+    """Of random steps: a quick build takes them one by one, a thorough one many at a time."""
+    engine = await Engine.start(built, seed=7)
+    try:
+        return (await engine.rate(0.05, seed=5)).mean_reward
+    finally:
+        await engine.close()

@@ -13,6 +13,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
+from functools import lru_cache
 from pathlib import Path
 
 import msgspec
@@ -26,7 +27,7 @@ from aos_solver.child.engine import Engine
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
 
-__all__ = ["ModelShelf", "RunningModel", "build_project"]
+__all__ = ["ModelShelf", "RunningModel", "build_project", "emitted_model"]
 
 log = logging.getLogger(__name__)
 
@@ -56,6 +57,15 @@ async def build_project(
     kind: BuildKind = "quick",
 ) -> BuiltModel:
     """Lower, emit and compile; ModelError with all diagnostics if the documents have mistakes."""
+    return await build(emitted_model(project), cache_dir=cache_dir, on_progress=on_progress, kind=kind)
+
+
+@lru_cache(maxsize=8)
+def emitted_model(project: Project) -> EmittedModel:
+    """The C++ of a project; ModelError as from `build_project`.
+
+    It is remembered: documents are checked before they are used, and a change may be taken back.
+    """
     program, diagnostics = lower(project)
     if program is None or has_errors(diagnostics):
         raise ModelError(
@@ -63,7 +73,7 @@ async def build_project(
             hint="Mend the places named above",
             diagnostics=tuple(diagnostics),
         )
-    return await build(emit(program), cache_dir=cache_dir, on_progress=on_progress, kind=kind)
+    return emit(program)
 
 
 class ModelShelf:

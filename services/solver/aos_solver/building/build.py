@@ -91,7 +91,7 @@ async def build(
     cache = BuildCache(cache_dir)
     circumstances = _circumstances(compiler)
     names = {
-        known: f"model-{digest_of([emitted.cpp, *options, *circumstances])}"
+        known: f"model-{digest_of([emitted.cpp, *options, circumstances])}"
         for known, options in _OPTIONS.items()
     }
     for known in ("thorough", "quick") if kind == "quick" else (kind,):
@@ -146,7 +146,7 @@ def _part(compiler: Compiler, part: str, option: str) -> list[str]:
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
     # Clang looks there for what was precompiled.
     place = [] if compiler.family == "gcc" else [str(SOURCES)]
-    return f"engine-{state_bytes}-{digest_of([*_circumstances(compiler), *place])}"
+    return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), *place])}"
 
 
 class _Build:
@@ -259,11 +259,11 @@ class _Build:
         return kept
 
 
-def _circumstances(compiler: Compiler) -> list[str]:
-    """What decides about a result besides the model's text."""
+def _circumstances(compiler: Compiler) -> str:
+    """The digest of what decides about a result besides the model's text."""
     files = sorted(path for path in SOURCES.rglob("*") if path.suffix in (".hpp", ".cpp"))
     texts = [part for path in files for part in (str(path.relative_to(SOURCES)), path.read_text())]
-    return [compiler.version, *compiler.compilation("", "", ""), *texts]
+    return digest_of([compiler.version, *compiler.compilation("", "", ""), *texts])
 
 
 async def _together(runs: list[Coroutine[Any, Any, tuple[str, int]]]) -> list[tuple[str, int]]:
