@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -46,14 +47,15 @@ struct Node {
 class BeliefGraph {
  public:
   BeliefGraph(const FlatModel& model, const Regions& regions)
-      : model_(model), regions_(regions), informed_(InitialBounds{model, regions}.informed_values()) {
+      : model_(model), regions_(regions) {
     const InitialBounds bounds{model, regions};
+    const ActionValues informed = bounds.informed_values();
     std::vector<std::vector<double>> blind;
     for (std::size_t action = 0; action < model.actions; ++action) blind.push_back(bounds.blind_values(action));
     std::size_t largest = 0;
     for (const Region& region : regions.all) {
       largest = std::max(largest, region.states.size());
-      add_bounds(region, blind);
+      add_bounds(region, informed, blind);
     }
     posterior_.assign(largest, 0.0);
   }
@@ -126,12 +128,12 @@ class BeliefGraph {
 
   // What each action is worth at most, by what knowing more would give.
   std::vector<double> informed_values(const Node& node) const {
-    const std::vector<std::uint32_t>& states = regions_.all[node.region].states;
+    const double* const values = informed_[node.region].data();
     std::vector<double> sums(model_.actions, 0.0);
     for (std::size_t i = 0; i < node.belief.size(); ++i) {
-      const double* values = informed_.data() + model_.row(states[node.belief.states[i]], 0);
+      const double* const row = values + model_.row(node.belief.states[i], 0);
       const double probability = node.belief.probabilities[i];
-      for (std::size_t action = 0; action < sums.size(); ++action) sums[action] += probability * values[action];
+      for (std::size_t action = 0; action < sums.size(); ++action) sums[action] += probability * row[action];
     }
     return sums;
   }
@@ -197,27 +199,40 @@ class BeliefGraph {
   static Key key_of(std::uint32_t region, const Belief& belief) {
     Key key{mixed(0x9ae16a3b2f90404fu, region), mixed(0xc949d7c7509e6557u, region)};
     for (std::size_t i = 0; i < belief.size(); ++i) {
-      const auto rounded = static_cast<std::uint64_t>(belief.probabilities[i] * 1e9 + 0.5);
-      key.high = mixed(key.high, rounded * 0x2545f4914f6cdd1du + belief.states[i]);
-      key.low = mixed(key.low + belief.states[i], rounded);
+      // Sums, so that a processor need not finish one state before it begins the next.
+      const auto rounded = static_cast<std::uint64_t>(static_cast<std::int64_t>(belief.probabilities[i] * 1e9 + 0.5));
+      key.high += mixed(rounded, belief.states[i]);
+      key.low += mixed(rounded * 0x2545f4914f6cdd1du, ~std::uint64_t{belief.states[i]});
     }
     return key;
   }
 
-  void add_bounds(const Region& region, const std::vector<std::vector<double>>& blind) {
+  void add_bounds(const Region& region, const ActionValues& informed, const std::vector<std::vector<double>>& blind) {
+    ActionValues own;
     std::vector<double> corners;
     for (const std::uint32_t state : region.states) {
-      const double* first = informed_.data() + model_.row(state, 0);
+      const double* first = informed.data() + model_.row(state, 0);
+      own.insert(own.end(), first, first + model_.actions);
       corners.push_back(*std::max_element(first, first + model_.actions));
     }
+    informed_.push_back(std::move(own));
     upper_.emplace_back(std::move(corners));
-    LowerBound lower;
+    std::vector<AlphaVector> vectors;
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       AlphaVector vector{action, true, {}};
       for (const std::uint32_t state : region.states) vector.values.push_back(blind[action][state]);
-      lower.add(std::move(vector));
+      const auto is_no_better = [&](const AlphaVector& known) { return is_nowhere_above(vector.values, known.values); };
+      if (std::any_of(vectors.begin(), vectors.end(), is_no_better)) continue;
+      std::erase_if(vectors, [&](const AlphaVector& known) { return is_nowhere_above(known.values, vector.values); });
+      vectors.push_back(std::move(vector));
     }
+    LowerBound lower;
+    for (AlphaVector& vector : vectors) lower.add(std::move(vector));
     lower_.push_back(std::move(lower));
+  }
+
+  static bool is_nowhere_above(const std::vector<double>& values, const std::vector<double>& others) {
+    return std::equal(values.begin(), values.end(), others.begin(), std::less_equal<>{});
   }
 
   void add_successors(const Belief& belief, const Move& move, std::vector<Successor>& successors) {
@@ -239,7 +254,7 @@ class BeliefGraph {
         total += weight;
       }
       Belief next;
-      std::sort(reached_.begin(), reached_.end());
+      if (!std::is_sorted(reached_.begin(), reached_.end())) std::sort(reached_.begin(), reached_.end());
       for (const std::uint32_t local : reached_) {
         if (posterior_[local] > negligible * total) {
           next.states.push_back(local);
@@ -254,7 +269,7 @@ class BeliefGraph {
 
   const FlatModel& model_;
   const Regions& regions_;
-  ActionValues informed_;
+  std::vector<ActionValues> informed_;  // of a region, by its states
   std::vector<LowerBound> lower_;
   std::vector<UpperBound> upper_;
   std::deque<Node> nodes_;

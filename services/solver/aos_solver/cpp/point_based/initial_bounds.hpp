@@ -39,13 +39,7 @@ class InitialBounds {
     for (const std::uint32_t state : states_) lowest = std::min(lowest, model_.rewards[model_.row(state, action)]);
     for (const std::uint32_t state : states_) values[state] = std::min(lowest, 0.0) / (1 - model_.discount);
     repeat(settled_blind, entries_ / model_.actions, least_sweeps_, [&] {
-      double change = 0;
-      for (const std::uint32_t state : states_) {
-        const double better = value_of(state, action, values);
-        change = std::max(change, better - values[state]);
-        values[state] = std::max(values[state], better);
-      }
-      return change;
+      return sweep(values, [&](std::uint32_t state) { return std::max(values[state], lasting_value(state, action, values)); });
     });
     return values;
   }
@@ -53,20 +47,7 @@ class InitialBounds {
   // Values of somebody who sees the state after the next step (fast informed bound: Hauskrecht, 2000), begun with
   // those of somebody who sees it always; from above.
   ActionValues informed_values() const {
-    std::vector<double> values(model_.states, 0.0);
-    for (const std::uint32_t state : states_) values[state] = highest_ / (1 - model_.discount);
-    repeat(settled_informed, entries_, least_sweeps_, [&] {
-      double change = 0;
-      for (const std::uint32_t state : states_) {
-        double best = -std::numeric_limits<double>::infinity();
-        for (std::size_t action = 0; action < model_.actions; ++action) {
-          best = std::max(best, value_of(state, action, values));
-        }
-        change = std::max(change, values[state] - best);
-        values[state] = std::min(values[state], best);
-      }
-      return change;
-    });
+    const std::vector<double> values = seen_values();
     ActionValues informed(model_.states * model_.actions, 0.0);
     for (const std::uint32_t state : states_) {
       for (std::size_t action = 0; action < model_.actions; ++action) {
@@ -91,6 +72,63 @@ class InitialBounds {
     }
   }
 
+  // Of somebody who always sees the state; from above. Sweeps from nothing settle sooner than from the most there can be;
+  // where one more decision lifts no value by more than c, none is further than c / (1 - discount) too low.
+  std::vector<double> seen_values() const {
+    std::vector<double> values(model_.states, 0.0);
+    const auto best = [&](std::uint32_t state, auto&& value) {
+      double best_value = -std::numeric_limits<double>::infinity();
+      for (std::size_t action = 0; action < model_.actions; ++action) best_value = std::max(best_value, value(state, action));
+      return best_value;
+    };
+    repeat(settled_informed, entries_, least_sweeps_, [&] {
+      return sweep(values, [&](std::uint32_t state) {
+        return best(state, [&](std::uint32_t of, std::size_t action) { return lasting_value(of, action, values); });
+      });
+    });
+    double lift = 0;
+    for (const std::uint32_t state : states_) {
+      const auto once_more = [&](std::uint32_t of, std::size_t action) { return value_of(of, action, values); };
+      lift = std::max(lift, best(state, once_more) - values[state]);
+    }
+    const double most = highest_ / (1 - model_.discount);
+    for (const std::uint32_t state : states_) {
+      values[state] = std::min(values[state] + lift / (1 - model_.discount), most);
+    }
+    return values;
+  }
+
+  // There and back, since values run along numbers that rise or that fall. Returns the largest change.
+  template <class NewValue>
+  double sweep(std::vector<double>& values, NewValue&& new_value) const {
+    double change = 0;
+    const auto renew = [&](std::uint32_t state) {
+      const double renewed = new_value(state);
+      change = std::max(change, std::abs(renewed - values[state]));
+      values[state] = renewed;
+    };
+    for (auto state = states_.rbegin(); state != states_.rend(); ++state) renew(*state);
+    if (change <= settled_informed * scale_) return change;
+    change = 0;
+    for (const std::uint32_t state : states_) renew(state);
+    return change;
+  }
+
+  // The value of an action that is repeated for as long as it leads nowhere else.
+  double lasting_value(std::uint32_t state, std::size_t action, const std::vector<double>& values) const {
+    const std::size_t row = model_.row(state, action);
+    double later = 0;
+    double stays = 0;
+    for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+      if (outcome->next == state) {
+        stays += outcome->probability;
+      } else {
+        later += outcome->probability * values[outcome->next];
+      }
+    }
+    return (model_.rewards[row] + model_.discount * later) / (1 - model_.discount * stays);
+  }
+
   double value_of(std::uint32_t state, std::size_t action, const std::vector<double>& values) const {
     const std::size_t row = model_.row(state, action);
     double later = 0;
@@ -101,44 +139,61 @@ class InitialBounds {
   }
 
   void tighten(ActionValues& values) const {
-    const std::size_t actions = model_.actions;
-    std::vector<std::size_t> slot_of(model_.observations, 0);
-    std::vector<std::uint32_t> seen;
-    std::vector<double> gathered;  // [slot * actions + next action]
-    repeat(settled_informed, entries_ * actions, 1, [&] {
+    Gathered gathered;
+    gathered.slot_of.assign(model_.observations, 0);
+    repeat(settled_informed, entries_ * model_.actions, 1, [&] {
       double change = 0;
       for (const std::uint32_t state : states_) {
-        for (std::size_t action = 0; action < actions; ++action) {
+        for (std::size_t action = 0; action < model_.actions; ++action) {
           const std::size_t row = model_.row(state, action);
-          seen.clear();
-          gathered.clear();
-          for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-            const double* next = values.data() + model_.row(outcome->next, 0);
-            const auto* last = model_.readings.end(outcome->sensing);
-            for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
-              std::size_t& slot = slot_of[reading->observation];
-              if (slot >= seen.size() || seen[slot] != reading->observation) {
-                slot = seen.size();
-                seen.push_back(reading->observation);
-                gathered.resize(seen.size() * actions, 0.0);
-              }
-              double* sum = gathered.data() + slot * actions;
-              const double weight = outcome->probability * reading->probability;
-              for (std::size_t i = 0; i < actions; ++i) sum[i] += weight * next[i];
-            }
-          }
-          double later = 0;
-          for (std::size_t slot = 0; slot < seen.size(); ++slot) {
-            const auto first = gathered.begin() + static_cast<std::ptrdiff_t>(slot * actions);
-            later += *std::max_element(first, first + static_cast<std::ptrdiff_t>(actions));
-          }
-          const double tighter = model_.rewards[row] + model_.discount * later;
+          const double tighter = model_.rewards[row] + model_.discount * informed_later(row, values, gathered);
           change = std::max(change, values[row] - tighter);
           values[row] = std::min(values[row], tighter);
         }
       }
       return change;
     });
+  }
+
+  // What the next actions are worth after each observation, with room that is used again.
+  struct Gathered {
+    std::vector<std::size_t> slot_of;
+    std::vector<std::uint32_t> seen;
+    std::vector<double> sums;  // [slot * actions + next action]
+  };
+
+  double informed_later(std::size_t row, const ActionValues& values, Gathered& gathered) const {
+    const std::size_t actions = model_.actions;
+    const auto* const first_outcome = model_.outcomes.begin(row);
+    const auto* const last_outcome = model_.outcomes.end(row);
+    if (last_outcome - first_outcome == 1) {  // no observation tells more
+      const double* next = values.data() + model_.row(first_outcome->next, 0);
+      return first_outcome->probability * *std::max_element(next, next + actions);
+    }
+    auto& [slot_of, seen, sums] = gathered;
+    seen.clear();
+    sums.clear();
+    for (const auto* outcome = first_outcome; outcome != last_outcome; ++outcome) {
+      const double* next = values.data() + model_.row(outcome->next, 0);
+      const auto* last = model_.readings.end(outcome->sensing);
+      for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
+        std::size_t& slot = slot_of[reading->observation];
+        if (slot >= seen.size() || seen[slot] != reading->observation) {
+          slot = seen.size();
+          seen.push_back(reading->observation);
+          sums.resize(seen.size() * actions, 0.0);
+        }
+        double* sum = sums.data() + slot * actions;
+        const double weight = outcome->probability * reading->probability;
+        for (std::size_t i = 0; i < actions; ++i) sum[i] += weight * next[i];
+      }
+    }
+    double later = 0;
+    for (std::size_t slot = 0; slot < seen.size(); ++slot) {
+      const auto first = sums.begin() + static_cast<std::ptrdiff_t>(slot * actions);
+      later += *std::max_element(first, first + static_cast<std::ptrdiff_t>(actions));
+    }
+    return later;
   }
 
   const FlatModel& model_;

@@ -11,11 +11,11 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "point_based/flat_model.hpp"
+#include "point_based/number_table.hpp"
 
 namespace aos::point_based {
 
@@ -53,7 +53,7 @@ struct Region {
 class Regions {
  public:
   explicit Regions(const FlatModel& model)
-      : region_of(model.states, nowhere), local_of(model.states, nowhere), model_(model), parent_(model.states) {
+      : region_of(model.states, nowhere), local_of(model.states, nowhere), model_(model), parent_(model.states), is_united_(model.states) {
     std::iota(parent_.begin(), parent_.end(), 0u);
     is_worthless_ = worthless_states();
     find_reached();
@@ -94,22 +94,20 @@ class Regions {
     return worthless;
   }
 
+  // In the order of the decisions that it takes to get there.
   void find_reached() {
     is_reached_.assign(model_.states, false);
-    std::vector<std::uint32_t> waiting;
     const auto reach = [&](std::uint32_t state) {
       if (is_reached_[state] || is_worthless_[state]) return;
       is_reached_[state] = true;
-      waiting.push_back(state);
+      reached_.push_back(state);
     };
     for (const Start& start : model_.starts) {
       for (const auto& [state, probability] : start.belief) reach(state);
     }
-    while (!waiting.empty()) {
-      const std::size_t state = waiting.back();
-      waiting.pop_back();
-      const auto* first = model_.outcomes.begin(model_.row(state, 0));
-      const auto* last = model_.outcomes.end(model_.row(state, model_.actions - 1));
+    for (std::size_t i = 0; i < reached_.size(); ++i) {
+      const auto* first = model_.outcomes.begin(model_.row(reached_[i], 0));
+      const auto* last = model_.outcomes.end(model_.row(reached_[i], model_.actions - 1));
       for (const auto* outcome = first; outcome != last; ++outcome) reach(outcome->next);
     }
   }
@@ -124,6 +122,7 @@ class Regions {
     right = root_of(right);
     if (left == right) return false;
     parent_[std::max(left, right)] = std::min(left, right);
+    is_united_[left] = is_united_[right] = true;
     return true;
   }
 
@@ -136,23 +135,26 @@ class Regions {
     }
   }
 
-  // Once over all outcomes; returns whether anything was united.
+  // Once over all outcomes; returns whether anything was united. States that are alone have a table of their own, since
+  // where the robot sees everything there would be as many entries as outcomes.
   bool unite_successors() {
     bool has_united = false;
-    // What (region, observation) leads to, for one action.
-    std::unordered_map<std::uint64_t, std::uint32_t> successor;
-    for (std::size_t action = 0; action < model_.actions; ++action) {
-      successor.clear();
-      for (std::uint32_t state = 0; state < model_.states; ++state) {
-        if (!is_reached_[state]) continue;
+    NumberTable of_regions;  // where an observation after an action leads
+    NumberTable of_one;
+    for (const std::uint32_t state : reached_) {
+      for (std::size_t action = 0; action < model_.actions; ++action) {
         const std::size_t row = model_.row(state, action);
+        const bool is_alone = !is_united_[state];
+        if (is_alone && model_.outcomes.end(row) - model_.outcomes.begin(row) < 2) continue;
+        if (is_alone) of_one.clear();
+        NumberTable& successor = is_alone ? of_one : of_regions;
+        const std::uint64_t first_key = std::uint64_t{root_of(state)} << 32 | (action * model_.observations);
         for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
           if (is_worthless_[outcome->next]) continue;
           const auto* last = model_.readings.end(outcome->sensing);
           for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
-            const std::uint64_t key = std::uint64_t{root_of(state)} << 32 | reading->observation;
-            const auto [entry, is_new] = successor.try_emplace(key, outcome->next);
-            if (!is_new && unite(entry->second, outcome->next)) has_united = true;
+            const auto [next, is_new] = successor.try_emplace(first_key + reading->observation, outcome->next);
+            if (!is_new && unite(next, outcome->next)) has_united = true;
           }
         }
       }
@@ -175,11 +177,11 @@ class Regions {
     }
   }
 
-  void add_moves(Region& region) const {
+  void add_moves(Region& region) {
     for (std::size_t action = 0; action < model_.actions; ++action) {
       Move move;
-      std::unordered_map<std::uint64_t, std::uint32_t> targets;
-      std::unordered_map<std::uint32_t, std::size_t> sights;
+      targets_.clear();
+      sights_.clear();
       move.flows.first.push_back(0);
       for (const std::uint32_t state : region.states) {
         const std::size_t row = model_.row(state, action);
@@ -187,31 +189,34 @@ class Regions {
         for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
           if (is_worthless_[outcome->next]) continue;
           const std::uint64_t key = std::uint64_t{outcome->next} << 32 | outcome->sensing;
-          const auto [target, is_new] = targets.try_emplace(key, static_cast<std::uint32_t>(targets.size()));
-          move.flows.elements.push_back({target->second, outcome->probability});
-          if (is_new) add_target(move, sights, *outcome, target->second);
+          const auto [target, is_new] = targets_.try_emplace(key, targets_.size());
+          move.flows.elements.push_back({target, outcome->probability});
+          if (is_new) add_target(move, *outcome, target);
         }
         move.flows.first.push_back(move.flows.elements.size());
       }
-      move.targets = targets.size();
+      move.targets = targets_.size();
       region.moves.push_back(std::move(move));
     }
   }
 
-  void add_target(Move& move, std::unordered_map<std::uint32_t, std::size_t>& sights, const Outcome& outcome,
-                  std::uint32_t target) const {
+  void add_target(Move& move, const Outcome& outcome, std::uint32_t target) {
     const auto* last = model_.readings.end(outcome.sensing);
     for (const auto* reading = model_.readings.begin(outcome.sensing); reading != last; ++reading) {
-      const auto [sight, is_new] = sights.try_emplace(reading->observation, move.sights.size());
+      const auto [sight, is_new] = sights_.try_emplace(reading->observation, sights_.size());
       if (is_new) move.sights.push_back({reading->observation, region_of[outcome.next], {}});
-      move.sights[sight->second].landings.push_back({target, local_of[outcome.next], reading->probability});
+      move.sights[sight].landings.push_back({target, local_of[outcome.next], reading->probability});
     }
   }
 
   const FlatModel& model_;
   std::vector<std::uint32_t> parent_;  // of a state in the forest of what is united
+  std::vector<bool> is_united_;        // with any other
   std::vector<bool> is_worthless_;
   std::vector<bool> is_reached_;
+  std::vector<std::uint32_t> reached_;
+  NumberTable targets_;  // of an action in a region, with
+  NumberTable sights_;
 };
 
 }  // namespace aos::point_based
