@@ -24,10 +24,12 @@ struct Successor {
   std::uint32_t node;
 };
 
+// An action at a belief. Where it leads is found out only when its upper bound is the highest: most never are.
 struct Branch {
   std::uint32_t action;
   double reward;
   double upper;
+  bool is_open = false;
   std::vector<Successor> successors;
 };
 
@@ -85,23 +87,29 @@ class BeliefGraph {
   UpperBound& upper(std::uint32_t region) { return upper_[region]; }
   void count_bytes(std::size_t bytes) { bytes_ += bytes; }
 
-  // Finds what the actions lead to, those left out that cannot be the best.
+  // Lists the actions, those left out that cannot be the best.
   void expand(Node& node) {
     if (node.is_expanded) return;
     node.is_expanded = true;
     const std::vector<double> informed = informed_values(node);
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       if (informed[action] < node.lower) continue;
-      node.branches.push_back(branch(node, action, informed[action]));
-      bytes_ += sizeof(Branch) + node.branches.back().successors.size() * sizeof(Successor);
+      node.branches.push_back({action, expected(move(node, action).rewards, node.belief), informed[action], false, {}});
+      bytes_ += sizeof(Branch);
     }
   }
 
-  // What an action leads to; `upper` bounds what it is worth.
+  // Finds where an action leads.
+  void open(const Node& node, Branch& branch) {
+    branch.is_open = true;
+    add_successors(node.belief, move(node, branch.action), branch.successors);
+    bytes_ += branch.successors.size() * sizeof(Successor);
+  }
+
+  // What an action leads to, whether or not it may be the best; `upper` bounds what it is worth.
   Branch branch(const Node& node, std::uint32_t action, double upper) {
-    const Move& move = regions_.all[node.region].moves[action];
-    Branch branch{action, expected(move.rewards, node.belief), upper, {}};
-    add_successors(node.belief, move, branch.successors);
+    Branch branch{action, expected(move(node, action).rewards, node.belief), upper, true, {}};
+    add_successors(node.belief, move(node, action), branch.successors);
     return branch;
   }
 
@@ -188,6 +196,8 @@ class BeliefGraph {
     std::size_t operator()(const Key& key) const { return key.high ^ key.low; }
   };
 
+  const Move& move(const Node& node, std::uint32_t action) const { return regions_.all[node.region].moves[action]; }
+
   static std::uint64_t mixed(std::uint64_t left, std::uint64_t right) {
     std::uint64_t x = (left ^ right) * 0x9e3779b97f4a7c15u;
     x ^= x >> 32;
@@ -243,28 +253,55 @@ class BeliefGraph {
         predicted_[flow->target] += belief.probabilities[i] * flow->probability;
       }
     }
-    for (std::uint32_t sight = 0; sight < move.sights.size(); ++sight) {
-      double total = 0;
-      reached_.clear();
-      for (const Sight::Landing& landing : move.sights[sight].landings) {
-        const double weight = predicted_[landing.target] * landing.probability;
-        if (weight <= 0) continue;
-        if (posterior_[landing.local] == 0) reached_.push_back(landing.local);
-        posterior_[landing.local] += weight;
-        total += weight;
-      }
+    for (std::uint32_t number = 0; number < move.sights.size(); ++number) {
+      const Sight& sight = move.sights[number];
       Belief next;
-      if (!std::is_sorted(reached_.begin(), reached_.end())) std::sort(reached_.begin(), reached_.end());
-      for (const std::uint32_t local : reached_) {
-        if (posterior_[local] > negligible * total) {
-          next.states.push_back(local);
-          next.probabilities.push_back(posterior_[local] / total);
-        }
-        posterior_[local] = 0;
-      }
+      next.states.reserve(sight.landings.size());
+      next.probabilities.reserve(sight.landings.size());
+      const double total = sight.is_ascending ? add_landings(sight, next) : gather_landings(sight, next);
       if (total <= negligible) continue;
-      successors.push_back({total, sight, node_of(move.sights[sight].region, std::move(next))});
+      normalise(next, total);
+      successors.push_back({total, number, node_of(sight.region, std::move(next))});
     }
+  }
+
+  // Each landing in a state of its own. Returns the sum of the probabilities.
+  double add_landings(const Sight& sight, Belief& next) const {
+    double total = 0;
+    for (const Sight::Landing& landing : sight.landings) {
+      const double weight = predicted_[landing.target] * landing.probability;
+      if (weight <= 0) continue;
+      next.states.push_back(landing.local);
+      next.probabilities.push_back(weight);
+      total += weight;
+    }
+    return total;
+  }
+
+  double gather_landings(const Sight& sight, Belief& next) {
+    double total = 0;
+    for (const Sight::Landing& landing : sight.landings) {
+      const double weight = predicted_[landing.target] * landing.probability;
+      if (weight <= 0) continue;
+      if (posterior_[landing.local] == 0) next.states.push_back(landing.local);
+      posterior_[landing.local] += weight;
+      total += weight;
+    }
+    if (!std::is_sorted(next.states.begin(), next.states.end())) std::sort(next.states.begin(), next.states.end());
+    for (const std::uint32_t local : next.states) next.probabilities.push_back(std::exchange(posterior_[local], 0.0));
+    return total;
+  }
+
+  // States that are next to impossible are left out.
+  static void normalise(Belief& belief, double total) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      if (belief.probabilities[i] <= negligible * total) continue;
+      belief.states[kept] = belief.states[i];
+      belief.probabilities[kept++] = belief.probabilities[i] / total;
+    }
+    belief.states.resize(kept);
+    belief.probabilities.resize(kept);
   }
 
   const FlatModel& model_;
@@ -278,7 +315,6 @@ class BeliefGraph {
   std::size_t bytes_ = 0;
   std::vector<double> predicted_;
   std::vector<double> posterior_;
-  std::vector<std::uint32_t> reached_;
 };
 
 }  // namespace aos::point_based

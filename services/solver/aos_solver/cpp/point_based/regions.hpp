@@ -30,6 +30,7 @@ struct Sight {
   };
   std::uint32_t observation;
   std::uint32_t region;
+  bool is_ascending = true;  // each landing is in a state with a higher number than the one before
   std::vector<Landing> landings;
 };
 
@@ -204,8 +205,11 @@ class Regions {
     const auto* last = model_.readings.end(outcome.sensing);
     for (const auto* reading = model_.readings.begin(outcome.sensing); reading != last; ++reading) {
       const auto [sight, is_new] = sights_.try_emplace(reading->observation, sights_.size());
-      if (is_new) move.sights.push_back({reading->observation, region_of[outcome.next], {}});
-      move.sights[sight].landings.push_back({target, local_of[outcome.next], reading->probability});
+      if (is_new) move.sights.push_back({reading->observation, region_of[outcome.next], true, {}});
+      auto& [observation, region, is_ascending, landings] = move.sights[sight];
+      const std::uint32_t local = local_of[outcome.next];
+      if (!landings.empty() && landings.back().local >= local) is_ascending = false;
+      landings.push_back({target, local, reading->probability});
     }
   }
 

@@ -191,13 +191,13 @@ class Sarsop {
       graph_.expand(node);
       if (is_over()) return;
       if (node.branches.empty()) return;
-      Branch* best = nullptr;
       double best_lower = -std::numeric_limits<double>::infinity();
       for (Branch& branch : node.branches) {
+        if (!branch.is_open) continue;
         best_lower = std::max(best_lower, refreshed_lower(branch));
         branch.upper = std::min(branch.upper, refreshed_upper(branch));
-        if (best == nullptr || branch.upper > best->upper) best = &branch;
       }
+      const Branch* const best = open_highest(node, best_lower);
       if (path_.size() == 1) ++trials_[best->action];
       low = std::max(low, best_lower);
       high = std::max(high, best_lower + allowed);
@@ -214,6 +214,18 @@ class Sarsop {
       low = (low - other_lower) / (model_.discount * next->probability);
       high = (high - other_upper) / (model_.discount * next->probability);
       number = next->node;
+    }
+  }
+
+  // The branch with the highest upper bound, once it is known where it leads.
+  const Branch* open_highest(Node& node, double& best_lower) {
+    while (true) {
+      const auto highest = std::max_element(node.branches.begin(), node.branches.end(),
+                                            [](const Branch& one, const Branch& other) { return one.upper < other.upper; });
+      if (highest->is_open) return &*highest;
+      graph_.open(node, *highest);
+      best_lower = std::max(best_lower, refreshed_lower(*highest));
+      highest->upper = std::min(highest->upper, refreshed_upper(*highest));
     }
   }
 
@@ -257,6 +269,10 @@ class Sarsop {
     double best_lower = -std::numeric_limits<double>::infinity();
     double best_upper = best_lower;
     for (Branch& branch : node.branches) {
+      if (!branch.is_open) {
+        best_upper = std::max(best_upper, branch.upper);
+        continue;
+      }
       const double lower = refreshed_lower(branch);
       branch.upper = std::min(branch.upper, refreshed_upper(branch));
       best_upper = std::max(best_upper, branch.upper);
@@ -265,7 +281,7 @@ class Sarsop {
       best_lower = lower;
     }
     const double worth_it = 1e-9 * (1 + std::abs(node.lower));
-    if (best_lower > node.lower + worth_it) add_vector(node, *best);
+    if (best != nullptr && best_lower > node.lower + worth_it) add_vector(node, *best);
     if (best_upper < node.upper - worth_it) {
       node.upper = best_upper;
       UpperBound& bound = graph_.upper(node.region);
