@@ -39,7 +39,10 @@ class InitialBounds {
     for (const std::uint32_t state : states_) lowest = std::min(lowest, model_.rewards[model_.row(state, action)]);
     for (const std::uint32_t state : states_) values[state] = std::min(lowest, 0.0) / (1 - model_.discount);
     repeat(settled_blind, entries_ / model_.actions, least_sweeps_, [&] {
-      return sweep(values, [&](std::uint32_t state) { return std::max(values[state], lasting_value(state, action, values)); });
+      return sweep(values, [&](std::size_t number) {
+        const std::uint32_t state = states_[number];
+        return std::max(values[state], lasting_value(state, model_.row(state, action), values));
+      });
     });
     return values;
   }
@@ -51,7 +54,8 @@ class InitialBounds {
     ActionValues informed(model_.states * model_.actions, 0.0);
     for (const std::uint32_t state : states_) {
       for (std::size_t action = 0; action < model_.actions; ++action) {
-        informed[model_.row(state, action)] = value_of(state, action, values);
+        const std::size_t row = model_.row(state, action);
+        informed[row] = value_of(row, values);
       }
     }
     tighten(informed);
@@ -75,21 +79,23 @@ class InitialBounds {
   // Of somebody who always sees the state; from above. Sweeps from nothing settle sooner than from the most there can be;
   // where one more decision lifts no value by more than c, none is further than c / (1 - discount) too low.
   std::vector<double> seen_values() const {
+    const Rows<std::uint32_t> choices = different_rows();
     std::vector<double> values(model_.states, 0.0);
-    const auto best = [&](std::uint32_t state, auto&& value) {
+    const auto best = [&](std::size_t number, auto&& value) {
       double best_value = -std::numeric_limits<double>::infinity();
-      for (std::size_t action = 0; action < model_.actions; ++action) best_value = std::max(best_value, value(state, action));
+      const auto* last = choices.end(number);
+      for (const auto* row = choices.begin(number); row != last; ++row) best_value = std::max(best_value, value(*row));
       return best_value;
     };
-    repeat(settled_informed, entries_, least_sweeps_, [&] {
-      return sweep(values, [&](std::uint32_t state) {
-        return best(state, [&](std::uint32_t of, std::size_t action) { return lasting_value(of, action, values); });
+    repeat(settled_informed, choices.elements.size(), least_sweeps_, [&] {
+      return sweep(values, [&](std::size_t number) {
+        return best(number, [&](std::size_t row) { return lasting_value(states_[number], row, values); });
       });
     });
     double lift = 0;
-    for (const std::uint32_t state : states_) {
-      const auto once_more = [&](std::uint32_t of, std::size_t action) { return value_of(of, action, values); };
-      lift = std::max(lift, best(state, once_more) - values[state]);
+    for (std::size_t number = 0; number < states_.size(); ++number) {
+      const double once_more = best(number, [&](std::size_t row) { return value_of(row, values); });
+      lift = std::max(lift, once_more - values[states_[number]]);
     }
     const double most = highest_ / (1 - model_.discount);
     for (const std::uint32_t state : states_) {
@@ -98,25 +104,50 @@ class InitialBounds {
     return values;
   }
 
-  // There and back, since values run along numbers that rise or that fall. Returns the largest change.
+  // The rows of each of `states_`, less those that do the same as one before, as looking here and looking there.
+  Rows<std::uint32_t> different_rows() const {
+    Rows<std::uint32_t> choices;
+    choices.first.push_back(0);
+    const auto is_same = [](const Outcome& one, const Outcome& other) {
+      return one.next == other.next && one.probability == other.probability;
+    };
+    for (const std::uint32_t state : states_) {
+      const std::uint64_t first = choices.elements.size();
+      for (std::size_t action = 0; action < model_.actions; ++action) {
+        const std::size_t row = model_.row(state, action);
+        const auto does_the_same = [&](std::size_t known) {
+          return model_.rewards[known] == model_.rewards[row] &&
+                 std::equal(model_.outcomes.begin(known), model_.outcomes.end(known), model_.outcomes.begin(row),
+                            model_.outcomes.end(row), is_same);
+        };
+        const auto known = choices.elements.begin() + static_cast<std::ptrdiff_t>(first);
+        if (std::any_of(known, choices.elements.end(), does_the_same)) continue;
+        choices.elements.push_back(static_cast<std::uint32_t>(row));
+      }
+      choices.first.push_back(choices.elements.size());
+    }
+    return choices;
+  }
+
+  // There and back over `states_`, since values run along numbers that rise or that fall. Returns the largest change.
   template <class NewValue>
   double sweep(std::vector<double>& values, NewValue&& new_value) const {
     double change = 0;
-    const auto renew = [&](std::uint32_t state) {
-      const double renewed = new_value(state);
-      change = std::max(change, std::abs(renewed - values[state]));
-      values[state] = renewed;
+    const auto renew = [&](std::size_t number) {
+      double& value = values[states_[number]];
+      const double renewed = new_value(number);
+      change = std::max(change, std::abs(renewed - value));
+      value = renewed;
     };
-    for (auto state = states_.rbegin(); state != states_.rend(); ++state) renew(*state);
+    for (std::size_t number = states_.size(); number-- > 0;) renew(number);
     if (change <= settled_informed * scale_) return change;
     change = 0;
-    for (const std::uint32_t state : states_) renew(state);
+    for (std::size_t number = 0; number < states_.size(); ++number) renew(number);
     return change;
   }
 
   // The value of an action that is repeated for as long as it leads nowhere else.
-  double lasting_value(std::uint32_t state, std::size_t action, const std::vector<double>& values) const {
-    const std::size_t row = model_.row(state, action);
+  double lasting_value(std::uint32_t state, std::size_t row, const std::vector<double>& values) const {
     double later = 0;
     double stays = 0;
     for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
@@ -129,8 +160,7 @@ class InitialBounds {
     return (model_.rewards[row] + model_.discount * later) / (1 - model_.discount * stays);
   }
 
-  double value_of(std::uint32_t state, std::size_t action, const std::vector<double>& values) const {
-    const std::size_t row = model_.row(state, action);
+  double value_of(std::size_t row, const std::vector<double>& values) const {
     double later = 0;
     for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
       later += outcome->probability * values[outcome->next];
