@@ -29,8 +29,9 @@ struct Branch {
   std::uint32_t action;
   double reward;
   double upper;
+  double lower = -std::numeric_limits<double>::infinity();
   bool is_open = false;
-  std::vector<Successor> successors;
+  std::vector<Successor> successors{};
 };
 
 struct Node {
@@ -94,7 +95,7 @@ class BeliefGraph {
     const std::vector<double> informed = informed_values(node);
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       if (informed[action] < node.lower) continue;
-      node.branches.push_back({action, expected(move(node, action).rewards, node.belief), informed[action], false, {}});
+      node.branches.push_back({action, expected(move(node, action).rewards, node.belief), informed[action]});
       bytes_ += sizeof(Branch);
     }
   }
@@ -108,7 +109,7 @@ class BeliefGraph {
 
   // What an action leads to, whether or not it may be the best; `upper` bounds what it is worth.
   Branch branch(const Node& node, std::uint32_t action, double upper) {
-    Branch branch{action, expected(move(node, action).rewards, node.belief), upper, true, {}};
+    Branch branch{action, expected(move(node, action).rewards, node.belief), upper};
     add_successors(node.belief, move(node, action), branch.successors);
     return branch;
   }

@@ -1,7 +1,9 @@
 // Point-based value iteration near the beliefs that a good policy reaches (SARSOP: Kurniawati, Hsu and Lee, 2008).
 //
 // A trial follows the action with the highest upper bound and the observation that matters most for the gap at the
-// root, until nothing more can be learnt for the root; then both bounds are backed up along the way. Actions whose
+// root, until nothing more can be learnt for the root; then both bounds are backed up along the way. Every other trial
+// follows the highest middle of both bounds instead: while upper bounds are far too high the best of them say little
+// about what is worth improving, and the lower bound is what is carried out. Actions whose
 // upper bound is below the belief's lower bound are dropped, and alpha vectors that are best at no remaining belief.
 #pragma once
 
@@ -42,6 +44,7 @@ class Sarsop {
     roots_.clear();
     graph_.start_over();
     vectors_added_ = 0;
+    sampled_ = 0;
   }
 
   // Goes on from another belief; all that is known of other beliefs is kept, of alpha vectors only if there is no room.
@@ -177,6 +180,7 @@ class Sarsop {
 
   template <class IsOver>
   void sample(std::uint32_t number, double precision, IsOver&& is_over) {
+    const bool follows_upper = sampled_++ % 2 == 1;
     path_.clear();
     const double gap = graph_[number].upper - graph_[number].lower;
     double allowed = std::max(precision, share_of_gap_ * gap);
@@ -191,13 +195,9 @@ class Sarsop {
       graph_.expand(node);
       if (is_over()) return;
       if (node.branches.empty()) return;
+      const Branch* const best = followed_branch(node, follows_upper);
       double best_lower = -std::numeric_limits<double>::infinity();
-      for (Branch& branch : node.branches) {
-        if (!branch.is_open) continue;
-        best_lower = std::max(best_lower, refreshed_lower(branch));
-        branch.upper = std::min(branch.upper, refreshed_upper(branch));
-      }
-      const Branch* const best = open_highest(node, best_lower);
+      for (const Branch& branch : node.branches) best_lower = std::max(best_lower, branch.lower);
       if (path_.size() == 1) ++trials_[best->action];
       low = std::max(low, best_lower);
       high = std::max(high, best_lower + allowed);
@@ -217,16 +217,29 @@ class Sarsop {
     }
   }
 
-  // The branch with the highest upper bound, once it is known where it leads.
-  const Branch* open_highest(Node& node, double& best_lower) {
-    while (true) {
-      const auto highest = std::max_element(node.branches.begin(), node.branches.end(),
-                                            [](const Branch& one, const Branch& other) { return one.upper < other.upper; });
-      if (highest->is_open) return &*highest;
-      graph_.open(node, *highest);
-      best_lower = std::max(best_lower, refreshed_lower(*highest));
-      highest->upper = std::min(highest->upper, refreshed_upper(*highest));
+  // With the highest upper bound, or the highest middle of both bounds, among those of which it is known where they lead;
+  // the one with the highest upper bound always is. Refreshes the bounds of these.
+  const Branch* followed_branch(Node& node, bool follows_upper) {
+    for (Branch& branch : node.branches) {
+      if (branch.is_open) refresh(branch);
     }
+    while (true) {
+      Branch* highest = &node.branches.front();
+      Branch* likeliest = nullptr;
+      for (Branch& branch : node.branches) {
+        if (branch.upper > highest->upper) highest = &branch;
+        if (!branch.is_open) continue;
+        if (likeliest == nullptr || branch.lower + branch.upper > likeliest->lower + likeliest->upper) likeliest = &branch;
+      }
+      if (highest->is_open) return follows_upper ? highest : likeliest;
+      graph_.open(node, *highest);
+      refresh(*highest);
+    }
+  }
+
+  void refresh(Branch& branch) {
+    branch.lower = refreshed_lower(branch);
+    branch.upper = std::min(branch.upper, refreshed_upper(branch));
   }
 
   // The successor with the most gap beyond what is allowed there.
@@ -273,12 +286,11 @@ class Sarsop {
         best_upper = std::max(best_upper, branch.upper);
         continue;
       }
-      const double lower = refreshed_lower(branch);
-      branch.upper = std::min(branch.upper, refreshed_upper(branch));
+      refresh(branch);
       best_upper = std::max(best_upper, branch.upper);
-      if (best != nullptr && lower <= best_lower) continue;
+      if (best != nullptr && branch.lower <= best_lower) continue;
       best = &branch;
-      best_lower = lower;
+      best_lower = branch.lower;
     }
     const double worth_it = 1e-9 * (1 + std::abs(node.lower));
     if (best != nullptr && best_lower > node.lower + worth_it) add_vector(node, *best);
@@ -337,6 +349,7 @@ class Sarsop {
   std::vector<std::uint32_t> path_;
   std::vector<const AlphaVector*> chosen_;
   std::vector<double> later_;
+  std::uint64_t sampled_ = 0;  // trials
   std::uint64_t backups_ = 0;
   std::size_t vectors_added_ = 0;
 };
