@@ -41,6 +41,7 @@ struct Node {
   std::uint32_t seen_vectors = 0;    // how many the lower bound is of
   std::uint32_t seen_changes = 0;    // of the upper bound
   std::uint32_t point = nowhere;     // in the upper bound
+  double corner = 0;                 // what the upper bound is interpolated to be from single states
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   bool is_expanded = false;
@@ -74,7 +75,8 @@ class BeliefGraph {
     node.belief = std::move(belief);
     UpperBound& bound = upper_[region];
     const std::vector<double> informed = informed_values(node);
-    node.upper = std::min(bound.of(node.belief), *std::max_element(informed.begin(), informed.end()));
+    node.corner = bound.corner_of(node.belief);
+    node.upper = std::min(bound.of(node.belief, node.corner), *std::max_element(informed.begin(), informed.end()));
     node.seen_changes = bound.changes();
     refresh_lower(node);
     return entry->second;
@@ -165,7 +167,7 @@ class BeliefGraph {
 
   void refresh_upper(Node& node) {
     UpperBound& bound = upper_[node.region];
-    node.upper = bound.of(node.belief, node.upper, node.seen_changes);
+    node.upper = bound.of(node.belief, node.corner, node.upper, node.seen_changes);
     node.seen_changes = bound.changes();
   }
 

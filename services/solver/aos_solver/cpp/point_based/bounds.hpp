@@ -84,31 +84,32 @@ class UpperBound {
  public:
   explicit UpperBound(std::vector<double> corners) : corners_(std::move(corners)), dense_(corners_.size(), 0.0) {}
 
+  // Interpolated from single states; `corner` below.
+  double corner_of(const Belief& belief) const { return expected(corners_, belief); }
+
   // Takes the belief by its address: it must stay where it is. Returns the point's number.
-  std::uint32_t add(const Belief& belief, double value) {
-    points_.push_back({&belief, value - expected(corners_, belief)});
+  std::uint32_t add(const Belief& belief, double corner, double value) {
+    points_.push_back({&belief, value - corner});
     const auto number = static_cast<std::uint32_t>(points_.size() - 1);
     changes_.push_back(number);
     return number;
   }
-  void improve(std::uint32_t number, double value) {
-    Point& point = points_[number];
-    point.drop = std::min(point.drop, value - expected(corners_, *point.belief));
+  void improve(std::uint32_t number, double corner, double value) {
+    points_[number].drop = std::min(points_[number].drop, value - corner);
     changes_.push_back(number);
   }
 
-  double of(const Belief& belief) {
+  double of(const Belief& belief, double corner) {
     double drop = 0;
     spread(belief);
     for (const Point& point : points_) lower(drop, point, belief.size());
     clear(belief);
-    return expected(corners_, belief) + drop;
+    return corner + drop;
   }
   // `value` improved by what has changed since so many changes.
-  double of(const Belief& belief, double value, std::uint32_t seen) {
+  double of(const Belief& belief, double corner, double value, std::uint32_t seen) {
     if (seen == changes_.size()) return value;
-    if (changes_.size() - seen > points_.size()) return std::min(value, of(belief));
-    const double corner = expected(corners_, belief);
+    if (changes_.size() - seen > points_.size()) return std::min(value, of(belief, corner));
     double drop = std::min(0.0, value - corner);
     spread(belief);
     for (std::size_t i = seen; i < changes_.size(); ++i) lower(drop, points_[changes_[i]], belief.size());

@@ -298,9 +298,9 @@ class Sarsop {
       node.upper = best_upper;
       UpperBound& bound = graph_.upper(node.region);
       if (node.point == nowhere) {
-        node.point = bound.add(node.belief, node.upper);
+        node.point = bound.add(node.belief, node.corner, node.upper);
       } else {
-        bound.improve(node.point, node.upper);
+        bound.improve(node.point, node.corner, node.upper);
       }
     }
     std::erase_if(node.branches, [&](const Branch& branch) { return branch.upper < node.lower - worth_it; });
