@@ -111,8 +111,7 @@ class Planner {
       why_ = "SARSOP reckons without the horizon, beyond which rewards still count";
       return sampling_kind(belief, horizon);
     }
-    const std::size_t most_states = may_choose ? most_states_by_itself : most_states_asked_for;
-    if (const std::string& obstacle = point_based_.prepare(belief, most_states); !obstacle.empty()) {
+    if (const std::string& obstacle = point_based_.prepare(belief); !obstacle.empty()) {
       why_ = "SARSOP cannot be used: " + obstacle;
       return may_choose ? sampling_kind(belief, horizon) : PlannerKind::pomcp;
     }

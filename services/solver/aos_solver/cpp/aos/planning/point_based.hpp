@@ -24,16 +24,12 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_states_by_itself = 20'000;  // some tenths of a second's preparation
-inline constexpr std::size_t most_states_asked_for = 400'000;  // up to some ten seconds'
-
 template <class Model>
 class PointBased {
  public:
-  // Lists the model if that was not done, as far as the belief needs it and up to so many states. Returns why the search
-  // cannot be used; nothing where it can. No budget counts what it takes for the first decision; later it is next to nothing.
-  const std::string& prepare(const Belief<Model>& belief, std::size_t most_states) {
-    if (most_states > most_states_ || (obstacle_.empty() && states_.size() > most_states)) allow(most_states);
+  // Lists the model if that was not done, as far as the belief needs it. Returns why the search cannot be used; nothing
+  // where it can. No budget counts what it takes for the first decision; later it is next to nothing.
+  const std::string& prepare(const Belief<Model>& belief) {
     if (!obstacle_.empty()) return obstacle_;
     if (Model::action_count() == 0) return obstacle_ = "there are no actions";
     if (Model::discount >= 1) return obstacle_ = "without a discount there are no bounds to begin with";
@@ -121,16 +117,7 @@ class PointBased {
     };
   }
 
-  void allow(std::size_t most_states) {
-    most_states_ = most_states;
-    states_ = RelevantStates<Model>::by_observations(most_states);
-    starts_.clear();
-    search_.reset();
-    obstacle_.clear();
-  }
-
-  std::size_t most_states_ = 0;
-  RelevantStates<Model> states_;
+  RelevantStates<Model> states_ = RelevantStates<Model>::by_observations();
   std::vector<point_based::Start> starts_;  // one where nothing surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;
   std::string obstacle_;

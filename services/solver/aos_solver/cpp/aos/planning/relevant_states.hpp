@@ -45,11 +45,10 @@ class RelevantStates {
   static constexpr std::size_t most_room = std::min(most_relevant_states, most_relevant_bytes / sizeof(State));
 
   RelevantStates() = default;
-  // For somebody who does not see the state, so that what is observed matters, too; up to so many states.
-  static RelevantStates by_observations(std::size_t most_states) {
+  // For somebody who does not see the state, so that what is observed matters, too.
+  static RelevantStates by_observations() {
     RelevantStates states;
     states.observations_matter_ = true;
-    states.most_states_ = std::min(most_states, most_room);
     return states;
   }
 
@@ -173,7 +172,7 @@ class RelevantStates {
     const Key key = key_of(state);
     std::uint32_t& number = numbers_[slot_of(key)];
     if (number == none) {
-      if (states_.size() == most_states_) throw NotEnumerable{"too many states"};
+      if (states_.size() == most_room) throw NotEnumerable{"too many states"};
       number = static_cast<std::uint32_t>(states_.size());
       states_.push_back(state);
       keys_.push_back(key);
@@ -291,7 +290,6 @@ class RelevantStates {
   static std::size_t actions() { return static_cast<std::size_t>(Model::action_count()); }
 
   bool observations_matter_ = false;
-  std::size_t most_states_ = most_room;
   std::vector<Variable> variables_;
   std::array<std::uint64_t, std::tuple_size_v<Key>> mask_{};  // of a whole state
   std::array<std::size_t, std::tuple_size_v<Key>> word_{};
