@@ -169,12 +169,18 @@ async def test_without_a_discount_another_planner_decides_and_says_why(cache_dir
     assert plan.why.startswith("SARSOP cannot be used: without a discount")
 
 
-async def test_more_states_are_listed_when_it_is_asked_for(cache_dir: Path) -> None:
-    async with engine_of(await built_text(FIELD, cache_dir)) as engine:
-        for planner, used in (("auto", "pomcp"), ("sarsop", "sarsop"), ("auto", "pomcp")):
-            plan = await engine.plan(simulations=500, seed=1, planner=planner)
-            assert plan.planner == used, plan.why
-            assert ("too many states to list" in plan.why) == (planner == "auto")
+@pytest.mark.parametrize(
+    ("length", "planner", "why"),
+    [(150, "sarsop", "22500 states matter"), (800, "pomcp", "too many states to list")],
+)
+async def test_auto_takes_sarsop_where_the_states_can_be_listed(
+    length: int, planner: str, why: str, cache_dir: Path
+) -> None:
+    larger = {name: text.replace("150", str(length)) for name, text in FIELD.items()}
+    async with engine_of(await built_text(larger, cache_dir)) as engine:
+        plan = await engine.plan(simulations=500, seed=1, planner="auto")
+    assert plan.planner == planner, plan.why
+    assert why in plan.why
 
 
 @pytest.mark.parametrize(
