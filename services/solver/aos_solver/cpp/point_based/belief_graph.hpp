@@ -65,14 +65,14 @@ class BeliefGraph {
   }
 
   // The node of a belief over the region's states (by local number, ascending; normalised).
-  std::uint32_t node_of(std::uint32_t region, Belief belief) {
+  std::uint32_t node_of(std::uint32_t region, const Belief& belief) {
     const Key key = key_of(region, belief);
     const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(nodes_.size()));
     if (!is_new) return entry->second;
     bytes_ += sizeof(Node) + belief.size() * (sizeof(double) + sizeof(std::uint32_t)) + 64;
     Node& node = nodes_.emplace_back();
     node.region = region;
-    node.belief = std::move(belief);
+    node.belief = belief;
     UpperBound& bound = upper_[region];
     const std::vector<double> informed = informed_values(node);
     node.corner = bound.corner_of(node.belief);
@@ -258,40 +258,39 @@ class BeliefGraph {
     }
     for (std::uint32_t number = 0; number < move.sights.size(); ++number) {
       const Sight& sight = move.sights[number];
-      Belief next;
-      next.states.reserve(sight.landings.size());
-      next.probabilities.reserve(sight.landings.size());
-      const double total = sight.is_ascending ? add_landings(sight, next) : gather_landings(sight, next);
+      next_.states.clear();
+      next_.probabilities.clear();
+      const double total = sight.is_ascending ? add_landings(sight) : gather_landings(sight);
       if (total <= negligible) continue;
-      normalise(next, total);
-      successors.push_back({total, number, node_of(sight.region, std::move(next))});
+      normalise(next_, total);
+      successors.push_back({total, number, node_of(sight.region, next_)});
     }
   }
 
-  // Each landing in a state of its own. Returns the sum of the probabilities.
-  double add_landings(const Sight& sight, Belief& next) const {
+  // Sets `next_` where each landing is in a state of its own. Returns the sum of the probabilities.
+  double add_landings(const Sight& sight) {
     double total = 0;
     for (const Sight::Landing& landing : sight.landings) {
       const double weight = predicted_[landing.target] * landing.probability;
       if (weight <= 0) continue;
-      next.states.push_back(landing.local);
-      next.probabilities.push_back(weight);
+      next_.states.push_back(landing.local);
+      next_.probabilities.push_back(weight);
       total += weight;
     }
     return total;
   }
 
-  double gather_landings(const Sight& sight, Belief& next) {
+  double gather_landings(const Sight& sight) {
     double total = 0;
     for (const Sight::Landing& landing : sight.landings) {
       const double weight = predicted_[landing.target] * landing.probability;
       if (weight <= 0) continue;
-      if (posterior_[landing.local] == 0) next.states.push_back(landing.local);
+      if (posterior_[landing.local] == 0) next_.states.push_back(landing.local);
       posterior_[landing.local] += weight;
       total += weight;
     }
-    if (!std::is_sorted(next.states.begin(), next.states.end())) std::sort(next.states.begin(), next.states.end());
-    for (const std::uint32_t local : next.states) next.probabilities.push_back(std::exchange(posterior_[local], 0.0));
+    if (!std::is_sorted(next_.states.begin(), next_.states.end())) std::sort(next_.states.begin(), next_.states.end());
+    for (const std::uint32_t local : next_.states) next_.probabilities.push_back(std::exchange(posterior_[local], 0.0));
     return total;
   }
 
@@ -318,6 +317,7 @@ class BeliefGraph {
   std::size_t bytes_ = 0;
   std::vector<double> predicted_;
   std::vector<double> posterior_;
+  Belief next_;  // room for one belief
 };
 
 }  // namespace aos::point_based

@@ -152,7 +152,7 @@ class Sarsop {
       belief.states.push_back(local);
       belief.probabilities.push_back(probability / total);
     }
-    roots_.push_back({start.weight * total, graph_.node_of(region, std::move(belief))});
+    roots_.push_back({start.weight * total, graph_.node_of(region, belief)});
   }
 
   template <class IsOver>
