@@ -63,7 +63,7 @@ class LeftOut {
   }
 
   static std::vector<Place> ignored_from(const Belief<Model>& belief) {
-    auto states = RelevantStates<Model>::by_observations(most_relevant_states);
+    auto states = RelevantStates<Model>::by_observations();
     try {
       states.reach_from(belief);
     } catch (const NotEnumerable&) {
