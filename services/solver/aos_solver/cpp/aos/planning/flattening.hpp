@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -13,6 +12,7 @@
 
 #include "aos/base/enumerator.hpp"
 #include "aos/model/step.hpp"
+#include "aos/model/values.hpp"
 #include "aos/planning/relevant_states.hpp"
 #include "point_based/flat_model.hpp"
 
@@ -35,14 +35,24 @@ class Flattening {
     flat_.discount = Model::discount;
     flat_.outcomes.first.push_back(0);
     flat_.readings.first.push_back(0);
+    flat_.rewards.reserve(flat_.states * flat_.actions);
     for (std::uint32_t number = 0; number < states_.size(); ++number) {
-      for (int action = 0; action < Model::action_count(); ++action) add_row(states_[number], action);
+      for (int action = 0; action < Model::action_count(); ++action) add_row(number, action);
     }
     flat_.observations = observations_.size();
     return std::move(flat_);
   }
 
  private:
+  using SensingKey = std::vector<std::uint64_t>;  // observations with their rounded probabilities
+  struct SensingHash {
+    std::size_t operator()(const SensingKey& key) const {
+      std::uint64_t hash = 0;
+      for (const std::uint64_t part : key) hash = mixed(hash, part);
+      return hash;
+    }
+  };
+
   // A path through an action that the mission goes on after.
   struct Path {
     std::uint32_t next;
@@ -50,7 +60,9 @@ class Flattening {
     double probability;
   };
 
-  void add_row(const State& state, int action) {
+  void add_row(std::uint32_t number, int action) {
+    const State& state = states_[number];
+    const std::uint32_t only_next = states_.only_next(number, action);
     double reward = 0;
     paths_.clear();
     if (Model::ending(state) == Ending::running) {
@@ -60,8 +72,8 @@ class Flattening {
         reward += path.probability() * step.reward;
         if (Model::ending(next) != Ending::running) return;
         const auto observation = static_cast<std::uint32_t>(observations_.size());
-        paths_.push_back({states_.find(next), observations_.try_emplace(step.observation, observation).first->second,
-                          path.probability()});
+        paths_.push_back({only_next != RelevantStates<Model>::none ? only_next : states_.find(next),
+                          observations_.try_emplace(step.observation, observation).first->second, path.probability()});
       });
     }
     flat_.rewards.push_back(reward);
@@ -95,7 +107,8 @@ class Flattening {
       readings_.back().probability += paths_[i].probability / total;
     }
     for (const auto& [observation, probability] : readings_) {
-      key_.emplace_back(observation, std::llround(unit * probability));
+      key_.push_back(observation);
+      key_.push_back(static_cast<std::uint64_t>(std::llround(unit * probability)));
     }
     const auto [entry, is_new] = sensings_.try_emplace(key_, static_cast<std::uint32_t>(sensings_.size()));
     if (is_new) {
@@ -109,10 +122,10 @@ class Flattening {
   point_based::FlatModel flat_;
   Enumerator draws_;
   std::unordered_map<Observation, std::uint32_t> observations_;
-  std::map<std::vector<std::pair<std::uint32_t, long long>>, std::uint32_t> sensings_;
+  std::unordered_map<SensingKey, std::uint32_t, SensingHash> sensings_;
   std::vector<Path> paths_;
   std::vector<point_based::Reading> readings_;
-  std::vector<std::pair<std::uint32_t, long long>> key_;
+  SensingKey key_;
 };
 
 }  // namespace aos

@@ -86,6 +86,13 @@ class RelevantStates {
     return places;
   }
 
+  // Where an action leads if it can lead nowhere else, but to an end; else `none`.
+  std::uint32_t only_next(std::uint32_t number, int action) const {
+    const std::size_t pair = number * actions() + static_cast<std::size_t>(action);
+    const std::size_t first = pair == 0 ? 0 : branch_ends_[pair - 1];
+    return branch_ends_[pair] == first + 1 ? branches_[first].next : none;
+  }
+
   // `none` for a state that cannot be reached.
   std::uint32_t find(const State& state) const { return numbers_[slot_of(key_of(state))]; }
 
