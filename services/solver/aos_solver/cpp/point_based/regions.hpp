@@ -54,7 +54,11 @@ struct Region {
 class Regions {
  public:
   explicit Regions(const FlatModel& model)
-      : region_of(model.states, nowhere), local_of(model.states, nowhere), model_(model), parent_(model.states), is_united_(model.states) {
+      : region_of(model.states, nowhere),
+        local_of(model.states, nowhere),
+        model_(model),
+        parent_(model.states),
+        is_united_(model.states) {
     std::iota(parent_.begin(), parent_.end(), 0u);
     is_worthless_ = worthless_states();
     find_reached();
