@@ -272,3 +272,31 @@ async def test_what_has_not_been_observed_outlives_a_crash_and_a_change_of_engin
         await second.import_belief(await first.export_belief())
         for card in range(3 * CARDS // 4, CARDS):
             await turn(second, card)
+
+
+DEALT = SHAKEN | {
+    "cards.ef": row_of_bools("cards", CARDS, "0").replace(
+        "initial_belief:", "state_variable: double noise\n\nstate_variable: bool is_dealt\n\ninitial_belief:"
+    )
+    + "state.noise = AOS.SampleUniform(0, 1);\n",
+    "turn.sd": SHAKEN["turn.sd"]
+    .replace(
+        "dynamic_model:",
+        f"""dynamic_model:
+if (!state__.is_dealt) for (int i = 0; i < {CARDS}; i++) state__.cards[i] = AOS.Bernoulli(0.5);
+state__.is_dealt = true;""",
+    )
+    .replace("state.cards[number]", "state__.cards[number]"),
+}
+"""The same, but the cards are dealt when the first one is turned: the initial belief leaves none open."""
+
+
+async def test_what_opened_up_since_the_beginning_is_given_up_as_well(cache_dir: Path) -> None:
+    dice = random.Random(3)
+    hand = [dice.random() < 0.5 for _ in range(CARDS)]
+    async with engine_of(await built_text(DEALT, cache_dir)) as engine:
+        for card, is_on in enumerate(hand):
+            update = await engine.update(f"turn(number={card})", "yes" if is_on else "no")
+            assert not update.is_impossible, card
+            marginal = {m.variable: m.values for m in update.summary.marginals}[f"cards[{card}]"]
+            assert marginal.get("true" if is_on else "false", 0.0) > 0.9, card

@@ -27,6 +27,7 @@ inline constexpr int most_completions = 16;
 inline constexpr double rare_observation = 0.25;
 inline constexpr double desperate_observation = 0.01;
 inline constexpr std::size_t few_particles = particle_count / 10;
+inline constexpr std::size_t scarce_particles = particle_count / 100;  // hardly any
 inline constexpr std::size_t trials_per_mixture = 8;
 inline constexpr std::size_t trials_per_mixture_at_last = 2;
 
@@ -57,9 +58,10 @@ void enumerate_outcomes(const std::vector<Particle<Model>>& particles, int actio
 // that they do not. There the last draws are enumerated, and each path counts by its probability.
 //
 // Where drawn states have become few, or hardly any agrees with what was observed, what they have in common is chance.
-// There some trials start from mixtures of two of them, which keep how often each variable has each value. If none of
-// these agrees either, some forget a variable that the initial belief leaves open: it has its value in a state that nothing
-// was observed of. Where that does not help they forget four, and at last 16: the fewer, the less of what was observed.
+// There some trials start from mixtures of two of them, which keep how often each variable has each value. If hardly any
+// of these agrees either, some forget a variable that is open where nothing is observed: it has its value in a state that
+// nothing was observed of. Where that does not help they forget four, and at last 16: the fewer, the less of what was
+// observed.
 template <class Model>
 class DrawnOutcomes {
  public:
@@ -98,7 +100,7 @@ class DrawnOutcomes {
       } else if (is_rare && !is_desperate_ && share < desperate_observation) {
         is_desperate_ = true;
         trials_per_mixture_ = trials_per_mixture_at_last;
-      } else if (used == 0 && steps_ >= most_steps_ && most_steps_ < most_forgetful_steps && !unobserved_.is_empty()) {
+      } else if (used < scarce_particles && steps_ >= most_steps_ && may_forget_more()) {
         most_steps_ += most_drawn_steps;
         forgotten_ = std::max<std::size_t>(4 * forgotten_, 1);
       } else {
@@ -119,7 +121,7 @@ class DrawnOutcomes {
   };
   struct Places {
     std::vector<Place> all;
-    std::vector<Place> open;  // where the initial belief has several values
+    std::vector<Place> open;  // which differ where nothing is observed
   };
 
   template <class Visit>
@@ -181,6 +183,8 @@ class DrawnOutcomes {
   }
   static std::byte* bytes_of(State& state) { return reinterpret_cast<std::byte*>(&state); }
   static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
+
+  bool may_forget_more() const { return !unobserved_.is_empty() && most_steps_ < most_forgetful_steps; }
 
   static std::size_t median(std::vector<std::size_t>& numbers) {
     const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);

@@ -24,8 +24,8 @@ class Unobserved {
   static constexpr std::size_t most_states = std::clamp<std::size_t>(most_bytes / sizeof(State), 1, 1000);
 
   Unobserved() = default;
-  // One that was kept with these states, of this model or of one with the same states before it. What is open is found by
-  // drawing from the initial belief again.
+  // One that was kept with these states, of this model or of one with the same states before it. What is open is found
+  // among them and by drawing from the initial belief again.
   Unobserved(std::vector<State> states, Sampler& random) {
     State initial{};
     for (std::size_t i = 0; i < most_states && !states.empty(); ++i) {
@@ -33,6 +33,7 @@ class Unobserved {
       add(initial);
     }
     states_ = std::move(states);
+    for (const State& state : states_) note_differences(state);
   }
 
   bool is_empty() const { return states_.empty(); }
@@ -42,18 +43,15 @@ class Unobserved {
   void add(const State& initial) {
     if (states_.size() == most_states) return;
     states_.push_back(initial);
-    const std::byte* const first = bytes_of(states_.front());
-    const std::byte* const added = bytes_of(initial);
-    is_open_.resize(sizeof(State));
-    for (std::size_t i = 0; i < sizeof(State); ++i) is_open_[i] = is_open_[i] || first[i] != added[i];
+    note_differences(initial);
   }
 
-  // Whether the initial belief leaves open what stands there.
+  // Whether what stands there has ever differed between two states: at the beginning, or after some action.
   bool is_open(const Place& place) const {
     if (is_empty()) return false;
-    const auto begin = is_open_.begin() + static_cast<std::ptrdiff_t>(place.offset);
+    const auto begin = differences_.begin() + static_cast<std::ptrdiff_t>(place.offset);
     const auto end = begin + static_cast<std::ptrdiff_t>(place.size);
-    return std::find(begin, end, true) != end;
+    return std::any_of(begin, end, [](std::byte difference) { return difference != std::byte{0}; });
   }
 
   const State& draw(Sampler& random) const {
@@ -65,7 +63,7 @@ class Unobserved {
   Unobserved<To> as() const {
     Unobserved<To> result;
     result.states_ = states_;
-    result.is_open_ = is_open_;
+    result.differences_ = differences_;
     return result;
   }
 
@@ -79,11 +77,20 @@ class Unobserved {
     for (std::size_t i = running; i < states_.size(); ++i) {
       states_[i] = states_[static_cast<std::size_t>(random.below(static_cast<int>(running)))];
     }
+    for (const State& state : states_) note_differences(state);
   }
 
  private:
   template <class>
   friend class Unobserved;
+
+  void note_differences(const State& state) {
+    const std::byte* const first = bytes_of(states_.front());
+    const std::byte* const other = bytes_of(state);
+    differences_.resize(sizeof(State));
+    for (std::size_t i = 0; i < sizeof(State); ++i) differences_[i] |= first[i] ^ other[i];
+  }
+
   static bool goes_on(State& state, int action, Sampler& random) {
     try {
       Model::step(state, action, random);
@@ -95,7 +102,7 @@ class Unobserved {
   static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
 
   std::vector<State> states_;
-  std::vector<bool> is_open_;  // by byte of a state
+  std::vector<std::byte> differences_;  // by byte of a state; 0 where all states have always had the same
 };
 
 }  // namespace aos
