@@ -113,3 +113,39 @@ async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(
     values = {value.action: value for value in plan.actions}
     assert (values["leap"].n, values["read"].n) == (1, 1)
     assert values["read"].q == pytest.approx(-(1 - 0.95**5) / 0.05), "five readings, no leap"
+
+
+PREJUDICED = GAUGE | {
+    "read.sd": """project: gauge
+
+rollout_policy:
+__heuristicValue = 1;
+
+dynamic_model:
+state__.level = AOS.SampleNormal(0, 1);
+__reward = state__.level > 0 ? -1 : -3;
+if (state__.level > 0) __moduleResponse = high;
+else __moduleResponse = low;
+""",
+    "leap.sd": """project: gauge
+
+dynamic_model:
+state__.level = AOS.SampleNormal(0, 1);
+__reward = {leap};
+__moduleResponse = high;
+""",
+    "leap.am": MAPPING.format(project="gauge").replace("/read", "/leap"),
+}
+"""Play-outs only ever read, which costs 2 on average; no state is worth more than another."""
+
+
+@pytest.mark.parametrize(("leap", "best"), [("-3", "read"), ("-1", "leap")])
+async def test_the_rollout_policy_guides_the_search_and_does_not_bind_it(
+    leap: str, best: str, cache_dir: Path
+) -> None:
+    files = PREJUDICED | {"leap.sd": PREJUDICED["leap.sd"].format(leap=leap)}
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        plan = await engine.plan(simulations=10_000, seed=1, planner="pomcp")
+    assert plan.best.action == best
+    # Five steps of a cost of 2, or of 1.
+    assert plan.best.q == pytest.approx((-2 if best == "read" else -1) * (1 - 0.95**5) / 0.05, abs=0.15)

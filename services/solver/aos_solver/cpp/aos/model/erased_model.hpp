@@ -90,6 +90,10 @@ struct ErasedModel {
   static double rollout(const State& state, int horizon, Sampler& random) {
     return compiled_model.rollout(state.bytes, horizon, random);
   }
+  // With which probability it takes each action first, into `odds`.
+  static void rollout_odds(const State& state, double* odds, Sampler& random) {
+    compiled_model.rollout_odds(state.bytes, odds, action_count(), random);
+  }
   // The same action in each of so many states; the sum of the rewards.
   static double step_all(int action, int count, auto&& state_at, Sampler& random) {
     double rewards = 0;

@@ -66,6 +66,7 @@ struct ModelTable {
   DrawingFunctions<Enumerator> enumerating;
   bool (*meets_precondition)(const void* state, int action, Enumerator& random);
   double (*rollout)(const void* state, int horizon, Sampler& random);
+  void (*rollout_odds)(const void* state, double* odds, int count, Sampler& random);
   Walked (*walk)(std::uint64_t steps, Sampler& random);  // null in a quick build
 };
 
@@ -157,6 +158,11 @@ constexpr ModelTable table_of() {
             const double value = aos::rollout<Model>(*static_cast<const State*>(state), horizon, random);
             blame::at(0);
             return value;
+          },
+      .rollout_odds =
+          [](const void* state, double* odds, int count, Sampler& random) {
+            aos::rollout_odds<Model>(*static_cast<const State*>(state), odds, count, random);
+            blame::at(0);
           },
       .walk = walk_function<Model>(),
   };

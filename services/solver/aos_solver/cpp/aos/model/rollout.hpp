@@ -1,6 +1,7 @@
 // A rollout: what a state is worth to somebody who follows the documents' rollout policy from it.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -55,6 +56,28 @@ int rollout_action(const typename Model::State& state, double* sums, int count, 
 }
 
 }  // namespace detail
+
+// With which probability a rollout takes each action from a state, into `odds`.
+template <class Model>
+void rollout_odds(const typename Model::State& state, double* odds, int count, Sampler& random) {
+  double total = 0;
+  const auto leave_out_what_cannot_run = [&] {
+    for (int action = 0; action < count; ++action) {
+      if (!Model::meets_precondition(state, action, random)) odds[action] = 0;
+      total += odds[action];
+    }
+  };
+  if constexpr (Model::has_rollout_policy) {
+    int filled = 0;
+    Model::rollout_weights(state, random, [&](double weight) { odds[filled++] = weight; });
+    leave_out_what_cannot_run();
+  }
+  if (total == 0) {
+    std::fill_n(odds, count, 1.0);
+    leave_out_what_cannot_run();
+  }
+  for (int action = 0; action < count; ++action) odds[action] = total > 0 ? odds[action] / total : 1.0 / count;
+}
 
 // The discounted return of at most `horizon` steps from `start` on.
 template <class Model>

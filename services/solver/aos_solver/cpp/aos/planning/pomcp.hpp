@@ -10,6 +10,8 @@
 // - The exploration bonus of an action follows the spread of its own returns: immediate rewards say little about it, and a
 //   constant that is too small is the commonest way for POMCP to fail. It falls polynomially, not logarithmically, as
 //   values that drift while the tree below them grows need (Shah, Xie and Xu, 2020).
+// - Where new histories are valued by rollouts, the actions that a rollout would take have most of the exploration. The paper
+//   gives them visits and values that the document's author would have to know.
 // - Values are backed up through the best action among those with a quarter of the visits of the most visited one, not as
 //   the mean of all simulations, which the exploring ones pull down. The decision is made in the same way.
 // - Every eighth simulation takes the root's actions in turn, so that the values of all of them are worth reading.

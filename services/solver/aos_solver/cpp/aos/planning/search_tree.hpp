@@ -39,6 +39,7 @@ struct ActionNode {
   double continuations = 0;  // sum over children of n * v
   double mean = 0;           // of the sampled returns, with their
   double squares = 0;        // sum of squared deviations
+  double share = 1;          // of the exploration here, as a multiple of an even one
   std::uint32_t n = 0;
   std::uint32_t first_child = no_node;
   std::uint32_t children = 0;

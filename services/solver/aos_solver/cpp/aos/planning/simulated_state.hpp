@@ -26,6 +26,12 @@ class ComputedState {
   double value(int left) const { return values_ != nullptr ? values_->value(values_->number_of(state_), left) : 0; }
   // What a new history starts with, beyond the value.
   double leaf(int left, Sampler& random) const { return values_ != nullptr ? 0 : Model::rollout(state_, left, random); }
+  // With which probability a rollout takes each action first, into `odds`. False where new histories start with no rollout.
+  bool rollout_odds(double* odds, Sampler& random) const {
+    if (values_ != nullptr) return false;
+    Model::rollout_odds(state_, odds, random);
+    return true;
+  }
 
  private:
   State state_;
@@ -74,6 +80,7 @@ class ListedState {
   bool has_ended() const { return number_ == StepTable<Model>::ended; }
   double value(int left) const { return model_.value(number_, left); }
   double leaf(int, Sampler&) const { return 0; }
+  bool rollout_odds(double*, Sampler&) const { return false; }
 
  private:
   const ListedModel<Model>& model_;

@@ -22,6 +22,8 @@ inline constexpr double prior_visits = 4;  // what a spread seen elsewhere count
 inline constexpr std::uint32_t settled_visits = 16;
 inline constexpr std::uint32_t well_visited_share = 4;  // at least 1/4 of the most visited action's visits
 inline constexpr std::uint64_t turns = 8;
+inline constexpr double even_share = 0.1;  // of the exploration, that does not follow the rollout policy
+inline constexpr double usual_share = 0.9;  // of an action that rollouts prefer no less than others, but for rounding
 
 // Whether an action was simulated often enough beside the most visited one for its value to be believed.
 inline bool is_well_visited(std::uint32_t n, std::uint32_t most) {
@@ -48,7 +50,7 @@ class TreeSearch {
   // leaves it to the search.
   template <class SimulatedState>
   void simulate(SimulatedState& state, int first, Sampler& random) {
-    if (!tree_.give_actions(0)) return;
+    if (!give_actions(0, state, random)) return;
     if (++simulations_ % renewal == 0 || simulations_ == settled_visits) renew_spread();
     if (first < 0 && simulations_ % turns == 0) {
       first = static_cast<int>(simulations_ / turns % static_cast<std::uint64_t>(Model::action_count()));
@@ -155,7 +157,7 @@ class TreeSearch {
       std::uint32_t child = tree_.find_child(action, step.observation);
       const bool is_new = child == no_node;
       if (is_new) child = tree_.add_child(action, step.observation);
-      if (is_new || !tree_.give_actions(child)) {
+      if (is_new || !give_actions(child, state, random)) {
         later = state.leaf(left, random);
         change = child == no_node ? later : add_return(tree_.history(child), later);
         break;
@@ -168,6 +170,21 @@ class TreeSearch {
       change = back_up(visits_[i], change, later);
     }
     return later;
+  }
+
+  // Returns false where there is no room for them. Where play-outs value new histories, actions that these would take from
+  // the state have most of the exploration: the others are not to use up the few visits of a history.
+  template <class SimulatedState>
+  bool give_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
+    const bool is_new = tree_.history(number).first_action == no_node;
+    if (!tree_.give_actions(number)) return false;
+    odds_.resize(action_count());
+    if (!is_new || !state.rollout_odds(odds_.data(), random)) return true;
+    ActionNode* const actions = tree_.actions(tree_.history(number));
+    for (std::uint32_t a = 0; a < action_count(); ++a) {
+      actions[a].share = even_share + (1 - even_share) * odds_[a] * action_count();
+    }
+    return true;
   }
 
   // Of a history without actions. Returns the change of n * v.
@@ -216,8 +233,9 @@ class TreeSearch {
     if (is_better && is_well_visited(actions[a].n, parent.most_visits)) parent.best = a;
   }
 
-  // The highest upper confidence bound; every action once first. An action's spread is its own, and as if `prior_visits`
-  // more had the spread of all actions here, which is in the same way filled up with the root's.
+  // The highest upper confidence bound; every action with a usual share once first, at the root every one. An action's
+  // spread is its own, and as if `prior_visits` more had the spread of all actions here, which is in the same way
+  // filled up with the root's. What was never tried counts as what its history is worth, seen once.
   [[gnu::always_inline]] std::uint32_t choose(std::uint32_t number) const {
     const HistoryNode& history = tree_.history(number);
     const ActionNode* const actions = tree_.actions(history);
@@ -227,9 +245,10 @@ class TreeSearch {
     double best_bound = -std::numeric_limits<double>::infinity();
     for (std::uint32_t a = 0; a < action_count(); ++a) {
       const ActionNode& node = actions[a];
-      if (node.n == 0) return a;
-      const double n = node.n;
-      const double bound = node.q + std::sqrt((node.squares + prior) * root_n / ((n + prior_visits) * n));
+      if (node.n == 0 && (node.share >= usual_share || number == 0)) return a;
+      const double n = std::max<double>(node.n, 1);
+      const double squares = (node.squares + prior) * node.share;
+      const double bound = (node.n > 0 ? node.q : history.v) + std::sqrt(squares * root_n / ((n + prior_visits) * n));
       if (bound > best_bound) {
         best_bound = bound;
         best = a;
@@ -242,6 +261,7 @@ class TreeSearch {
   SearchTree spare_;
   int horizon_ = 0;
   std::vector<Visit> visits_;
+  std::vector<double> odds_;
   std::uint64_t simulations_ = 0;
   double mean_ = 0;  // of all returns, with their
   double squares_ = 0;
