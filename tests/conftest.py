@@ -6,7 +6,6 @@ import os
 from pathlib import Path
 
 import pytest
-from side_by_side import CACHE_VARIABLE
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -35,5 +34,9 @@ def corpus() -> Path:
 @pytest.fixture(scope="session")
 def cache_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Compiled models, shared by all tests of one run."""
-    shared = os.environ.get(CACHE_VARIABLE)
-    return Path(shared) if shared else tmp_path_factory.mktemp("cache")
+    folder = tmp_path_factory.getbasetemp()
+    # pytest-xdist gives each process a folder of its own in that of the run.
+    run = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
+    cache = run / "cache"
+    cache.mkdir(exist_ok=True)
+    return cache
