@@ -40,8 +40,7 @@ template <class Model>
 class Planner {
  public:
   // See Pomcp, Despot and PointBased. `automatic` takes SARSOP where the states can be listed and the horizon hardly
-  // matters; else DESPOT where its scenarios can have each state that matters among them, or where these are too many and
-  // the documents have a rollout policy, which is then its lower bound; else POMCP.
+  // matters; else DESPOT where its scenarios can have each state that matters among them, and POMCP with more states.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
     used_ = suited_kind(kind, belief, horizon);
     if (used_ == PlannerKind::despot) return despot().search(belief, budget, horizon, random);
@@ -124,9 +123,7 @@ class Planner {
   PlannerKind sampling_kind(const Belief<Model>& belief, int horizon) {
     if (!pomcp_.prepare(belief, horizon)) {
       why_ += "; there are too many states to derive bounds from";
-      if (!Model::has_rollout_policy || belief.is_drawn()) return PlannerKind::pomcp;
-      why_ += ", and DESPOT improves on the rollout policy";
-      return PlannerKind::despot;
+      return PlannerKind::pomcp;
     }
     const std::size_t states = pomcp_.known_states();
     why_ += "; " + std::to_string(states) + " states differ in what is yet to be earned, ";
