@@ -23,6 +23,8 @@ def rooms_of(*snippets: str) -> Rooms:
         ("state.grid = std::vector<bool>{true, false};", 2),
         ("state.grid.resize(20);", 20),
         ("state.grid.assign(6, 0);", 6),
+        ("state.grid.assign(4 * 17 * 19, -1);", 1292),
+        ("state.grid = vector<int>(3 * 5);", 15),
         ("state.grid = {1, 2}; state__.grid = state.grid;", 2),
         ("state.box.grid = {1, 2, 3, 4}; state.box.grid[2] = 5;", 4),
     ],
@@ -42,6 +44,8 @@ def test_nested_lists_give_a_room_for_each_level() -> None:
 
 def test_a_vector_that_grows_gets_room_to_grow() -> None:
     assert rooms_of("state__.path.push_back(x);").room("path") == GROWING_ROOM
+    assert rooms_of("state.path.assign(4 * n, 0);").room("path") == GROWING_ROOM
+    assert rooms_of("state.path = vector<int>(4 + n);").room("path") == GROWING_ROOM
     assert rooms_of("state.a = {" + "1, " * 39 + "1}; state.a.push_back(2);").room("a") == 80
 
 

@@ -21,8 +21,10 @@ TOLD_ROOM = 1024
 _LARGEST_ROOM = 16384
 _GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})
 _SIZING = frozenset({"assign", "resize"})
-_LOOP_BOUND = re.compile(r"\bfor\s*\([^;{}]*;[^;{}]*<=?\s*(\d+)\s*;")
-_CONSTRUCTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*\(\s*(\d+)")
+_NUMBER = r"\s*(\d+(?:\s*\*\s*\d+)*)\s*"  # or a product of numbers
+_LOOP_BOUND = re.compile(rf"\bfor\s*\([^;{{}}]*;[^;{{}}]*<=?{_NUMBER};")
+_CONSTRUCTED = re.compile(rf"(?:std::)?vector\s*<[^(){{}};]*>\s*\({_NUMBER}[,)]")
+_SIZED = re.compile(rf"\.\s*\w+\s*\({_NUMBER}[,)]")
 _LOOP_COLON = re.compile(r"\s*:\s*")
 _LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
 
@@ -63,7 +65,7 @@ class Rooms:
         """Takes in statements."""
         for cpp in snippets:
             code = strip_comments(cpp.code)
-            loops = math.prod(int(bound) for bound in _LOOP_BOUND.findall(code))
+            loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(code))
             aliases = dict(_aliases(cpp))
             for mention in cpp.mentions:
                 path = (*aliases.get(mention.path[0], mention.path[:1]), *mention.path[1:])
@@ -79,15 +81,14 @@ class Rooms:
         elif mention.method in _GROWING:
             self._grow(key, loops)
         elif mention.method in _SIZING:
-            size = re.match(r"\.\s*\w+\s*\(\s*(\d+)\s*[,)]", rest)
-            if size is not None:
-                self._know(key, int(size[1]))
+            if (sized := _SIZED.match(rest)) is not None:
+                self._know(key, _product(sized[1]))
             else:
                 self._grow(key, loops)
 
     def _take_value(self, key: tuple[str, int], value: str, loops: int) -> None:
         if (constructed := _CONSTRUCTED.match(value)) is not None:
-            self._know(key, int(constructed[1]))
+            self._know(key, _product(constructed[1]))
             return
         if (listed := _LISTED.match(value)) is not None:
             value = value[listed.end() :]
@@ -104,6 +105,10 @@ class Rooms:
 
     def _grow(self, key: tuple[str, int], loops: int) -> None:
         self._grows[key] = max(self._grows.get(key, GROWING_ROOM), loops)
+
+
+def _product(text: str) -> int:
+    return math.prod(int(factor) for factor in text.split("*"))
 
 
 def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
