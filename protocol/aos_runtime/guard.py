@@ -105,10 +105,11 @@ def _give_way(niceness: int) -> None:
         return
     os.nice(niceness)
     try:
-        with open("/proc/self/autogroup", "w") as session:  # noqa: PTH123
-            session.write(str(niceness))
+        session = os.open("/proc/self/autogroup", os.O_WRONLY)
+        os.write(session, str(niceness).encode())
+        os.close(session)
     except OSError:
-        pass  # a kernel without them
+        pass  # a kernel without them, or one that was told too often
 
 
 def _limit(kind: int, value: int) -> None:

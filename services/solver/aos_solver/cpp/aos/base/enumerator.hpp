@@ -115,4 +115,10 @@ class Enumerator : public Draws<Enumerator> {
   std::size_t by_chance_ = 0;
 };
 
+// Before a step along a path: what it takes, in draws. A large state costs as much to copy.
+inline std::size_t work_of_step(const Enumerator& path, std::size_t state_bytes) {
+  constexpr std::size_t bytes_per_draw = 64;
+  return 1 + path.draws() + state_bytes / bytes_per_draw;
+}
+
 }  // namespace aos

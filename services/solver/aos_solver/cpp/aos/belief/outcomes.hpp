@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <iterator>
 #include <unordered_map>
 #include <vector>
@@ -150,7 +149,7 @@ class DrawnOutcomes {
     State mixed = left;
     if (&places_of(right) != &places) return mixed;
     for (const Place& place : places.all) {
-      if (random_.flag(0.5)) copy(place, right, mixed);
+      if (random_.flag(0.5)) copy_place(place, right, mixed);
     }
     return mixed;
   }
@@ -161,12 +160,9 @@ class DrawnOutcomes {
     if (&places_of(unobserved) != &places || places.open.empty()) return result;
     for (std::size_t i = 0; i < forgotten_; ++i) {
       const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(places.open.size())));
-      copy(places.open[chosen], unobserved, result);
+      copy_place(places.open[chosen], unobserved, result);
     }
     return result;
-  }
-  static void copy(const Place& place, const State& from, State& to) {
-    std::memcpy(bytes_of(to) + place.offset, bytes_of(from) + place.offset, place.size);
   }
 
   // States of the same shape share them.
@@ -181,8 +177,6 @@ class DrawnOutcomes {
     }
     return entry->second;
   }
-  static std::byte* bytes_of(State& state) { return reinterpret_cast<std::byte*>(&state); }
-  static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
 
   bool may_forget_more() const { return !unobserved_.is_empty() && most_steps_ < most_forgetful_steps; }
 

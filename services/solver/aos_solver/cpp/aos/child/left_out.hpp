@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <vector>
 
 #include "aos/base/enumerator.hpp"
@@ -34,9 +33,7 @@ class LeftOut {
 
   State rest_of(const State& state) const {
     State rest = state;
-    for (const Place& place : left_out_) {
-      std::memcpy(bytes_of(rest) + place.offset, bytes_of(stand_in_) + place.offset, place.size);
-    }
+    for (const Place& place : left_out_) copy_place(place, stand_in_, rest);
     return rest;
   }
 
@@ -71,9 +68,6 @@ class LeftOut {
     }
     return states.ignored();
   }
-
-  static std::byte* bytes_of(State& state) { return reinterpret_cast<std::byte*>(&state); }
-  static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
 
   State stand_in_;
   std::vector<Place> left_out_;

@@ -127,6 +127,13 @@ struct Place {
   friend bool operator==(const Place&, const Place&) = default;
 };
 
+// Gives a state what stands at a place of another one.
+template <class State>
+void copy_place(const Place& place, const State& from, State& to) {
+  std::memcpy(reinterpret_cast<std::byte*>(&to) + place.offset,
+              reinterpret_cast<const std::byte*>(&from) + place.offset, place.size);
+}
+
 // The places of a state, without overlap; it is visited by `visit(visitor)`.
 template <class Visit>
 std::vector<Place> places_in(const void* state, Visit&& visit) {

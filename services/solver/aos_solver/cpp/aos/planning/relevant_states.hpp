@@ -222,10 +222,8 @@ class RelevantStates {
     return !tell_apart();
   }
 
-  // Before a step: what it takes, in draws. A large state costs as much to copy.
   void count_path(const Enumerator& path) {
-    constexpr std::size_t bytes_per_draw = 64;
-    work_ += 1 + path.draws() + Model::state_bytes() / bytes_per_draw;
+    work_ += work_of_step(path, Model::state_bytes());
     if (work_ > most_relevant_work) throw NotEnumerable{"too many outcomes"};
   }
 
@@ -269,8 +267,7 @@ class RelevantStates {
     for (Variable& variable : variables_) {
       for (std::size_t i = 0; i < variable.examples.size() && !variable.matters; ++i) {
         State exchanged = state;
-        std::memcpy(reinterpret_cast<std::byte*>(&exchanged) + variable.place.offset,
-                    reinterpret_cast<const std::byte*>(&variable.examples[i]) + variable.place.offset, variable.place.size);
+        copy_place(variable.place, variable.examples[i], exchanged);
         variable.matters = makes_difference(exchanged, signature);
       }
     }

@@ -109,10 +109,8 @@ class StepTable {
     }
   }
 
-  // Before a step: what it takes, in draws. A large state costs as much to copy.
   void count_path(const Enumerator& path) {
-    constexpr std::size_t bytes_per_draw = 64;
-    work_ += 1 + path.draws() + Model::state_bytes() / bytes_per_draw;
+    work_ += work_of_step(path, Model::state_bytes());
     if (work_ > most_table_work) throw NotEnumerable{"too many draws"};
   }
 
