@@ -180,6 +180,19 @@ async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_d
             assert await engine.summary() == before
 
 
+async def test_an_engine_that_crashes_between_documents_says_what_may_have_harmed_it(
+    bundles: Path, cache_dir: Path
+) -> None:
+    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+        assert engine.pid is not None
+        (child,) = descendants(engine.pid)
+        os.kill(child, signal.SIGSEGV)
+        with pytest.raises(ModelError, match=r"outside of the documents' code \(signal 11\)") as caught:
+            await engine.summary()
+    assert caught.value.code == "AOS213"
+    assert "through a pointer" in caught.value.hint
+
+
 async def test_a_belief_moves_to_another_engine(bundles: Path, cache_dir: Path) -> None:
     built = await built_bundle(bundles / "armadillo-finer", cache_dir)
     async with engine_of(built) as old, engine_of(built) as new:

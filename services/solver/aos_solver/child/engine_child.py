@@ -34,6 +34,11 @@ ADDRESS_SPACE_BYTES = 8 * 1024**3
 ANSWER_LIMIT_BYTES = 32 * 1024**2
 """Of one answer; what may be longer comes in pieces."""
 
+_MEMORY_HINT = (
+    "Document code that writes past a plain array or through a pointer may have harmed the engine's memory "
+    "before: look for such code. If there is none, this is a mistake of AOS"
+)
+
 
 class _FaultAnswer(msgspec.Struct, frozen=True):
     fault: EngineFault | None = None
@@ -167,10 +172,13 @@ class EngineChild:
         await self.close()
         if status == -signal.SIGKILL:
             return KilledError("the engine was killed", code="AOS213")
-        if status is not None:
-            message = f"{message} ({_status_text(status)})"
-            code = code if piece else "AOS213"
-        return self.fault(code, message, piece)
+        if status is None:
+            return self.fault(code, message, piece)
+        told = _status_text(status)
+        if not piece:
+            message = f"the engine ended outside of the documents' code ({told})"
+            return ModelError(message, code="AOS213", hint=_MEMORY_HINT)
+        return self.fault(code, f"{message} ({told})", piece)
 
     async def _status(self) -> int | None:
         """How a child that has closed its output ended; None if it lingers."""
