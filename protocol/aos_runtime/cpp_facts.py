@@ -9,7 +9,34 @@ import msgspec
 
 from aos_runtime.cpp_tokens import Extent, Fault
 
-__all__ = ["Access", "Call", "Cpp", "Declaration", "DeclarationKind", "Mention"]
+__all__ = [
+    "CHANGING_METHODS",
+    "HANDLE_METHODS",
+    "READING_FUNCTIONS",
+    "READING_METHODS",
+    "Access",
+    "Call",
+    "Cpp",
+    "Declaration",
+    "DeclarationKind",
+    "Mention",
+]
+
+CHANGING_METHODS = frozenset({
+    "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "insert", "insert_or_assign",
+    "pop", "pop_back", "push", "push_back", "reserve", "resize", "swap",
+})  # fmt: skip
+HANDLE_METHODS = frozenset({"begin", "data", "end", "rbegin", "rend"})
+READING_METHODS = frozenset({
+    "at", "back", "c_str", "compare", "contains", "count", "empty", "find", "front", "length", "rfind",
+    "size", "str", "substr", "top",
+})  # fmt: skip
+READING_FUNCTIONS = frozenset({
+    "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",
+    "float", "floor", "fmax", "fmin", "fmod", "hypot", "int", "isfinite", "isnan", "log", "log10", "log2",
+    "lround", "make_pair", "make_tuple", "max", "min", "pow", "round", "sin", "sqrt", "static_cast", "string",
+    "tan", "tanh", "to_string", "trunc",
+})  # fmt: skip
 
 
 class Access(StrEnum):

@@ -7,16 +7,20 @@ from collections.abc import Iterable
 
 import tree_sitter
 
-from aos_runtime.cpp_facts import Access, Call, Cpp, Declaration, DeclarationKind, Mention
+from aos_runtime.cpp_facts import (
+    CHANGING_METHODS,
+    HANDLE_METHODS,
+    Access,
+    Call,
+    Cpp,
+    Declaration,
+    DeclarationKind,
+    Mention,
+)
 from aos_runtime.cpp_tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 __all__ = ["TreeReader"]
 
-_CHANGING_METHODS = frozenset({
-    "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "insert", "insert_or_assign",
-    "pop", "pop_back", "push", "push_back", "reserve", "resize", "swap",
-})  # fmt: skip
-_HANDLE_METHODS = frozenset({"begin", "data", "end", "rbegin", "rend"})
 _CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
 
 
@@ -285,9 +289,9 @@ _HANDLERS = {
 def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
     if is_aos:
         return Access.CALL
-    if method in _CHANGING_METHODS:
+    if method in CHANGING_METHODS:
         return Access.UPDATE
-    if method in _HANDLE_METHODS:
+    if method in HANDLE_METHODS:
         return Access.BIND
     return outer
 

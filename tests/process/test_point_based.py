@@ -170,15 +170,19 @@ async def test_without_a_discount_another_planner_decides_and_says_why(cache_dir
 
 
 @pytest.mark.parametrize(
-    ("length", "planner", "why"),
-    [(150, "sarsop", "22500 states matter"), (800, "pomcp", "too many states to list")],
+    ("length", "simulations", "planner", "why"),
+    [
+        (150, 1, "sarsop", "22500 states can be listed"),
+        (150, 500, "exact", "every observation of 50 decisions fits the budget"),
+        (800, 500, "pomcp", "too many states to list"),
+    ],
 )
-async def test_auto_takes_sarsop_where_the_states_can_be_listed(
-    length: int, planner: str, why: str, cache_dir: Path
+async def test_auto_goes_by_whether_the_states_can_be_listed(
+    length: int, simulations: int, planner: str, why: str, cache_dir: Path
 ) -> None:
     larger = {name: text.replace("150", str(length)) for name, text in FIELD.items()}
     async with engine_of(await built_text(larger, cache_dir)) as engine:
-        plan = await engine.plan(simulations=500, seed=1, planner="auto")
+        plan = await engine.plan(simulations=simulations, seed=1, planner="auto")
     assert plan.planner == planner, plan.why
     assert why in plan.why
 
@@ -187,15 +191,15 @@ async def test_auto_takes_sarsop_where_the_states_can_be_listed(
     ("problem", "planner", "why"),
     # Behind two doors, and on 49 cells with 8 rocks: what the rover has learnt does not count.
     [
-        ("bench/tiger", "sarsop", "2 states"),
+        ("bench/tiger", "exact", "2 states"),
         ("bench/rocksample-7-8", "sarsop", f"{49 * 2**8} states"),
-        ("armadillo-finer", "despot", "without the horizon"),
+        ("armadillo-finer", "exact", "every observation of 10 decisions"),
     ],
 )
-async def test_auto_chooses_by_states_and_horizon_and_says_so(
+async def test_auto_chooses_by_states_and_budget_and_says_so(
     problem: str, planner: str, why: str, bundles: Path, cache_dir: Path
 ) -> None:
     async with engine_of(await built_bundle(bundles / problem, cache_dir)) as engine:
-        plan = await engine.plan(simulations=500, seed=1, planner="auto")
+        plan = await engine.plan(simulations=2000, seed=1, planner="auto")
     assert plan.planner == planner
     assert why in plan.why

@@ -91,7 +91,7 @@ async def test_a_search_by_the_table_finds_the_exact_value(cache_dir: Path) -> N
     "move",
     [
         "state__.height = AOS.SampleNormal(0, 1);",
-        "state__.throws++;",
+        "__reward = state__.throws++;",
         "if (AOS.Bernoulli(1e-12)) state__.face = state.worth.at(4);",
     ],
     ids=["a draw without end", "states without end", "a fault that hardly ever happens"],

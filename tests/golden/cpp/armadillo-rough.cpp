@@ -403,6 +403,9 @@ struct Model {
       aos::facts_of<skill__pick>("pick"),
       aos::facts_of<skill__serve>("serve"),
   };
+  // What no reward, observation or ending depends on.
+  static constexpr std::array<aos::ByteRange, 0> irrelevant{
+  };
   static constexpr bool has_rollout_policy = false;
   static constexpr bool has_state_heuristic = false;
   static constexpr bool has_corrections = false;

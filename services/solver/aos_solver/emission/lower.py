@@ -27,6 +27,7 @@ from aos_solver.emission.lower_code import (
 )
 from aos_solver.emission.lower_copies import copies_of
 from aos_solver.emission.lower_names import check_names
+from aos_solver.emission.lower_relevance import irrelevant_variables
 from aos_solver.emission.lower_state import (
     lower_compounds,
     lower_variables,
@@ -81,7 +82,13 @@ class _Lowering:
         enums = tuple(lower_enum(enum) for enum in environment.enums)
         compounds = lower_compounds(environment, self._types, self._pieces, code.outside)
         variables = lower_variables(
-            environment, self._changes, self._types, self._pieces, code.outside, self._findings
+            environment,
+            self._changes,
+            self._types,
+            self._pieces,
+            code.outside,
+            irrelevant_variables(project),
+            self._findings,
         )
         initial_belief = code.section(BELIEF, environment.initial_belief)
         extrinsic_changes = code.section(EXTRINSIC, environment.extrinsic_changes)

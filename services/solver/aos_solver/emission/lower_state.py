@@ -80,6 +80,7 @@ def lower_variables(
     types: Types,
     pieces: Pieces,
     outside: Rewriting,
+    irrelevant: frozenset[str],
     findings: Findings,
 ) -> tuple[Variable, ...]:
     """The state variables in their order; AOS124 for a parameter value that is drawn at random."""
@@ -105,6 +106,7 @@ def lower_variables(
                 pieces.expression(value, outside) if value is not None else None,
                 pieces.code(code, outside) if code is not None else None,
                 axes,
+                variable.name not in irrelevant,
             )
         )
     return tuple(lowered)

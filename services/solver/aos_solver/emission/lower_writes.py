@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 from aos_protocol.documents import Assignment, Environment, Project
 from aos_protocol.local_types import told_variables
+from aos_runtime.cpp_facts import READING_FUNCTIONS
 from aos_runtime.snippets import (
     Access,
     Cpp,
@@ -29,12 +30,6 @@ LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
 """Where a lambda begins."""
 
 _CHANGING = (Access.WRITE, Access.UPDATE, Access.BIND)
-_READING_FUNCTIONS = frozenset({
-    "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",
-    "float", "floor", "fmax", "fmin", "fmod", "hypot", "int", "isfinite", "isnan", "log", "log10", "log2",
-    "lround", "make_pair", "make_tuple", "max", "min", "pow", "round", "sin", "sqrt", "static_cast", "string",
-    "tan", "tanh", "to_string", "trunc",
-})  # fmt: skip
 
 
 class Changes:
@@ -133,7 +128,7 @@ def _passed_to_functions(cpp: Cpp) -> Iterator[range]:
     """The arguments of calls to functions that may take them by reference."""
     for call in cpp.calls:
         is_function = len(call.name) == 1 or call.name[:1] == ("std",)
-        if is_function and call.name[-1] not in _READING_FUNCTIONS:
+        if is_function and call.name[-1] not in READING_FUNCTIONS:
             yield from (range(argument.start, argument.end) for argument in call.arguments)
 
 

@@ -99,6 +99,7 @@ class Axis(msgspec.Struct, frozen=True):
 class Variable(msgspec.Struct, frozen=True):
     """A state variable. One that nothing changes is a constant, which no particle holds.
 
+    `is_relevant`: what is earned or observed may depend on it (see `lower_relevance`).
     `is_parameter_value`: actions may take it as a parameter. The default is an expression for the value, or
     statements over `state.`.
     """
@@ -110,6 +111,7 @@ class Variable(msgspec.Struct, frozen=True):
     default_value: Piece | None = None
     default_code: Piece | None = None
     axes: tuple[Axis, ...] = ()
+    is_relevant: bool = True
 
 
 class ObjectList(msgspec.Struct, frozen=True):
@@ -273,6 +275,11 @@ class Program(msgspec.Struct, frozen=True):
     def particle(self) -> tuple[Variable, ...]:
         """The variables that a particle holds."""
         return tuple(variable for variable in self.variables if not variable.is_constant)
+
+    @property
+    def irrelevant(self) -> tuple[Variable, ...]:
+        """The variables that a particle holds for people and rollout policies only."""
+        return tuple(variable for variable in self.particle if not variable.is_relevant)
 
     @property
     def constants(self) -> tuple[Variable, ...]:

@@ -142,6 +142,9 @@ class Belief {
     return particles_[index].state;
   }
 
+  // Of all weights; 1 but for rounding.
+  double total() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
+
   double probability_of(Ending ending) const {
     double sum = 0;
     for (const auto& [state, weight] : particles_) sum += Model::ending(state) == ending ? weight : 0;

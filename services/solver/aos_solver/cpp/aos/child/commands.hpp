@@ -124,14 +124,19 @@ class Engine {
   }
 
   void exact(JsonWriter& json, int horizon, std::uint64_t belief_budget, double seconds) const {
-    ExactEvaluation<Model> evaluation{belief_budget, seconds};
-    const auto values = evaluation.action_values(belief_, horizon > 0 ? horizon : Model::horizon);
+    if (horizon <= 0) horizon = Model::horizon;
+    const auto start = std::chrono::steady_clock::now();
+    const auto is_over = [=] { return std::chrono::steady_clock::now() - start > std::chrono::duration<double>{seconds}; };
+    StateSpace<Model> space;
+    space.reach_within(belief_, horizon);
+    ExactEvaluation<Model> evaluation{space, {.beliefs = belief_budget, .is_over = is_over}};
+    const auto values = evaluation.action_values(belief_, horizon);
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       json.begin_object().member("action", Model::action_name(action));
       json.member("q", values[static_cast<std::size_t>(action)]).end_object();
     }
-    json.end_array().member("beliefs", evaluation.beliefs()).member("states", evaluation.states()).end_object();
+    json.end_array().member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
   }
 
   void reach(JsonWriter& json, double seconds) const {
@@ -175,7 +180,7 @@ class Engine {
   }
 
   // What may be left out where the model is explored from the current belief on.
-  void propose_left_out(JsonWriter& json) const { LeftOut<Model>::tell_proposal(json, belief_); }
+  void propose_left_out(JsonWriter& json) const { LeftOut<Model>::tell_proposal(json); }
 
   // The model as numbers from the current belief on: `is_new` begins, each further call goes on for about so long.
   void explore(JsonWriter& json, bool is_new, double seconds, const std::vector<std::size_t>& left_out) {
@@ -252,8 +257,9 @@ class Engine {
   void rate_by_table(JsonWriter& json, double seconds, std::uint64_t seed) const {
     Sampler random{seed};
     const auto belief = Belief<Model>::initial(random);
+    StateSpace<Model> space;
     StepTable<Model> table;
-    if (!belief.is_exact() || !table.prepare(belief)) return write_samples(json, Walked{}, 0, 0);
+    if (!space.reach(belief) || !table.prepare(space, belief)) return write_samples(json, Walked{}, 0, 0);
     TableWalks<Model> walks{table, random};
     count_samples(json, seconds, [&](std::uint64_t steps) { return walks.walk(steps, random); });
   }

@@ -12,7 +12,6 @@
 #include "aos/belief/belief.hpp"
 #include "aos/child/bad_command.hpp"
 #include "aos/model/values.hpp"
-#include "aos/planning/relevant_states.hpp"
 
 namespace aos {
 
@@ -37,14 +36,12 @@ class LeftOut {
     return rest;
   }
 
-  // Tells the numbers and names of what may be left out, as far as a look at the states that matter shows; nothing where
-  // these are too many.
-  static void tell_proposal(JsonWriter& json, const Belief<Model>& belief) {
+  // Tells the numbers and names of what does not matter.
+  static void tell_proposal(JsonWriter& json) {
     const std::vector<Place> places = Model::places(some_state());
-    const std::vector<Place> ignored = ignored_from(belief);
     json.begin_object().key("variables").begin_array();
     for (std::size_t number = 0; number < places.size(); ++number) {
-      if (std::find(ignored.begin(), ignored.end(), places[number]) == ignored.end()) continue;
+      if (!is_irrelevant(places[number])) continue;
       json.begin_object().member("number", number).member("name", places[number].name).end_object();
     }
     json.end_array().end_object();
@@ -59,14 +56,10 @@ class LeftOut {
     return state;
   }
 
-  static std::vector<Place> ignored_from(const Belief<Model>& belief) {
-    auto states = RelevantStates<Model>::by_observations();
-    try {
-      states.reach_from(belief);
-    } catch (const NotEnumerable&) {
-      return {};
-    }
-    return states.ignored();
+  static bool is_irrelevant(const Place& place) {
+    return std::ranges::any_of(Model::irrelevant(), [&](const ByteRange& range) {
+      return range.offset <= place.offset && place.offset + place.size <= range.offset + range.size;
+    });
   }
 
   State stand_in_;

@@ -3,102 +3,72 @@
 
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
-#include <unordered_set>
+#include <string>
 #include <vector>
 
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/planning/state_space.hpp"
 
 namespace aos {
-
-inline constexpr std::size_t most_reached_states = 100'000;
-inline constexpr std::size_t most_reached_bytes = std::size_t{256} << 20;
 
 // Ends early when a goal is found and every precondition is met somewhere.
 template <class Model>
 class Reachability {
  public:
-  using State = typename Model::State;
-  using Clock = std::chrono::steady_clock;
-
   Reachability(const Belief<Model>& belief, double seconds)
-      : latest_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{seconds})),
-        unmet_(static_cast<std::size_t>(Model::action_count())),
-        is_met_(unmet_, false) {
+      : unmet_(static_cast<std::size_t>(Model::action_count())), is_met_(unmet_, false) {
+    using Clock = std::chrono::steady_clock;
+    const auto latest = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{seconds});
     try {
       if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
-      for (const auto& particle : belief.particles()) add(particle.state);
-      walk();
+      space_.reach_within(belief, 0);
+      while (!is_done()) {
+        if (Clock::now() > latest) throw NotEnumerable{"it takes longer than allowed"};
+        const std::size_t known = space_.size();
+        space_.reach_within(belief, 1);
+        if (space_.size() > known) ++depth_;
+      }
     } catch (const NotEnumerable& limit) {
       blame::at(0);
       limit_ = limit.reason;
     }
   }
 
-  bool has_goal() const { return has_goal_; }
+  bool has_goal() const { return space_.reaches(Ending::goal); }
   bool is_met(int action) const { return is_met_[static_cast<std::size_t>(action)]; }
-  std::size_t states() const { return known_.size(); }
+  std::size_t states() const { return space_.size(); }
   int depth() const { return depth_; }
   // Why there may be more; empty where all was looked at.
   const char* limit() const { return limit_; }
 
  private:
-  struct Hash {
-    std::size_t operator()(const State& state) const { return Model::hash(state); }
-  };
-
-  void walk() {
-    std::size_t level_end = waiting_.size();
-    for (std::size_t next = 0; next < waiting_.size() && !(has_goal_ && unmet_ == 0); ++next) {
-      if (next == level_end) {
-        level_end = waiting_.size();
-        ++depth_;
+  // Looks at the states that are new.
+  bool is_done() {
+    for (; looked_at_ < space_.size(); ++looked_at_) {
+      for (int action = 0; action < Model::action_count(); ++action) {
+        if (!is_met(action)) try_precondition(looked_at_, action);
       }
-      leave(*waiting_[next]);
     }
+    return space_.is_closed() || (has_goal() && unmet_ == 0);
   }
 
-  void leave(const State& state) {
-    if (Model::ending(state) != Ending::running) return;
-    for (int action = 0; action < Model::action_count(); ++action) {
-      if (Clock::now() > latest_) throw NotEnumerable{"it takes longer than allowed"};
-      if (!is_met(action)) try_precondition(state, action);
-      draws_.for_each_path([&](Enumerator& path) {
-        State next = state;
-        Model::step(next, action, path);
-        add(next);
-      });
-    }
-  }
-
-  void try_precondition(const State& state, int action) {
+  void try_precondition(std::uint32_t number, int action) {
     bool meets = false;
-    draws_.for_each_path([&](Enumerator& path) { meets = Model::meets_precondition(state, action, path) || meets; });
+    draws_.for_each_path(
+        [&](Enumerator& path) { meets = Model::meets_precondition(space_[number], action, path) || meets; });
     if (!meets) return;
     is_met_[static_cast<std::size_t>(action)] = true;
     --unmet_;
   }
 
-  void add(const State& state) {
-    const auto [entry, is_new] = known_.insert(state);
-    if (!is_new) return;
-    if (known_.size() > most_reached_states || known_.size() * sizeof(State) > most_reached_bytes) {
-      throw NotEnumerable{"there are more states"};
-    }
-    waiting_.push_back(&*entry);
-    has_goal_ = has_goal_ || Model::ending(state) == Ending::goal;
-  }
-
-  Clock::time_point latest_;
+  StateSpace<Model> space_{{.states = 100'000, .bytes = std::size_t{256} << 20}};
   std::size_t unmet_;
   std::vector<bool> is_met_;
-  bool has_goal_ = false;
+  std::uint32_t looked_at_ = 0;
   int depth_ = 0;
   const char* limit_ = "";
   Enumerator draws_;
-  std::unordered_set<State, Hash> known_;
-  std::vector<const State*> waiting_;  // in the order of discovery; elements of `known_` stay where they are
 };
 
 }  // namespace aos

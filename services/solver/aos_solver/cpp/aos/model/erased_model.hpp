@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -64,6 +65,10 @@ struct ErasedModel {
     compiled_model.visit(state.bytes, leaves);
   }
   static void visit_values(const State& state, ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); }
+  // The parts of a state that no reward, observation or ending depends on.
+  static std::span<const ByteRange> irrelevant() {
+    return {compiled_model.irrelevant, compiled_model.irrelevant_count};
+  }
   // How many bytes of a state the model uses; the others are 0.
   static std::size_t state_bytes() { return compiled_model.state_bytes; }
   // Where the state's single values stand, in the order of `visit`.

@@ -52,6 +52,8 @@ struct ModelTable {
   bool has_rollout_policy;
   bool has_state_heuristic;
   std::size_t ending_offset;
+  const ByteRange* irrelevant;  // parts of a state
+  std::size_t irrelevant_count;
 
   void (*prepare)();
   bool (*equal)(const void* left, const void* right);
@@ -129,6 +131,8 @@ constexpr ModelTable table_of() {
       .has_rollout_policy = Model::has_rollout_policy,
       .has_state_heuristic = Model::has_state_heuristic,
       .ending_offset = offsetof(State, __ending),
+      .irrelevant = Model::irrelevant.data(),
+      .irrelevant_count = Model::irrelevant.size(),
       .prepare = Model::prepare,
       .equal =
           [](const void* left, const void* right) {

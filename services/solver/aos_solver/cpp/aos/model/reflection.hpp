@@ -21,6 +21,12 @@ namespace aos {
 
 class JsonWriter;
 
+// A part of a state.
+struct ByteRange {
+  std::size_t offset;
+  std::size_t size;
+};
+
 template <class T>
 concept Compound = requires(const T& value) { T::__fields(value, [](const char*, const auto&) {}); };
 template <class T>

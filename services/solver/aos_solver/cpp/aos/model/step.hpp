@@ -8,6 +8,7 @@ namespace aos {
 
 // How a state has ended; running states go on.
 enum class Ending : std::uint8_t { running, goal, failure };
+inline constexpr int ending_count = 3;
 
 // >= 0: the number of a response within its skill; -1: no response was set; below: a text.
 using Observation = std::int64_t;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "aos/belief/belief.hpp"
-#include "aos/planning/relevant_states.hpp"
+#include "aos/planning/state_space.hpp"
 
 namespace aos {
 
@@ -26,78 +26,64 @@ class SeenValues {
  public:
   using State = typename Model::State;
 
-  // Prepares values for up to `horizon` decisions. Returns whether the model is small enough; the limits are in states
-  // and outcomes, not in time, so that decisions can be repeated. Does little for a belief whose states are known.
+  explicit SeenValues(StateSpace<Model>& space) : space_(space) {}
+
+  // Prepares values for up to `horizon` decisions. Returns whether the model is small enough. Does little for a belief
+  // whose states are known.
   bool prepare(const Belief<Model>& belief, int horizon) {
-    if (is_too_large_ || Model::action_count() == 0) return false;
-    const std::size_t known = states_.size();
-    try {
-      states_.reach_from(belief);
-    } catch (const NotEnumerable&) {
-      is_too_large_ = true;
-      states_ = {};
-      return false;
-    }
-    if (known == states_.size() && horizon == horizon_) return true;
+    if (Model::action_count() == 0 || !space_.reach(belief)) return false;
+    if (values_of_ == space_.size() && horizon == horizon_) return true;
+    values_of_ = space_.size();
     horizon_ = horizon;
     ++iterations_;
     iterate();
     return true;
   }
 
-  std::size_t states() const { return states_.size(); }
+  std::size_t states() const { return space_.size(); }
   // How often values were worked out anew, and with them perhaps the numbers of states.
   std::uint64_t iterations() const { return iterations_; }
 
-  // Of a state; `RelevantStates::none` for one that was not reckoned with, which is worth the most.
-  std::uint32_t number_of(const State& state) const { return states_.find(state); }
+  // Of a state; `no_state` for one that was not reckoned with, which is worth the most.
+  std::uint32_t number_of(const State& state) const { return space_.find(state); }
 
-  // Where an action leads from a state if that is certain and no end; else `RelevantStates::none`.
+  // Where an action leads from a state if that is certain and no end; else `no_state`.
   std::uint32_t certain_next(std::uint32_t number, int action) const {
-    if (number == RelevantStates<Model>::none) return number;
-    const std::size_t pair = number * actions() + static_cast<std::size_t>(action);
-    const std::size_t first = pair == 0 ? 0 : states_.branch_ends()[pair - 1];
-    if (states_.branch_ends()[pair] != first + 1) return RelevantStates<Model>::none;
-    const auto [next, probability] = states_.branches()[first];
-    return probability > 1 - 1e-6f ? next : RelevantStates<Model>::none;
+    if (number == no_state) return number;
+    const std::size_t row = rows().row(number, static_cast<std::size_t>(action));
+    const auto* const first = rows().outcomes.begin(row);
+    return rows().outcomes.end(row) == first + 1 && first->probability > 1 - 1e-6 ? first->next : no_state;
   }
 
   // With `horizon` decisions to go.
   double value(std::uint32_t number, int horizon) const {
-    return number == RelevantStates<Model>::none ? highest_ : layer(horizon)[number];
+    return number == no_state ? highest_ : layer(horizon)[number];
   }
 
   // What an action costs somebody who sees the state, against the best one: how much less it is worth, so never above 0.
   double advantage(std::uint32_t number, int action, int horizon) const {
-    if (number == RelevantStates<Model>::none) return 0;
-    const std::size_t pair = number * actions() + static_cast<std::size_t>(action);
-    const std::vector<double>& later = layer(horizon - 1);
-    double continuation = 0;
-    const std::size_t first = pair == 0 ? 0 : states_.branch_ends()[pair - 1];
-    for (std::size_t branch = first; branch < states_.branch_ends()[pair]; ++branch) {
-      const auto [next, probability] = states_.branches()[branch];
-      continuation += probability * later[next];
-    }
-    const double worth = states_.rewards()[pair] + Model::discount * continuation;
+    if (number == no_state) return 0;
+    const double worth = value_of(rows().row(number, static_cast<std::size_t>(action)), layer(horizon - 1));
     return std::min(worth - layer(horizon)[number], 0.0);
   }
 
   // Adds what each action is worth with many decisions to go.
   void add_action_values(std::uint32_t number, std::vector<double>& sums) const {
-    if (number == RelevantStates<Model>::none) return;
+    if (number == no_state) return;
     const float* values = &action_values_[number * actions()];
     for (std::size_t action = 0; action < actions(); ++action) sums[action] += values[action];
   }
 
  private:
-  static std::size_t actions() { return static_cast<std::size_t>(Model::action_count()); }
+  const point_based::FlatModel& rows() const { return space_.rows(); }
+  std::size_t actions() const { return space_.actions(); }
 
   void iterate() {
-    layers_.assign(1, std::vector<double>(states_.size()));
-    action_values_.assign(states_.size() * actions(), 0);
-    const bool has_room = states_.size() * (static_cast<std::size_t>(horizon_) + 1) <= most_layered_values;
+    layers_.assign(1, std::vector<double>(space_.size()));
+    action_values_.assign(space_.size() * actions(), 0);
+    const bool has_room = space_.size() * (static_cast<std::size_t>(horizon_) + 1) <= most_layered_values;
     for (int decisions = 1; decisions <= horizon_; ++decisions) {
-      std::vector<double> values(states_.size());
+      std::vector<double> values(space_.size());
       const double change = one_more_decision(layers_.back(), values);
       if (!has_room) layers_.clear();
       layers_.push_back(std::move(values));
@@ -105,22 +91,24 @@ class SeenValues {
     }
   }
 
+  double value_of(std::size_t row, const std::vector<double>& later) const {
+    double continuation = 0;
+    for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
+      continuation += outcome->probability * later[outcome->next];
+    }
+    return rows().rewards[row] + Model::discount * continuation;
+  }
+
   // Returns the largest change.
   double one_more_decision(const std::vector<double>& later, std::vector<double>& values) {
-    constexpr double lowest = -std::numeric_limits<double>::infinity();
     double change = 0;
-    highest_ = lowest;
-    std::size_t branch = 0;
-    for (std::size_t number = 0; number < states_.size(); ++number) {
-      double best = lowest;
-      for (std::size_t pair = number * actions(); pair < (number + 1) * actions(); ++pair) {
-        double continuation = 0;
-        for (; branch < states_.branch_ends()[pair]; ++branch) {
-          const auto [next, probability] = states_.branches()[branch];
-          continuation += probability * later[next];
-        }
-        const double value = states_.rewards()[pair] + Model::discount * continuation;
-        action_values_[pair] = static_cast<float>(value);
+    highest_ = -std::numeric_limits<double>::infinity();
+    for (std::size_t number = 0; number < values.size(); ++number) {
+      double best = -std::numeric_limits<double>::infinity();
+      for (std::size_t action = 0; action < actions(); ++action) {
+        const std::size_t row = rows().row(number, action);
+        const double value = value_of(row, later);
+        action_values_[row] = static_cast<float>(value);
         best = std::max(best, value);
       }
       values[number] = best;
@@ -134,11 +122,11 @@ class SeenValues {
     return layers_[std::min(static_cast<std::size_t>(std::max(horizon, 0)), layers_.size() - 1)];
   }
 
-  bool is_too_large_ = false;
+  StateSpace<Model>& space_;
+  std::size_t values_of_ = 0;  // states
   int horizon_ = 0;
   std::uint64_t iterations_ = 0;
   double highest_ = 0;
-  RelevantStates<Model> states_;
   std::vector<std::vector<double>> layers_;
   std::vector<float> action_values_;
 };

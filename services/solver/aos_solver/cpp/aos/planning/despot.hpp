@@ -43,8 +43,9 @@ class Despot {
  public:
   using State = typename Model::State;
 
-  Despot()
-      : nodes_(most_node_bytes / sizeof(Node)),
+  explicit Despot(SeenValues<Model>& values)
+      : evaluation_(values),
+        nodes_(most_node_bytes / sizeof(Node)),
         actions_(most_node_bytes / sizeof(ActionNode)),
         scenarios_(most_scenario_bytes / sizeof(Scenario<Model>)) {}
 

@@ -1,14 +1,15 @@
-// Finite-horizon values by going through every observation of every action: the truth that the search is measured by.
+// Finite-horizon values by going through every observation of every action: the truth that searches are measured by, and
+// the best there is where it fits the budget.
 //
-// States are numbered as they appear and each (state, action) is enumerated once. A belief is a sorted list of
-// (state number, probability) without its ended part, which is worth nothing; equal beliefs at equal depth are
-// evaluated once.
+// A belief is a sorted list of (state number, weight) without its ended part, which is worth nothing; equal beliefs at
+// equal depth are evaluated once. Below the root, an action is left out where even somebody who sees the state could not
+// do better with it than another action does.
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <unordered_map>
@@ -16,54 +17,40 @@
 #include <vector>
 
 #include "aos/belief/belief.hpp"
+#include "aos/planning/state_space.hpp"
 
 namespace aos {
+
+// What an evaluation may spend: distinct beliefs, outcomes walked (0: no limit), and until `is_over`.
+struct ExactLimits {
+  std::uint64_t beliefs = 0;
+  std::uint64_t outcomes = 0;
+  std::function<bool()> is_over = [] { return false; };
+};
 
 template <class Model>
 class ExactEvaluation {
  public:
-  using State = typename Model::State;
-  using Clock = std::chrono::steady_clock;
-  using Seconds = std::chrono::duration<double>;
+  // The space must hold all that `horizon` decisions can lead to from the beliefs that are evaluated.
+  ExactEvaluation(const StateSpace<Model>& space, ExactLimits limits) : space_(space), limits_(std::move(limits)) {}
 
-  ExactEvaluation(std::uint64_t belief_budget, double seconds)
-      : belief_budget_(belief_budget), latest_(Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds{seconds})) {}
-
-  // The value of every action at the belief with so many decisions to go. Throws NotEnumerable.
+  // The value of every action at a belief with so many decisions to go. Throws NotEnumerable where a limit is met.
   std::vector<double> action_values(const Belief<Model>& belief, int horizon) {
     if (!belief.is_exact()) throw NotEnumerable{"the belief is only known by samples"};
-    Weighted root;
-    for (const auto& [state, weight] : belief.particles()) {
-      if (Model::ending(state) == Ending::running) root.emplace_back(number_of(state), weight);
-    }
-    std::sort(root.begin(), root.end());
-    std::vector<double> values;
-    for (int action = 0; action < Model::action_count(); ++action) {
-      values.push_back(horizon > 0 ? action_value(root, action, horizon) : 0);
-    }
+    const Weighted root = space_.weights_of(belief);
+    std::vector<double> values(space_.actions(), 0.0);
+    if (horizon <= 0 || root.empty()) return values;
+    prepare_seen_values(horizon);
+    for (std::size_t action = 0; action < values.size(); ++action) values[action] = action_value(root, action, horizon);
     return values;
   }
 
   std::uint64_t beliefs() const { return evaluated_; }
-  std::size_t states() const { return states_.size(); }
+  std::uint64_t outcomes() const { return walked_; }
 
  private:
   using Weighted = std::vector<std::pair<std::uint32_t, double>>;
 
-  struct Branch {
-    Observation observation;
-    std::uint32_t next;
-    double probability;
-    bool is_running;
-  };
-  struct Outcomes {
-    double reward = 0;
-    bool is_known = false;
-    std::vector<Branch> branches;
-  };
-  struct StateHash {
-    std::size_t operator()(const State& state) const { return Model::hash(state); }
-  };
   struct BeliefKey {
     std::uint64_t high, low;
     bool operator==(const BeliefKey&) const = default;
@@ -72,45 +59,52 @@ class ExactEvaluation {
     std::size_t operator()(const BeliefKey& key) const { return key.high ^ key.low; }
   };
 
-  std::uint32_t number_of(const State& state) {
-    const auto [entry, is_new] = numbers_.try_emplace(state, static_cast<std::uint32_t>(states_.size()));
-    if (is_new) {
-      states_.push_back(state);
-      outcomes_.emplace_back(Model::action_count());
+  const point_based::FlatModel& rows() const { return space_.rows(); }
+  bool has_rows(std::uint32_t state) const { return state < rows().states; }
+
+  // What states are worth to somebody who sees them, by decisions to go.
+  void prepare_seen_values(int horizon) {
+    constexpr std::size_t max_values = 4'000'000;
+    if (space_.size() * static_cast<std::size_t>(horizon) > max_values) return;
+    if (seen_values_.empty()) seen_values_.emplace_back(space_.size(), 0.0);
+    for (auto left = static_cast<int>(seen_values_.size()); left < horizon; ++left) {
+      std::vector<double> values(space_.size(), std::numeric_limits<double>::infinity());
+      for (std::uint32_t state = 0; state < rows().states; ++state) {
+        double best = -std::numeric_limits<double>::infinity();
+        for (std::size_t action = 0; action < space_.actions(); ++action) {
+          best = std::max(best, seen_value(state, action, seen_values_.back()));
+        }
+        values[state] = best;
+      }
+      seen_values_.push_back(std::move(values));
     }
-    return entry->second;
+  }
+  double seen_value(std::uint32_t state, std::size_t action, const std::vector<double>& later) const {
+    const std::size_t row = rows().row(state, action);
+    double continuation = 0;
+    for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
+      continuation += outcome->probability * later[outcome->next];
+    }
+    return rows().rewards[row] + Model::discount * continuation;
   }
 
-  const Outcomes& outcomes(std::uint32_t number, int action) {
-    if (!outcomes_[number][action].is_known) {
-      if (Clock::now() > latest_) throw NotEnumerable{"it takes longer than allowed"};
-      Outcomes found;
-      draws_.for_each_path([&](Enumerator& path) {
-        State next = states_[number];
-        const Step step = Model::step(next, action, path);
-        found.reward += path.probability() * step.reward;
-        const bool is_running = Model::ending(next) == Ending::running;
-        const std::uint32_t next_number = is_running ? number_of(next) : 0;
-        found.branches.push_back({step.observation, next_number, path.probability(), is_running});
-      });
-      found.is_known = true;
-      outcomes_[number][action] = std::move(found);
-    }
-    return outcomes_[number][action];
-  }
-
-  // Beliefs here need not sum to 1: a part's weight is how likely it is to get there.
-  double action_value(const Weighted& belief, int action, int horizon) {
+  // Weights here need not sum to 1: a part's weight is how likely it is to get there.
+  double action_value(const Weighted& belief, std::size_t action, int horizon) {
     double value = 0;
-    std::map<Observation, std::map<std::uint32_t, double>> posteriors;
-    for (const auto& [number, weight] : belief) {
-      const Outcomes& found = outcomes(number, action);
-      value += weight * found.reward;
+    std::map<std::uint32_t, std::map<std::uint32_t, double>> posteriors;
+    for (const auto& [state, weight] : belief) {
+      const std::size_t row = rows().row(state, action);
+      value += weight * rows().rewards[row];
       if (horizon == 1) continue;
-      for (const Branch& branch : found.branches) {
-        if (branch.is_running) posteriors[branch.observation][branch.next] += weight * branch.probability;
+      for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
+        const auto* const last = rows().readings.end(outcome->sensing);
+        for (const auto* reading = rows().readings.begin(outcome->sensing); reading != last; ++reading) {
+          posteriors[reading->observation][outcome->next] += weight * outcome->probability * reading->probability;
+          ++walked_;
+        }
       }
     }
+    if (limits_.outcomes > 0 && walked_ > limits_.outcomes) throw NotEnumerable{"there are more outcomes than the budget"};
     for (const auto& [observation, states] : posteriors) {
       value += Model::discount * best_value({states.begin(), states.end()}, horizon - 1);
     }
@@ -120,40 +114,63 @@ class ExactEvaluation {
   double best_value(Weighted belief, int horizon) {
     double total = 0;
     for (const auto& part : belief) total += part.second;
-    if (total <= negligible_weight) return 0;
+    if (total <= 0) return 0;
     for (auto& part : belief) part.second /= total;
 
     auto& known = values_[static_cast<std::size_t>(horizon)];
     const BeliefKey key = key_of(belief);
     if (const auto found = known.find(key); found != known.end()) return total * found->second;
-    if (++evaluated_ > belief_budget_) throw NotEnumerable{"more beliefs than the budget can be reached"};
-    if (evaluated_ % 256 == 0 && Clock::now() > latest_) throw NotEnumerable{"it takes longer than allowed"};
-    double best = -std::numeric_limits<double>::infinity();
-    for (int action = 0; action < Model::action_count(); ++action) {
-      best = std::max(best, action_value(belief, action, horizon));
-    }
+    if (++evaluated_ > limits_.beliefs) throw NotEnumerable{"more beliefs than the budget can be reached"};
+    if (evaluated_ % 64 == 0 && limits_.is_over()) throw NotEnumerable{"it takes longer than allowed"};
+    const double best = best_of_actions(belief, horizon);
     known.emplace(key, best);
     return total * best;
   }
 
-  // Probabilities are rounded to 1e-10, so that different orders of the same sum meet.
+  // The action with the highest bound first.
+  double best_of_actions(const Weighted& belief, int horizon) {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t action = 0; action < space_.actions(); ++action) order.emplace_back(-bound(belief, action, horizon), action);
+    std::sort(order.begin(), order.end());
+    double best = -std::numeric_limits<double>::infinity();
+    for (const auto& [negative_bound, action] : order) {
+      if (-negative_bound <= best) break;
+      best = std::max(best, action_value(belief, action, horizon));
+    }
+    return best;
+  }
+
+  // What the action is worth at most; infinite where that is not known.
+  double bound(const Weighted& belief, std::size_t action, int horizon) const {
+    if (static_cast<std::size_t>(horizon) > seen_values_.size()) return std::numeric_limits<double>::infinity();
+    const std::vector<double>& later = seen_values_[static_cast<std::size_t>(horizon - 1)];
+    double sum = 0;
+    double magnitude = 0;
+    for (const auto& [state, weight] : belief) {
+      const double value = weight * seen_value(state, action, later);
+      sum += value;
+      magnitude += std::abs(value);
+    }
+    constexpr double rounding = 1e-12;
+    return sum + rounding * magnitude;
+  }
+
+  // Probabilities are rounded to 1e-13, so that different orders of the same sum meet.
   static BeliefKey key_of(const Weighted& belief) {
     BeliefKey key{0x9ae16a3b2f90404fu, 0xc949d7c7509e6557u};
     for (const auto& [number, weight] : belief) {
-      const auto rounded = static_cast<std::uint64_t>(std::llround(weight * 1e10));
+      const auto rounded = static_cast<std::uint64_t>(std::llround(weight * 1e13));
       key.high = mixed(key.high, rounded * 31 + number);
       key.low = mixed(key.low ^ number, rounded);
     }
     return key;
   }
 
-  std::uint64_t belief_budget_;
-  Clock::time_point latest_;
+  const StateSpace<Model>& space_;
+  ExactLimits limits_;
   std::uint64_t evaluated_ = 0;
-  Enumerator draws_;
-  std::vector<State> states_;
-  std::unordered_map<State, std::uint32_t, StateHash> numbers_;
-  std::vector<std::vector<Outcomes>> outcomes_;
+  std::uint64_t walked_ = 0;
+  std::vector<std::vector<double>> seen_values_;  // by decisions to go and state
   std::unordered_map<std::size_t, std::unordered_map<BeliefKey, double, KeyHash>> values_;
 };
 

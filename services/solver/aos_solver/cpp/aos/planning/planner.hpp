@@ -1,4 +1,4 @@
-// The planner of a model: POMCP, DESPOT or SARSOP, as asked for or as the model's size suggests.
+// The planner of a model: the one that was asked for, or the one that suits the model, the belief and the budget.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,17 @@
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/bounds.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot.hpp"
+#include "aos/planning/exact_search.hpp"
 #include "aos/planning/point_based.hpp"
 #include "aos/planning/pomcp.hpp"
+#include "aos/planning/state_space.hpp"
 
 namespace aos {
 
-enum class PlannerKind { pomcp, despot, sarsop, automatic };
+enum class PlannerKind { pomcp, despot, sarsop, exact, automatic };
 
 // What of a value may come from beyond the horizon, for `automatic` to count without one.
 inline constexpr double negligible_beyond = 0.2;
@@ -39,26 +42,39 @@ inline std::optional<PlannerKind> planner_kind(std::string_view name) {
 template <class Model>
 class Planner {
  public:
-  // See Pomcp, Despot and PointBased. `automatic` takes SARSOP where the states can be listed and the horizon hardly
-  // matters; else DESPOT where its scenarios can have each state that matters among them, and POMCP with more states.
+  // See Pomcp, Despot, PointBased and ExactSearch.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
-    used_ = suited_kind(kind, belief, horizon);
-    if (used_ == PlannerKind::despot) return despot().search(belief, budget, horizon, random);
-    if (used_ == PlannerKind::pomcp) return pomcp_.search(belief, budget, horizon, random);
-    const std::uint64_t simulations = point_based_.search(budget);
-    why_ += "; " + bounds_text();
-    return simulations;
+    used_ = chosen_kind(kind, belief, budget, horizon);
+    switch (used_) {
+      case PlannerKind::exact: return exact_.simulations();
+      case PlannerKind::despot: return despot().search(belief, budget, horizon, random);
+      case PlannerKind::sarsop: {
+        const std::uint64_t simulations = point_based_.search(budget);
+        why_ += "; " + bounds_text();
+        return simulations;
+      }
+      default: return pomcp_.search(belief, budget, horizon, random);
+    }
   }
 
   // The planner of the last search, and why it was that one.
   const char* name() const {
-    return used_ == PlannerKind::sarsop ? "sarsop" : used_ == PlannerKind::despot ? "despot" : "pomcp";
+    switch (used_) {
+      case PlannerKind::exact: return "exact";
+      case PlannerKind::despot: return "despot";
+      case PlannerKind::sarsop: return "sarsop";
+      default: return "pomcp";
+    }
   }
   const std::string& why() const { return why_; }
 
   std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
-    if (used_ == PlannerKind::sarsop) return point_based_.estimates();
-    return used_ == PlannerKind::despot ? despot_->estimates(belief) : pomcp_.estimates(belief);
+    switch (used_) {
+      case PlannerKind::exact: return exact_.estimates();
+      case PlannerKind::despot: return despot_->estimates(belief);
+      case PlannerKind::sarsop: return point_based_.estimates();
+      default: return pomcp_.estimates(belief);
+    }
   }
   // What to do: what is worth most, as far as its value can be believed.
   int choice(const std::vector<ActionEstimate>& estimates) const {
@@ -97,42 +113,46 @@ class Planner {
   // Another mission begins.
   void start_over() {
     forget();
+    exact_.start_over();
     point_based_.start_over();
   }
 
  private:
   // Sets `why_`.
-  PlannerKind suited_kind(PlannerKind asked_for, const Belief<Model>& belief, int horizon) {
+  PlannerKind chosen_kind(PlannerKind asked_for, const Belief<Model>& belief, Budget budget, int horizon) {
+    if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon);
     why_ = "it was asked for";
-    if (asked_for == PlannerKind::pomcp || asked_for == PlannerKind::despot) return asked_for;
-    const bool may_choose = asked_for == PlannerKind::automatic;
-    const double beyond = std::pow(Model::discount, horizon);
-    if (may_choose && beyond > negligible_beyond) {
-      why_ = "SARSOP reckons without the horizon, beyond which rewards still count";
-      return sampling_kind(belief, horizon);
+    if (asked_for != PlannerKind::sarsop) return asked_for;
+    if (!space_.reach(belief)) {
+      why_ = "SARSOP cannot be used: " + space_.obstacle();
+      return PlannerKind::pomcp;
     }
-    if (const std::string& obstacle = point_based_.prepare(belief); !obstacle.empty()) {
+    if (const std::string obstacle = point_based_.prepare(belief); !obstacle.empty()) {
       why_ = "SARSOP cannot be used: " + obstacle;
-      return may_choose ? sampling_kind(belief, horizon) : PlannerKind::pomcp;
+      return PlannerKind::pomcp;
     }
-    if (may_choose) why_ = std::to_string(point_based_.states()) + " states matter, so that all can be listed";
     return PlannerKind::sarsop;
   }
 
-  // Goes on with `why_`.
-  PlannerKind sampling_kind(const Belief<Model>& belief, int horizon) {
-    if (!pomcp_.prepare(belief, horizon)) {
-      why_ += "; there are too many states to derive bounds from";
+  PlannerKind suited_kind(const Belief<Model>& belief, Budget budget, int horizon) {
+    if (!space_.reach(belief)) {
+      why_ = space_.obstacle();
       return PlannerKind::pomcp;
     }
-    const std::size_t states = pomcp_.known_states();
-    why_ += "; " + std::to_string(states) + " states differ in what is yet to be earned, ";
-    if (states > most_scenarios) {
-      why_ += "more than DESPOT has scenarios";
-      return PlannerKind::pomcp;
+    why_ = "all " + std::to_string(space_.size()) + " states can be listed";
+    if (belief.is_exact() && exact_.search(belief, budget, horizon)) {
+      why_ += ", and every observation of " + std::to_string(horizon) + " decisions fits the budget";
+      return PlannerKind::exact;
     }
-    why_ += "so that DESPOT's scenarios cover them";
-    return PlannerKind::despot;
+    if (std::pow(Model::discount, horizon) > negligible_beyond) {
+      why_ += "; SARSOP reckons without the horizon, beyond which rewards still count";
+      return PlannerKind::despot;
+    }
+    if (const std::string obstacle = point_based_.prepare(belief); !obstacle.empty()) {
+      why_ += "; SARSOP cannot be used: " + obstacle;
+      return PlannerKind::despot;
+    }
+    return PlannerKind::sarsop;
   }
 
   std::string bounds_text() const {
@@ -143,12 +163,15 @@ class Planner {
   }
 
   Despot<Model>& despot() {
-    if (!despot_) despot_ = std::make_unique<Despot<Model>>();
+    if (!despot_) despot_ = std::make_unique<Despot<Model>>(values_);
     return *despot_;
   }
 
-  Pomcp<Model> pomcp_;
-  PointBased<Model> point_based_;
+  StateSpace<Model> space_;
+  SeenValues<Model> values_{space_};
+  Pomcp<Model> pomcp_{space_, values_};
+  ExactSearch<Model> exact_{space_};
+  PointBased<Model> point_based_{space_};
   std::unique_ptr<Despot<Model>> despot_;
   PlannerKind used_ = PlannerKind::pomcp;
   std::string why_;

@@ -1,11 +1,9 @@
 // Point-based search from the belief of each decision (SARSOP: Kurniawati, Hsu and Lee, 2008), for models whose states
 // can be listed. The search itself is in point_based/; this is what it takes from a model, and when it may be used.
 //
-// Alpha vectors are lower bounds at every belief, so what one decision has found out serves all later ones. Values are
-// discounted and of a mission without a horizon.
+// Alpha vectors are lower bounds at every belief, so what one decision has found out serves all later ones.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +16,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
-#include "aos/planning/flattening.hpp"
-#include "aos/planning/relevant_states.hpp"
+#include "aos/planning/state_space.hpp"
 #include "point_based/online.hpp"
 
 namespace aos {
@@ -27,32 +24,25 @@ namespace aos {
 template <class Model>
 class PointBased {
  public:
-  // Lists the model if that was not done, as far as the belief needs it. Returns why the search cannot be used; nothing
-  // where it can. No budget counts what it takes for the first decision; later it is next to nothing.
-  const std::string& prepare(const Belief<Model>& belief) {
-    if (!obstacle_.empty()) return obstacle_;
-    if (Model::action_count() == 0) return obstacle_ = "there are no actions";
-    if (Model::discount >= 1) return obstacle_ = "without a discount there are no bounds to begin with";
-    const std::size_t known = states_.size();
-    try {
-      states_.reach_from(belief);
-      running_ = belief.probability_of(Ending::running);
-      const Entries entries = entries_of(belief);
-      if (search_ && known == states_.size() && search_->move_to(entries)) return obstacle_;
-      if (known != states_.size()) starts_.clear();  // their numbers may be others now
-      starts_.push_back({1, entries});
-      point_based::FlatModel model = Flattening<Model>{states_}.model();
-      model.starts = starts_;
-      search_ = std::make_unique<point_based::OnlineSarsop>(std::move(model));
-      search_->move_to(entries);
-    } catch (const NotEnumerable&) {
-      obstacle_ = "there are too many states to list";
-      search_.reset();
-      states_ = {};
-    }
-    return obstacle_;
+  explicit PointBased(const StateSpace<Model>& space) : space_(space) {}
+
+  // Takes over the model from a space in which the belief's states are listed. Returns why the search cannot be used;
+  // nothing where it can. No budget counts what it takes for the first decision; later it is next to nothing.
+  std::string prepare(const Belief<Model>& belief) {
+    if (Model::action_count() == 0) return "there are no actions";
+    if (Model::discount >= 1) return "without a discount there are no bounds to begin with";
+    const auto entries = space_.weights_of(belief);
+    running_ = belief.probability_of(Ending::running);
+    if (search_ && states_ == space_.size() && search_->move_to(entries)) return {};
+    if (states_ != space_.size()) starts_.clear();
+    starts_.push_back({1, entries});
+    states_ = space_.size();
+    point_based::FlatModel model = space_.rows();
+    model.starts = starts_;
+    search_ = std::make_unique<point_based::OnlineSarsop>(std::move(model));
+    search_->move_to(entries);
+    return {};
   }
-  std::size_t states() const { return states_.size(); }
   // What the running part of the prepared belief is worth at least and at most.
   std::pair<double, double> bounds() const { return search_->bounds(); }
   // Backed up in all searches so far.
@@ -89,26 +79,6 @@ class PointBased {
   }
 
  private:
-  using Entries = std::vector<std::pair<std::uint32_t, double>>;
-
-  Entries entries_of(const Belief<Model>& belief) const {
-    Entries entries;
-    for (const auto& [state, weight] : belief.particles()) {
-      if (Model::ending(state) == Ending::running) entries.emplace_back(states_.find(state), weight);
-    }
-    std::sort(entries.begin(), entries.end());
-    std::size_t kept = 0;
-    for (const auto& [state, weight] : entries) {
-      if (kept > 0 && entries[kept - 1].first == state) {
-        entries[kept - 1].second += weight;
-      } else {
-        entries[kept++] = {state, weight};
-      }
-    }
-    entries.resize(kept);
-    return entries;
-  }
-
   template <class IsOver>
   static point_based::OnlineSarsop::IsOver until(Budget budget, IsOver&& is_over) {
     return [budget, &is_over, start = PlanningClock::now()] {
@@ -117,10 +87,10 @@ class PointBased {
     };
   }
 
-  RelevantStates<Model> states_ = RelevantStates<Model>::by_observations();
+  const StateSpace<Model>& space_;
+  std::size_t states_ = 0;                   // of the space when the model was taken over
   std::vector<point_based::Start> starts_;  // one where nothing surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;
-  std::string obstacle_;
   double running_ = 0;
   std::uint64_t known_ = 0;
 };

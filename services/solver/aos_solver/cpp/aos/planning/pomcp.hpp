@@ -50,10 +50,7 @@ class Pomcp {
  public:
   using State = typename Model::State;
 
-  // Values for somebody who sees the state; returns whether the model is small enough. The search does it, too. It takes up
-  // to some seconds for the first decision, which no budget counts, and next to nothing later.
-  bool prepare(const Belief<Model>& belief, int horizon) { return values_.prepare(belief, horizon); }
-  std::size_t known_states() const { return values_.states(); }
+  Pomcp(const StateSpace<Model>& space, SeenValues<Model>& values) : space_(space), values_(values) {}
 
   // Runs the search and returns how many simulations it took.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
@@ -126,8 +123,8 @@ class Pomcp {
     }
     if (belief.probability_of(Ending::running) <= 0) return 0;
     for (const auto& tree : trees_) tree->begin(horizon);
-    if (has_values && listed_.prepare(belief, values_)) {
-      const auto start_state = [&](Sampler& own) { return ListedState<Model>{listed_, own}; };
+    if (has_values && steps_.prepare(space_, belief)) {
+      const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
       return simulate_all(start_state, budget, start, random, first, is_over);
     }
     const SeenValues<Model>* const values = has_values ? &values_ : nullptr;
@@ -214,8 +211,9 @@ class Pomcp {
   }
 
   std::vector<std::unique_ptr<Tree>> trees_;
-  SeenValues<Model> values_;
-  ListedModel<Model> listed_;
+  const StateSpace<Model>& space_;
+  SeenValues<Model>& values_;
+  StepTable<Model> steps_;
   double seen_worth_ = 0;
 };
 

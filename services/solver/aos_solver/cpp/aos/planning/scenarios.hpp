@@ -84,6 +84,9 @@ template <class Model>
 class ScenarioEvaluation {
  public:
   using State = typename Model::State;
+
+  explicit ScenarioEvaluation(SeenValues<Model>& values) : values_(values) {}
+
   // Derives values from the model where it is small enough.
   void prepare(const Belief<Model>& belief, int horizon) {
     horizon_ = horizon;
@@ -94,7 +97,7 @@ class ScenarioEvaluation {
   std::uint32_t seen_next(std::uint32_t before, int action, const State& state) const {
     if (!has_values_) return 0;
     const std::uint32_t next = values_.certain_next(before, action);
-    return next != RelevantStates<Model>::none ? next : values_.number_of(state);
+    return next != no_state ? next : values_.number_of(state);
   }
 
   // What is counted from: what a state is worth to somebody who sees it, or nothing.
@@ -227,7 +230,7 @@ class ScenarioEvaluation {
     return static_cast<int>(std::max_element(sums_.begin(), sums_.end()) - sums_.begin());
   }
 
-  SeenValues<Model> values_;
+  SeenValues<Model>& values_;
   bool has_values_ = false;
   int horizon_ = 0;
   std::uint64_t seed_ = 0;

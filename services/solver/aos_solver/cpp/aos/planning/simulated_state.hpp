@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
@@ -38,52 +37,26 @@ class ComputedState {
   const SeenValues<Model>* values_;
 };
 
-// What searches look up of a model with few states: its steps, and what the states are worth.
-template <class Model>
-class ListedModel {
- public:
-  // After the values. Returns whether the model is small enough; see StepTable.
-  bool prepare(const Belief<Model>& belief, const SeenValues<Model>& values) {
-    if (!steps_.prepare(belief)) return false;
-    values_ = &values;
-    if (known_iterations_ == values.iterations() && value_numbers_.size() == steps_.size()) return true;
-    known_iterations_ = values.iterations();
-    value_numbers_.clear();
-    for (std::uint32_t number = 0; number < steps_.size(); ++number) {
-      value_numbers_.push_back(values.number_of(steps_[number]));
-    }
-    return true;
-  }
-
-  const StepTable<Model>& steps() const { return steps_; }
-  double value(std::uint32_t number, int left) const { return values_->value(value_numbers_[number], left); }
-
- private:
-  StepTable<Model> steps_;
-  const SeenValues<Model>* values_ = nullptr;
-  std::uint64_t known_iterations_ = 0;
-  std::vector<std::uint32_t> value_numbers_;
-};
-
 template <class Model>
 class ListedState {
  public:
-  // A state of the belief that the model was prepared for.
-  ListedState(const ListedModel<Model>& model, Sampler& random)
-      : model_(model), number_(model.steps().start(random.bits())) {}
+  // A state of the belief that the table was prepared for.
+  ListedState(const StepTable<Model>& steps, const SeenValues<Model>& values, Sampler& random)
+      : steps_(steps), values_(values), number_(steps.start(random.bits())) {}
 
   Step step(int action, Sampler& random) {
-    const auto& outcome = model_.steps().outcome(number_, action, random.bits());
+    const auto& outcome = steps_.outcome(number_, action, random.bits());
     number_ = outcome.next;
     return outcome.step;
   }
   bool has_ended() const { return number_ == StepTable<Model>::ended; }
-  double value(int left) const { return model_.value(number_, left); }
+  double value(int left) const { return values_.value(number_, left); }
   double leaf(int, Sampler&) const { return 0; }
   bool rollout_odds(double*, Sampler&) const { return false; }
 
  private:
-  const ListedModel<Model>& model_;
+  const StepTable<Model>& steps_;
+  const SeenValues<Model>& values_;
   std::uint32_t number_;
 };
 

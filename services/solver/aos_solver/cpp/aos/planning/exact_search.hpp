@@ -1,0 +1,72 @@
+// The exact values of all actions with the horizon's decisions to go, where working them out fits the budget.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aos/base/clock.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/exact.hpp"
+#include "aos/planning/state_space.hpp"
+
+namespace aos {
+
+template <class Model>
+class ExactSearch {
+ public:
+  explicit ExactSearch(const StateSpace<Model>& space) : space_(space) {}
+
+  // Tries it for a share of the budget. Returns whether it was done; a try that fails puts off the next ones.
+  bool search(const Belief<Model>& belief, Budget budget, int horizon) {
+    if (put_off_ > 0) {
+      --put_off_;
+      return false;
+    }
+    ExactEvaluation<Model> evaluation{space_, limits_of(budget, horizon)};
+    try {
+      estimates_.clear();
+      for (const double value : evaluation.action_values(belief, horizon)) estimates_.push_back({value, 1, 0});
+      simulations_ = evaluation.outcomes() / static_cast<std::uint64_t>(horizon) + 1;
+      failures_ = 0;
+      return true;
+    } catch (const NotEnumerable&) {
+      put_off_ = failures_ < max_failures ? (1 << failures_++) - 1 : 1 << max_failures;
+      return false;
+    }
+  }
+
+  std::uint64_t simulations() const { return simulations_; }
+  const std::vector<ActionEstimate>& estimates() const { return estimates_; }
+  // Another mission begins, whose tries do not depend on those of others.
+  void start_over() { put_off_ = failures_ = 0; }
+
+ private:
+  static constexpr double share_of_budget = 0.25;
+  static constexpr std::uint64_t max_beliefs = 1'000'000;
+  static constexpr int max_failures = 4;
+
+  static ExactLimits limits_of(Budget budget, int horizon) {
+    ExactLimits limits{.beliefs = max_beliefs};
+    if (budget.simulations > 0) {
+      const double outcomes = share_of_budget * static_cast<double>(budget.simulations) * horizon;
+      limits.outcomes = static_cast<std::uint64_t>(outcomes) + 1;
+    }
+    if (budget.seconds > 0) {
+      limits.is_over = [start = PlanningClock::now(), seconds = share_of_budget * budget.seconds] {
+        return std::chrono::duration<double>(PlanningClock::now() - start).count() >= seconds;
+      };
+    }
+    return limits;
+  }
+
+  const StateSpace<Model>& space_;
+  std::vector<ActionEstimate> estimates_;
+  std::uint64_t simulations_ = 0;
+  int put_off_ = 0;  // decisions
+  int failures_ = 0;
+};
+
+}  // namespace aos

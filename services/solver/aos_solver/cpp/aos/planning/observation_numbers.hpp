@@ -1,0 +1,62 @@
+// What can be observed, by number. Skills may share the name of a response: to the robot that is the same observation.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+template <class Model>
+class ObservationNumbers {
+ public:
+  ObservationNumbers() : of_responses_(static_cast<std::size_t>(Model::skill_count)) {}
+
+  // The number of what a grounded action lets the robot observe, which is `size()` if it is new.
+  std::uint32_t add(int action, Observation observation) {
+    if (observation < 0) return known(of_others_.try_emplace(observation, unknown).first->second, -1, observation);
+    const int skill = Model::skill_of(action);
+    auto& numbers = of_responses_[static_cast<std::size_t>(skill)];
+    numbers.resize(static_cast<std::size_t>(Model::response_count(skill)), unknown);
+    return known(numbers[static_cast<std::size_t>(observation)], skill, observation);
+  }
+
+  // What a grounded action lets the robot observe under this number.
+  Observation of(int action, std::uint32_t number) const {
+    const auto& responses = of_responses_[static_cast<std::size_t>(Model::skill_of(action))];
+    const auto response = std::find(responses.begin(), responses.end(), number);
+    if (response != responses.end()) return response - responses.begin();
+    const auto is_it = [&](const auto& other) { return other.second == number; };
+    return std::find_if(of_others_.begin(), of_others_.end(), is_it)->first;
+  }
+
+  std::size_t size() const { return texts_.size(); }
+  const std::string& operator[](std::uint32_t number) const { return texts_[number]; }
+
+ private:
+  static constexpr std::uint32_t unknown = 0xffffffffu;
+
+  std::uint32_t known(std::uint32_t& number, int skill, Observation observation) {
+    if (number != unknown) return number;
+    const auto [named, is_new] = by_text_.try_emplace(text_of(skill, observation), static_cast<std::uint32_t>(texts_.size()));
+    if (is_new) texts_.push_back(named->first);
+    return number = named->second;
+  }
+  static std::string text_of(int skill, Observation observation) {
+    if (observation >= 0) return Model::response_name(skill, static_cast<int>(observation));
+    if (observation == default_observation) return default_observation_text;
+    return std::string{observation_text(observation)};
+  }
+
+  std::vector<std::vector<std::uint32_t>> of_responses_;      // by skill
+  std::unordered_map<Observation, std::uint32_t> of_others_;  // texts, and no response
+  std::unordered_map<std::string, std::uint32_t> by_text_;
+  std::vector<std::string> texts_;
+};
+
+}  // namespace aos

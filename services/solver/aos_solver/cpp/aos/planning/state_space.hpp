@@ -1,0 +1,236 @@
+// The model as numbers: the states that can be reached, and all that each action can lead to from each of them.
+//
+// The planner owns one and lends it. Each pair of a state and an action is enumerated once, from the documents' code.
+// Limits are in numbers and work, not in time, so that decisions repeat.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/observation_numbers.hpp"
+#include "aos/planning/state_numbers.hpp"
+#include "point_based/flat_model.hpp"
+
+namespace aos {
+
+struct SpaceLimits {
+  std::size_t states = 400'000;
+  std::size_t bytes = std::size_t{100} << 20;  // of states
+  std::size_t outcomes = 12'000'000;
+  std::size_t work = 30'000'000;  // of one call, in draws and copies of 64 bytes: one to two seconds'
+};
+
+// Outcomes that end the mission are left out of the rows: ended states have no number and are worth nothing.
+template <class Model>
+class StateSpace {
+ public:
+  using State = typename Model::State;
+
+  explicit StateSpace(SpaceLimits limits = {}) : limits_(limits) {
+    rows_.actions = static_cast<std::size_t>(Model::action_count());
+    rows_.discount = Model::discount;
+    rows_.outcomes.first.push_back(0);
+    rows_.readings.first.push_back(0);
+  }
+
+  // Lists what can be reached from a belief. Returns whether all of it is listed; `obstacle` tells why it is not.
+  bool reach(const Belief<Model>& belief) {
+    if (!obstacle_.empty() && !is_worth_another_try(belief)) return false;
+    try {
+      add_states_of(belief);
+      while (!is_closed()) list_rows_before(numbers_.size());
+      return true;
+    } catch (const NotEnumerable& limit) {
+      give_up(limit.reason, belief);
+    } catch (const ModelFault& fault) {
+      give_up("model code fails in a state that can be reached: " + fault.text, belief);
+    }
+    return false;
+  }
+
+  // Lists what so many decisions can lead to from a belief. Throws NotEnumerable, or what model code throws.
+  void reach_within(const Belief<Model>& belief, int decisions) {
+    add_states_of(belief);
+    for (; decisions > 0 && !is_closed(); --decisions) list_rows_before(numbers_.size());
+  }
+
+  const std::string& obstacle() const { return obstacle_; }
+  std::size_t size() const { return numbers_.size(); }
+  std::size_t actions() const { return rows_.actions; }
+  const State& operator[](std::uint32_t number) const { return numbers_[number]; }
+  // `no_state` for one that has ended or cannot be reached.
+  std::uint32_t find(const State& state) const {
+    return Model::ending(state) == Ending::running ? numbers_.find(state) : no_state;
+  }
+  // Whether every state has its rows.
+  bool is_closed() const { return listed_ == numbers_.size(); }
+  // Rewards and outcomes by state and action; without starts.
+  const point_based::FlatModel& rows() const { return rows_; }
+  const ObservationNumbers<Model>& observations() const { return observations_; }
+  bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
+
+  // The running part of a belief, by number, ascending; weights as they are.
+  std::vector<std::pair<std::uint32_t, double>> weights_of(const Belief<Model>& belief) const {
+    std::vector<std::pair<std::uint32_t, double>> weights;
+    for (const auto& [state, weight] : belief.particles()) {
+      if (Model::ending(state) == Ending::running) weights.emplace_back(numbers_.find(state), weight);
+    }
+    std::sort(weights.begin(), weights.end());
+    std::size_t kept = 0;
+    for (const auto& [number, weight] : weights) {
+      if (kept > 0 && weights[kept - 1].first == number) {
+        weights[kept - 1].second += weight;
+      } else {
+        weights[kept++] = {number, weight};
+      }
+    }
+    weights.resize(kept);
+    return weights;
+  }
+
+ private:
+  using SensingKey = std::vector<std::uint64_t>;  // observations with their probabilities
+  struct SensingHash {
+    std::size_t operator()(const SensingKey& key) const {
+      std::uint64_t hash = 0;
+      for (const std::uint64_t part : key) hash = mixed(hash, part);
+      return hash;
+    }
+  };
+  // A path through an action that the mission goes on after.
+  struct Path {
+    std::uint32_t next;
+    std::uint32_t observation;
+    double probability;
+  };
+
+  // Far fewer states may be few enough.
+  bool is_worth_another_try(const Belief<Model>& belief) const {
+    constexpr std::size_t far_fewer = 8;
+    return far_fewer * belief.particles().size() <= given_up_with_;
+  }
+  void give_up(std::string why, const Belief<Model>& belief) {
+    blame::at(0);
+    *this = StateSpace{limits_};
+    obstacle_ = std::move(why);
+    given_up_with_ = belief.particles().size();
+  }
+
+  // Where most states of a belief were drawn once only, there are more.
+  void add_states_of(const Belief<Model>& belief) {
+    obstacle_.clear();
+    work_ = 0;
+    const std::size_t before = numbers_.size();
+    for (const auto& [state, weight] : belief.particles()) {
+      note_ending(state);
+      if (Model::ending(state) == Ending::running) add(state);
+    }
+    if (belief.is_drawn() && before == 0 && 2 * numbers_.size() > belief.particles().size()) {
+      throw NotEnumerable{"nearly all states of the belief differ"};
+    }
+  }
+
+  std::uint32_t add(const State& state) {
+    const std::uint32_t number = numbers_.add(state);
+    if (numbers_.size() > limits_.states || numbers_.size() * Model::state_bytes() > limits_.bytes) {
+      throw NotEnumerable{"there are too many states to list"};
+    }
+    return number;
+  }
+  void note_ending(const State& state) { reached_[static_cast<std::size_t>(Model::ending(state))] = true; }
+
+  void list_rows_before(std::size_t end) {
+    for (; listed_ < end; ++listed_) {
+      for (std::size_t action = 0; action < rows_.actions; ++action) add_row(listed_, static_cast<int>(action));
+    }
+    rows_.states = listed_;
+    rows_.observations = observations_.size();
+  }
+
+  void add_row(std::uint32_t number, int action) {
+    double reward = 0;
+    paths_.clear();
+    draws_.for_each_path([&](Enumerator& path) {
+      work_ += work_of_step(path, Model::state_bytes());
+      if (work_ > limits_.work) throw NotEnumerable{"there are too many outcomes to list"};
+      State next = numbers_[number];
+      const Step step = Model::step(next, action, path);
+      reward += path.probability() * step.reward;
+      note_ending(next);
+      if (Model::ending(next) != Ending::running) return;
+      paths_.push_back({add(next), observations_.add(action, step.observation), path.probability()});
+    });
+    rows_.rewards.push_back(reward);
+    add_outcomes();
+    rows_.outcomes.first.push_back(rows_.outcomes.elements.size());
+    if (rows_.outcomes.elements.size() > limits_.outcomes || rows_.readings.elements.size() > limits_.outcomes) {
+      throw NotEnumerable{"there are too many outcomes to list"};
+    }
+  }
+
+  void add_outcomes() {
+    std::sort(paths_.begin(), paths_.end(), [](const Path& left, const Path& right) {
+      return std::tie(left.next, left.observation) < std::tie(right.next, right.observation);
+    });
+    for (std::size_t first = 0; first < paths_.size();) {
+      std::size_t last = first;
+      double probability = 0;
+      for (; last < paths_.size() && paths_[last].next == paths_[first].next; ++last) probability += paths_[last].probability;
+      rows_.outcomes.elements.push_back({paths_[first].next, sensing_of(first, last, probability), probability});
+      first = last;
+    }
+  }
+
+  // The distribution of what is observed on paths with the same next state. Most have been met before.
+  std::uint32_t sensing_of(std::size_t first, std::size_t last, double total) {
+    constexpr double unit = 1e14;  // probabilities that are closer are the same
+    readings_.clear();
+    key_.clear();
+    for (std::size_t i = first; i < last; ++i) {
+      if (readings_.empty() || readings_.back().observation != paths_[i].observation) {
+        readings_.push_back({paths_[i].observation, 0});
+      }
+      readings_.back().probability += paths_[i].probability / total;
+    }
+    for (const auto& [observation, probability] : readings_) {
+      key_.push_back(observation);
+      key_.push_back(static_cast<std::uint64_t>(std::llround(unit * probability)));
+    }
+    const auto [entry, is_new] = sensings_.try_emplace(key_, static_cast<std::uint32_t>(sensings_.size()));
+    if (is_new) {
+      rows_.readings.elements.insert(rows_.readings.elements.end(), readings_.begin(), readings_.end());
+      rows_.readings.first.push_back(rows_.readings.elements.size());
+    }
+    return entry->second;
+  }
+
+  SpaceLimits limits_;
+  StateNumbers<Model> numbers_;
+  ObservationNumbers<Model> observations_;
+  point_based::FlatModel rows_;
+  std::uint32_t listed_ = 0;  // states that have their rows
+  bool reached_[ending_count]{};
+  std::size_t work_ = 0;
+  std::string obstacle_;
+  std::size_t given_up_with_ = 0;  // states of the belief
+
+  Enumerator draws_;
+  std::unordered_map<SensingKey, std::uint32_t, SensingHash> sensings_;
+  std::vector<Path> paths_;
+  std::vector<point_based::Reading> readings_;
+  SensingKey key_;
+};
+
+}  // namespace aos

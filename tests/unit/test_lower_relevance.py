@@ -1,0 +1,111 @@
+"""Which state variables matter to nobody, as far as the text of the code tells."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from scripted_models import bundle_project, mapping_text, text_project
+
+from aos_solver.emission.lower_relevance import irrelevant_variables
+
+HOME = """project: test
+horizon: 3
+discount: 0.9
+define_type: Cup
+variable: bool full false
+variable: int marks 0
+state_variable: Cup cup
+state_variable: int level
+state_variable: int known
+state_variable: int count
+state_variable: int row []
+code:
+state.row = {1, 2};
+reward_code:
+if (state.level > 3) {
+    __reward = 10;
+    __isGoalState = true;
+}
+"""
+
+
+def idle(act: str, extrinsic: str = "", policy: str = "") -> set[str]:
+    """Of `known`, `count`, `row` and `cup` those that do not matter; `level` always does."""
+    rollout = f"rollout_policy:\n{policy}\n" if policy else ""
+    project = text_project(
+        {
+            "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
+            "act.sd": f"project: test\n{rollout}dynamic_model:\n{act}\n",
+            "act.am": mapping_text("done"),
+        }
+    )
+    irrelevant = irrelevant_variables(project)
+    assert "level" not in irrelevant
+    return set(irrelevant)
+
+
+ALL = {"known", "count", "row", "cup"}
+
+
+@pytest.mark.parametrize(
+    ("act", "matters"),
+    [
+        ("state__.level = state.level + 1;", set()),
+        ("state__.known = state.level;", set()),
+        ("state__.known += 1; state__.count = state.known;", set()),
+        ("if (state.known > 2) state__.count++;", set()),
+        ("int sum = state.known + 1; state__.count = std::clamp(sum, 0, 3);", set()),
+        ("for (int i = 0; i < 2; i++) state__.row[i] = state.count;", set()),
+        ("state__.row.push_back(state.known);", set()),
+        ("Cup& cup = state__.cup; cup.marks = state.known;", set()),
+        ("state__.level = state.known;", {"known"}),
+        ("state__.known = state.count; state__.level = state.known;", {"known", "count"}),
+        ("if (state.known > 2) state__.level++;", {"known"}),
+        ("if (state.known > 2) { if (state.count) state__.level++; }", {"known", "count"}),
+        ("for (int i = 0; i < state.known; i++) state__.level += i;", {"known"}),
+        ("while (state__.count-- > 0) state__.level++;", {"count"}),
+        ("switch (state.known) { case 1: state__.level = 2; break; default: break; }", {"known"}),
+        ("state__.level = state.row[state.known];", {"known", "row"}),
+        ("state__.row[state.known] = 1; state__.level = state.row[0];", {"known", "row"}),
+        ("for (int value : state.row) state__.level += value;", {"row"}),
+        ("for (int& r : state__.row) { r = state.known; } state__.level = state.row[1];", {"known", "row"}),
+        ("auto& level = state__.level; level = state.known;", {"known"}),
+        ("int* level = &state__.level; *level = state.known;", {"known"}),
+        ("auto at = state__.row.begin(); *at = state.known; __reward = state__.row[0];", {"known", "row"}),
+        ("state__.level = state.cup.full ? 1 : 2;", {"cup"}),
+        ("Cup copy = state.cup; __reward = copy.marks;", {"cup"}),
+        ("__reward = state.known;", {"known"}),
+        ("__moduleResponse = done; if (state.known) return; state__.level = 1;", {"known"}),
+        ("bool moves = AOS.Bernoulli(state.known ? 0.5 : 1); if (moves) state__.level++;", {"known"}),
+        ("auto grow = [&](int by) { state__.level += by; }; grow(state.known);", {"known"}),
+        ("std::swap(state__.level, state__.known);", {"known"}),
+        ("AOS.Initialize(state__.known); state__.level = state__.known;", {"known"}),
+        ("state__ = state;", ALL),
+        ("int sum = std::accumulate(state.row.begin(), state.row.end(), 0); __reward = sum;", {"row"}),
+        ("state__.level = state__.known = state.count;", {"known", "count"}),
+        ("int was = state.known; { int now = was + 1; if (now > 3) __reward = -1; }", {"known"}),
+    ],
+)  # fmt: skip
+def test_a_variable_matters_if_what_is_earned_or_observed_may_depend_on_it(
+    act: str, matters: set[str]
+) -> None:
+    assert idle(act) == ALL - matters
+
+
+def test_what_the_rollout_policy_reads_does_not_matter() -> None:
+    assert idle("state__.known = state.level;", policy="__heuristicValue = state.known;") == ALL
+
+
+def test_extrinsic_changes_count() -> None:
+    assert idle("", extrinsic="if (state.known) state_.level = state.count;") == {"row", "cup"}
+
+
+def test_code_that_cannot_be_read_makes_everything_matter() -> None:
+    assert idle("state__.count = = 1;") == set()
+
+
+def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody(bundles: Path) -> None:
+    project = bundle_project(bundles / "bench" / "rocksample-7-8")
+    assert {"worth", "unsampled", "promising", "looking_good"} <= irrelevant_variables(project)
+    assert not {"x", "y", "is_good", "has_left"} & irrelevant_variables(project)
