@@ -138,7 +138,7 @@ Step transition(State& next, const auto& parameters, auto& random) {
 
   if constexpr (Environment::has_extrinsic_changes) {
     double reward = 0;
-    const typename Environment::Chosen chosen{parameters};
+    const typename Environment::Chosen chosen{std::type_identity<Skill>{}, parameters};
     Environment::extrinsic_changes(state, next, reward, execution_time, chosen, random);
     check_reward(reward);
     Kept<State, Skill::keeps_state_> state_ = next;
