@@ -87,6 +87,12 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) ->
     ]
 
 
+def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.CaptureFixture[str]) -> None:
+    worse = msgspec.structs.replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
+    PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
+    assert "goal 0.100  failure 0.250\n" in capsys.readouterr().out
+
+
 def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]) -> None:
     lost = Outcome(OUTCOME.id, "pick", "timed_out", fault=Fault("AOS503", "no answer within 9 s"))
     PlainView()(msgspec.structs.replace(OBSERVED, outcome=lost))
@@ -171,6 +177,7 @@ def test_the_view_fits_where_it_is_shown(options: dict[str, bool], kind: type[ob
     [
         ("goal", 0),
         ("failure", 4),
+        ("over", 8),
         ("nothing_worthwhile", 5),
         ("step_limit", 6),
         ("fault", 7),

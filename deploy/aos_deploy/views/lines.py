@@ -7,9 +7,9 @@ from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
 from aos_protocol.diagnostics import render
-from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
+from aos_protocol.messages import BeliefSummary, BundleReport, DecisionRecord, MissionState
 
-__all__ = ["JsonView", "PlainView", "decision_line", "lines_of"]
+__all__ = ["JsonView", "PlainView", "decision_line", "endings_text", "lines_of"]
 
 
 class PlainView:
@@ -77,7 +77,15 @@ def decision_line(record: DecisionRecord) -> str:
         what = f"{what} ({outcome.fault.message})"
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
     remark = f"  ({record.remark})" if record.remark else ""
-    return f"{head} -> {what}  {surprise}  goal {record.belief.goal_probability:.3f}{remark}"
+    return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
+
+
+def endings_text(belief: BeliefSummary) -> str:
+    """How probable the goal is, and each other ending that is likelier than one in two thousand."""
+    others = {"over": belief.over_probability, "failure": belief.failure_probability}
+    shown = {name: probability for name, probability in others.items() if probability >= 0.0005}
+    endings = {"goal": belief.goal_probability, **shown}
+    return "  ".join(f"{name} {probability:.3f}" for name, probability in endings.items())
 
 
 def _report_lines(report: BundleReport) -> list[str]:

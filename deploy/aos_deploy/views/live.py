@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.events import Event, ServiceChanged, Told
-from aos_deploy.views.lines import lines_of
+from aos_deploy.views.lines import endings_text, lines_of
 from aos_protocol.messages import (
     ActionValue,
     BeliefSummary,
@@ -85,8 +85,9 @@ class Screen:
     def _headline(self) -> Text:
         text = Text(self.title, style="bold")
         if self.state is not None:
-            goal = f"{self.state.goal_probability:.3f}"
-            text.append(f"   step {self.state.step}   {self.state.phase}   goal {goal}", style="not bold")
+            goal = f"goal {self.state.goal_probability:.3f}"
+            endings = endings_text(self.latest.belief) if self.latest is not None else goal
+            text.append(f"   step {self.state.step}   {self.state.phase}   {endings}", style="not bold")
         return text
 
     def _services(self) -> Text:

@@ -203,7 +203,7 @@ class ExportedBelief(msgspec.Struct, frozen=True):
 
 
 class WorldStart(msgspec.Struct, frozen=True):
-    """The hidden state of a new simulated world; `ending` is empty, `goal` or `failure`."""
+    """The hidden state of a new simulated world; `ending` is empty, `goal`, `failure` or `over`."""
 
     ending: str
 
@@ -232,8 +232,9 @@ class Worlds(msgspec.Struct, frozen=True):
 class WorldSteps(msgspec.Struct, frozen=True):
     """One step of all worlds, an entry for each in every array.
 
-    `endings` are bytes, 0 running, 1 goal, 2 failure; `rewards` of type float64, `observations` of int32. The
-    bytes of each array are as the machine has them. `texts` are empty unless the model has text observations.
+    `endings` are bytes, 0 running, 1 goal, 2 failure, 3 over; `rewards` of type float64, `observations` of
+    int32. The bytes of each array are as the machine has them. `texts` are empty unless the model has text
+    observations.
     """
 
     endings: bytes

@@ -335,6 +335,7 @@ class Engine {
       case Ending::running: return "";
       case Ending::goal: return "goal";
       case Ending::failure: return "failure";
+      case Ending::over: return "over";
     }
     return "";
   }
