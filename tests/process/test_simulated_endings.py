@@ -92,6 +92,7 @@ def test_goals_are_counted_by_the_world(
     command = ["simulate", str(tmp_path), "--runs", "40", "--simulations", "100"]
     app = aos_app(command)
     app = aos_app(command)
+    app = aos_app(command)
     done = CliRunner().invoke(app, [*command, "--json"])
     assert done.exit_code == 0, done.output
     campaign = json.loads(done.stdout)

@@ -9,7 +9,7 @@ from aos_deploy.events import Event, ServiceChanged, Told, event_json
 from aos_protocol.diagnostics import render
 from aos_protocol.messages import BeliefSummary, BundleReport, DecisionRecord, MissionState
 
-__all__ = ["JsonView", "PlainView", "decision_line", "endings_text", "lines_of"]
+__all__ = ["JsonView", "PlainView", "decision_line", "effort_text", "endings_text", "lines_of"]
 
 
 class PlainView:
@@ -70,7 +70,7 @@ def decision_line(record: DecisionRecord) -> str:
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
         values = ", ".join(f"{action.action} {action.q:+.2f}" for action in others)
-        return f"{head}  [{values}]  {record.simulations} simulations in {record.planning_s:.2f} s"
+        return f"{head}  [{values}]  {effort_text(record)}"
     outcome = record.outcome
     what = outcome.response if outcome.status == "observed" else outcome.status
     if outcome.fault is not None:
@@ -78,6 +78,15 @@ def decision_line(record: DecisionRecord) -> str:
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
     remark = f"  ({record.remark})" if record.remark else ""
     return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
+
+
+def effort_text(record: DecisionRecord) -> str:
+    """Who decided, and with how much work; short."""
+    if not record.simulations:
+        return f"{record.planner} in {record.planning_s:.2f} s"
+    by = f"{record.planner}, " if record.planner else ""
+    threads = f" by {record.threads} threads" if record.threads > 1 else ""
+    return f"{by}{record.simulations} simulations in {record.planning_s:.2f} s{threads}"
 
 
 def endings_text(belief: BeliefSummary) -> str:

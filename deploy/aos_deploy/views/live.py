@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.events import Event, ServiceChanged, Told
-from aos_deploy.views.lines import endings_text, lines_of
+from aos_deploy.views.lines import effort_text, endings_text, lines_of
 from aos_protocol.messages import (
     ActionValue,
     BeliefSummary,
@@ -26,7 +26,7 @@ __all__ = ["LiveView", "Screen"]
 
 _BAR_CELLS = 20
 _FEWEST_STEPS = 3
-_OTHER_ROWS = 11
+_OTHER_ROWS = 12
 _SHOWN_VALUES = 4
 _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow", "ended": "dim"}
 
@@ -79,6 +79,7 @@ class Screen:
             yield from self._step_remark(shown)
             yield Text()
             yield columns
+            yield Text(effort_text(self.latest), style="dim")
         yield Text()
         yield from self._progress()
 

@@ -129,6 +129,9 @@ class Mission:
             actions=plan.actions,
             predicted=plan.predicted,
             belief=belief,
+            planner=plan.planner,
+            why=plan.why,
+            threads=plan.threads,
         )
         self._publish(record)
         return record

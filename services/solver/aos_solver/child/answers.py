@@ -53,7 +53,8 @@ class EngineDescription(msgspec.Struct, frozen=True):
 class Plan(msgspec.Struct, frozen=True):
     """A decision: the index of the best action, and what the search found about each, in their order.
 
-    `planner` is the one that made it, and `why` it was that one. `known_simulations` were in the tree before.
+    `planner` is the one that made it, with so many `threads`, and `why` it was that one. `known_simulations`
+    were in the tree before.
     """
 
     index: int
@@ -66,6 +67,7 @@ class Plan(msgspec.Struct, frozen=True):
     known_simulations: int = 0
     planner: str = ""
     why: str = ""
+    threads: int = 1
 
     @property
     def best(self) -> ActionValue:
