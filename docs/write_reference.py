@@ -14,16 +14,17 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.language_server.meanings import BUILT_INS, SECTIONS
 from aos_deploy.schemas import SCHEMAS
-from aos_protocol import errors, keys, messages
+from aos_protocol import errors, keys
+from aos_protocol.messages import base, bundles, mission, skills
 
 DOCS = Path(__file__).resolve().parent
 GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
-SECTION = re.compile(r"# --- (.+?) -+")
+MESSAGES = {"around every message": base, "bundles": bundles, "mission": mission, "skills": skills}
+"""The modules of messages, each under the title of its conversation."""
 
 
 # --- errors --------------------------------------------------------------------------------------------
@@ -84,19 +85,13 @@ def key_table() -> str:
 
 
 def message_sections() -> str:
-    """Every message with its fields, under the conversations of the source file."""
-    source, tree = _parsed(messages)
-    sections = [(0, "around every message")]
-    for number, line in enumerate(source.splitlines(), 1):
-        if match := SECTION.match(line):
-            sections.append((number, match[1]))
+    """Every message with its fields, under the conversations of the source files."""
     parts: list[str] = []
-    for node in tree.body:
-        if not isinstance(node, ast.ClassDef) or node.name == "Message":
-            continue
-        while sections and sections[0][0] < node.lineno:
-            parts.append(f"### {sections.pop(0)[1].capitalize()}\n")
-        parts.append(_message(node))
+    for title, module in MESSAGES.items():
+        parts.append(f"### {title.capitalize()}\n")
+        nodes = ast.parse(inspect.getsource(module)).body
+        classes = [node for node in nodes if isinstance(node, ast.ClassDef)]
+        parts += [_message(node) for node in classes if node.name != "Message"]
     return "\n".join(parts)
 
 
@@ -110,11 +105,6 @@ def _message(node: ast.ClassDef) -> str:
         kind = ast.unparse(field.annotation).replace("|", "\\|")
         lines.append(f"| `{ast.unparse(field.target)}` | `{kind}` | {default} |")
     return "\n".join(lines).rstrip() + "\n"
-
-
-def _parsed(module: ModuleType) -> tuple[str, ast.Module]:
-    source = inspect.getsource(module)
-    return source, ast.parse(source)
 
 
 # --- words ---------------------------------------------------------------------------------------------

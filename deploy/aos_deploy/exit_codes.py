@@ -19,18 +19,20 @@ class ExitCode(IntEnum):
     NOTHING_WORTHWHILE = 5
     STEP_LIMIT = 6
     FAULT = 7
+    MISSION_OVER = 8
     INTERRUPTED = 130
 
 
 _MEANINGS = {
-    ExitCode.GOAL_REACHED: "the goal was reached",
+    ExitCode.GOAL_REACHED: "the goal was reached, as the belief has it",
     ExitCode.DOCUMENTS_WRONG: "documents or the deploy file have errors",
     ExitCode.USAGE: "the command was used wrongly",
     ExitCode.NOT_STARTED: "the machine lacks something, or a service could not start",
-    ExitCode.MISSION_FAILED: "the mission ended without its goal",
+    ExitCode.MISSION_FAILED: "the mission failed",
     ExitCode.NOTHING_WORTHWHILE: "no action was worth taking any more",
     ExitCode.STEP_LIMIT: "the step limit was reached",
     ExitCode.FAULT: "a fault while the mission ran",
+    ExitCode.MISSION_OVER: "the mission ended with neither its goal nor a failure",
     ExitCode.INTERRUPTED: "interrupted",
 }
 
@@ -38,6 +40,7 @@ EXIT_CODES_TEXT = "Exit codes: " + ", ".join(f"{code:d} {text}" for code, text i
 
 _BY_ENDING = {
     "goal": ExitCode.GOAL_REACHED,
+    "over": ExitCode.MISSION_OVER,
     "failure": ExitCode.MISSION_FAILED,
     "nothing_worthwhile": ExitCode.NOTHING_WORTHWHILE,
     "step_limit": ExitCode.STEP_LIMIT,

@@ -196,6 +196,8 @@ class MissionRun:
             exit_code=int(code),
             steps=len(steps),
             goal_probability=steps[-1].belief.goal_probability if steps else 0.0,
+            over_probability=steps[-1].belief.over_probability if steps else 0.0,
+            failure_probability=steps[-1].belief.failure_probability if steps else 0.0,
             actions=tuple(step.action for step in steps),
             responses=tuple(step.outcome.response if step.outcome else "" for step in steps),
             services_ready_s=self._services_ready_s,

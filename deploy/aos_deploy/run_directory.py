@@ -40,7 +40,10 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file."""
+    """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file.
+
+    The ending and its probabilities are those of the last belief: nobody tells a robot how its world ended.
+    """
 
     robot: str
     deploy_file: str
@@ -51,6 +54,8 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     exit_code: int
     steps: int
     goal_probability: float
+    over_probability: float
+    failure_probability: float
     actions: tuple[str, ...]
     responses: tuple[str, ...]
     services_ready_s: float | None

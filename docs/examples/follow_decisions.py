@@ -16,7 +16,7 @@ async def main(endpoint: str = "tcp/127.0.0.1:7447", robot: str = "armadillo") -
         async for record in aos.decisions():
             if record.outcome is None:
                 values = {each.action: round(each.q, 2) for each in record.actions}
-                print(f"step {record.step}: {record.action}, of {values}")
+                print(f"step {record.step}: {record.planner} chose {record.action}, of {values}")
             else:
                 goal = record.belief.goal_probability
                 print(f"step {record.step}: observed {record.outcome.response}, goal {goal:.3f}")

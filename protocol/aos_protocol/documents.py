@@ -159,8 +159,11 @@ class Assignment(msgspec.Struct, frozen=True):
 
 
 class SpecialState(msgspec.Struct, frozen=True):
-    """A reward or a goal. Form A: `condition`, `reward` and the flags. Form B: `code`, which sets
-    `__reward`, `__isGoalState` and `__stopEvaluatingState`.
+    """A reward or an ending. Form A: `condition`, `reward` and the flags. Form B: `code`, which sets
+    `__reward`, `__isGoalState`, `__isFailureState` and `__stopEvaluatingState`.
+
+    Where nothing is said of failure (`is_failure` None, code without the word), the reward's sign says how
+    the mission ends.
     """
 
     span: Span
@@ -168,6 +171,7 @@ class SpecialState(msgspec.Struct, frozen=True):
     reward: float = 0.0
     is_goal: bool = False
     is_one_time: bool = False
+    is_failure: bool | None = None
     code: tuple[Assignment, ...] = ()
 
 

@@ -67,6 +67,7 @@ CODES: dict[str, str] = {
     "AOS132": "a goal that nothing leads to",
     "AOS133": "a variable that nothing uses",
     "AOS134": "a local variable that tells the state",
+    "AOS137": "an ending that its reward decides",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",

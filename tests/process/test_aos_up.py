@@ -183,6 +183,7 @@ def test_a_finished_mission_can_be_read(mission: Mission) -> None:
     command = [BIN / "aos", "decisions", "--run", mission.run]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert len([line for line in text.splitlines() if line.startswith("step")]) == len(mission.followed)
+    assert [line for line in text.splitlines() if line.startswith("         pomcp: ")]
     assert text.splitlines()[-1].startswith("mission ended: ")
 
 

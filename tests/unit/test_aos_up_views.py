@@ -47,6 +47,9 @@ DECISION = DecisionRecord(
     actions=(ActionValue("serve", -4.0, 100, 0.5), ActionValue("pick", 2.713, 900, 0.04)),
     predicted=(),
     belief=BELIEF,
+    planner="pomcp",
+    why="it was asked for",
+    threads=2,
 )
 OUTCOME = Outcome(ActivationId("m", 1, 1), "pick", "observed", "pick_succeeded")
 OBSERVED = msgspec.structs.replace(DECISION, sequence=1, outcome=OUTCOME, surprise=0.5)
@@ -79,12 +82,18 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) ->
         "   2.00 s  skills ended: killed by SIGKILL",
         "run directory runs/x",
         "mission building: compiling the model",
-        "step  1: pick  [pick +2.71, serve -4.00]  1000 simulations in 0.25 s",
+        "step  1: pick  [pick +2.71, serve -4.00]  pomcp, 1000 simulations in 0.25 s by 2 threads",
         "step  1: pick -> pick_succeeded  surprise 0.50  goal 0.100",
         "pick.sd:7:2: error[AOS110]: unknown name",
         "bundle new refused, nothing has changed",
         "mission ended: the goal is reached",
     ]
+
+
+def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.CaptureFixture[str]) -> None:
+    worse = msgspec.structs.replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
+    PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
+    assert "goal 0.100  failure 0.250\n" in capsys.readouterr().out
 
 
 def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]) -> None:
@@ -133,6 +142,7 @@ def test_the_screen_shows_steps_values_and_belief_bars() -> None:
         "-4.00",
         "900",
         "registry ready",
+        "pomcp, 1000 simulations in 0.25 s by 2 threads",
         "goal: the goal is reached",
     ):
         assert expected in text
@@ -171,6 +181,7 @@ def test_the_view_fits_where_it_is_shown(options: dict[str, bool], kind: type[ob
     [
         ("goal", 0),
         ("failure", 4),
+        ("over", 8),
         ("nothing_worthwhile", 5),
         ("step_limit", 6),
         ("fault", 7),

@@ -102,6 +102,7 @@ MISUSES = {
         "room.json", '"IsGoalState": true', '"IsGoalState": true, "IsOneTimeReward": «3', "AOS106"
     ),
     "goal": Rule("room.ef", "__isGoalState", "«__isGoal", "AOS110"),
+    "failure": Rule("room.ef", "__isGoalState", "«__isFailState", "AOS110"),
     "extrinsic changes": Rule(
         "room.json",
         EXTRINSIC,

@@ -50,7 +50,7 @@ def test_a_full_board_ends_the_game_without_a_fault(corpus: Path, cache_dir: Pat
     moves = ["draw(oCellP=0)", "detect|1", "draw(oCellP=2)", "detect|4", "draw(oCellP=7)", "detect|5"]
     played = game.play(*moves, "draw(oCellP=3)", "detect|6", "draw(oCellP=8)", "detect", "detect")
     assert played.observations[1] == "OX???????"
-    assert [step["ending"] for step in played.steps[-3:]] == [2, 2, 2]
+    assert [step["ending"] for step in played.steps[-3:]] == [3, 3, 3], "a draw is neither"
 
 
 def test_the_wild_fire_sees_the_chosen_action(corpus: Path, cache_dir: Path) -> None:

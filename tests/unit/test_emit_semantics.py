@@ -109,13 +109,13 @@ def test_a_special_state_that_stops_counts_once(switch: ScriptedModel) -> None:
     assert played.rewards == [0.5 - 1 + 7, 0.5]
 
 
-def test_endings_are_goals_or_failures_and_absorb(switch: ScriptedModel) -> None:
+def test_endings_absorb(switch: ScriptedModel) -> None:
     reached = switch.play("raise(by=2)", "raise(by=1)|0", initial="0")
     assert [step["ending"] for step in reached.steps] == [1, 1]
     assert reached.rewards[1] == 0
     assert reached.values("level") == ["3", "5", "5"]
     assert reached.observations == ["raised", "stuck"]
-    assert switch.play("raise(by=-2)", initial="1").steps[0]["ending"] == 2
+    assert switch.play("raise(by=-2)", initial="1").steps[0]["ending"] == 3
 
 
 def test_without_a_response_the_observation_is_the_default(switch: ScriptedModel) -> None:
@@ -192,7 +192,7 @@ def test_in_a_one_state_model_all_names_are_one_object(one_state: ScriptedModel)
     assert one_state.play("step").values("copy") == ["0", str(3 * 100 + 2 * 7)]
 
 
-def test_a_goal_without_a_positive_reward_is_a_failure(one_state: ScriptedModel) -> None:
+def test_an_ending_with_a_negative_reward_is_a_failure(one_state: ScriptedModel) -> None:
     played = one_state.play("step", "step")
     assert [step["ending"] for step in played.steps] == [0, 2]
     assert played.rewards == [-1.5, -10]

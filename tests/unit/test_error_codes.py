@@ -19,6 +19,8 @@ from aos_solver.offline.explicit_model import ExplicitModel, Ragged
 from aos_solver.offline.solving import SolvingLimits, solve
 
 MORE_RULES = [
+    Rule("room.json", '[{"StateConditionCode": "state.at == eLab", "Reward": 5.0',
+         '[«{"StateConditionCode": "state.at == eLab", "Reward": -5.0', "AOS137"),
     Rule("go.sd", "__reward = -1;", "__reward = -1;\n«door.room = Hall;", "AOS128"),
     Rule("room.ef", "state_variable: Room", "state_variable: int «spare\nstate_variable: Room", "AOS133"),
     Rule("go.am", "response: arrived", "response: «lost\nresponse_rule: not ok\nresponse: arrived", "AOS117"),

@@ -38,7 +38,7 @@ def decisions(
 ) -> None:
     """Print every decision of a mission from its first step.
 
-    What was chosen, why, and what came of it.
+    What was chosen, by which planner and why, and what came of it.
 
     While the mission runs the decisions come from the bus, afterwards from the run directory's journal.
     """
@@ -48,7 +48,7 @@ def decisions(
             if isinstance(event, DecisionRecord):
                 typer.echo(msgspec.json.encode(event))
         else:
-            typer.echo("\n".join(lines_of(event)))
+            typer.echo("\n".join([*lines_of(event), *_reason(event)]))
 
     if connect and not robot:
         raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
@@ -65,6 +65,13 @@ def decisions(
     import asyncio  # Only here, as the bus below: help and finished runs do without.
 
     asyncio.run(_stream(connect, robot, show, is_following=follow))
+
+
+def _reason(event: DecisionRecord | MissionState) -> list[str]:
+    """Why the decision was made by that planner, below the decision."""
+    if not isinstance(event, DecisionRecord) or event.outcome is not None or not event.why:
+        return []
+    return [f"         {event.planner}: {event.why}"]
 
 
 def _journaled(directory: RunDirectory) -> list[DecisionRecord | MissionState]:

@@ -137,7 +137,8 @@ def simulate(
 ) -> None:
     """Run whole missions against the documents' own model.
 
-    Run k has seed SEED + k, from 0.
+    Run k has seed SEED + k, from 0. Goals and failures are counted by what has
+    become of the world; what the belief held for the goal is told beside.
     """
     limits = MissionLimits(
         goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
@@ -169,7 +170,10 @@ def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
     returns = [run.discounted_return for run in runs]
     return {
         "runs": len(runs),
-        "goal_rate": sum(run.ending == "goal" for run in runs) / len(runs),
+        "goal_rate": sum(run.world_ending == "goal" for run in runs) / len(runs),
+        "over_rate": sum(run.world_ending == "over" for run in runs) / len(runs),
+        "failure_rate": sum(run.world_ending == "failure" for run in runs) / len(runs),
+        "believed_goal_rate": sum(run.believed_ending == "goal" for run in runs) / len(runs),
         "mean_discounted_return": statistics.fmean(returns),
         "stderr": statistics.stdev(returns) / len(runs) ** 0.5 if len(runs) > 1 else 0.0,
         "mean_steps": statistics.fmean(run.steps for run in runs),

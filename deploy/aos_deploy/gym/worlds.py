@@ -18,7 +18,7 @@ from aos_solver.hot_plug import build_project
 
 __all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes"]
 
-ENDINGS = ("", "goal", "failure")
+ENDINGS = ("", "goal", "failure", "over")
 """How an episode has ended, by number."""
 
 TEXT_BYTES = 62

@@ -55,8 +55,8 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             _BLOCK_PARTS,
         ),
         "reward_code": (
-            "A special state: looks at the state after the step; may set `__reward`, `__isGoalState` and "
-            "`__stopEvaluatingState`.",
+            "A special state: looks at the state after the step; may set `__reward`, `__isGoalState`, "
+            "`__isFailureState` and `__stopEvaluatingState`.",
             _BLOCK_PARTS,
         ),
         "special_state": (
@@ -65,6 +65,8 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
                 "state_condition": "When it holds: an expression over `state`.",
                 "reward": "What is added to the reward where the condition holds.",
                 "is_goal_state": "`true`: the mission ends here.",
+                "is_failure_state": "`true`: the mission ends here as a failure; `false`: it does not. "
+                "Without it the reward's sign says how it ends.",
                 "is_one_time_reward": "`true`: the reward is given the first time only.",
             },
         ),
@@ -175,6 +177,7 @@ BUILT_INS: Mapping[str, str] = {
     "state___": "The state that a real observation corrects.",
     "__reward": "The reward of this code; all rewards of a step are added.",
     "__isGoalState": "Whether the mission ends in this state.",
+    "__isFailureState": "Whether it ends as a failure. Code without this word lets the reward's sign say.",
     "__stopEvaluatingState": "Whether this special state is not looked at again.",
     "__meetPrecondition": "Whether the skill may be used; true at the start.",
     "__heuristicValue": "A skill's weight in play-outs, or a state's worth where the search ends.",

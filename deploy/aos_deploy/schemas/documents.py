@@ -162,11 +162,17 @@ def _special_state() -> Schema:
         StateConditionCode=said(expression(), "When it holds: an expression over `state`."),
         Reward=NUMBER,
         IsGoalState=said(TRUTH, "Whether the mission ends here."),
+        IsFailureState=said(
+            TRUTH,
+            "Whether the mission ends here as a failure; without it the reward's sign says how it ends.",
+        ),
         IsOneTimeReward=said(TRUTH, "Whether the reward is given the first time only."),
-        StateFunctionCode=said(BLOCK, "May set `__reward`, `__isGoalState` and `__stopEvaluatingState`."),
+        StateFunctionCode=said(
+            BLOCK, "May set `__reward`, `__isGoalState`, `__isFailureState` and `__stopEvaluatingState`."
+        ),
         Comment=TEXT,
     )
-    other = ("StateConditionCode", "Reward", "IsGoalState", "IsOneTimeReward")
+    other = ("StateConditionCode", "Reward", "IsGoalState", "IsFailureState", "IsOneTimeReward")
     code = {"required": ["StateFunctionCode"], "properties": dict.fromkeys(other, False)}
     condition = {"required": ["StateConditionCode", "Reward"], "properties": {"StateFunctionCode": False}}
     return {**special, "oneOf": [condition, code]}

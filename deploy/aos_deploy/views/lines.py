@@ -7,9 +7,9 @@ from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
 from aos_protocol.diagnostics import render
-from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
+from aos_protocol.messages import BeliefSummary, BundleReport, DecisionRecord, MissionState
 
-__all__ = ["JsonView", "PlainView", "decision_line", "lines_of"]
+__all__ = ["JsonView", "PlainView", "decision_line", "effort_text", "endings_text", "lines_of"]
 
 
 class PlainView:
@@ -70,14 +70,31 @@ def decision_line(record: DecisionRecord) -> str:
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
         values = ", ".join(f"{action.action} {action.q:+.2f}" for action in others)
-        return f"{head}  [{values}]  {record.simulations} simulations in {record.planning_s:.2f} s"
+        return f"{head}  [{values}]  {effort_text(record)}"
     outcome = record.outcome
     what = outcome.response if outcome.status == "observed" else outcome.status
     if outcome.fault is not None:
         what = f"{what} ({outcome.fault.message})"
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
     remark = f"  ({record.remark})" if record.remark else ""
-    return f"{head} -> {what}  {surprise}  goal {record.belief.goal_probability:.3f}{remark}"
+    return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
+
+
+def effort_text(record: DecisionRecord) -> str:
+    """Who decided, and with how much work; short."""
+    if not record.simulations:
+        return f"{record.planner} in {record.planning_s:.2f} s"
+    by = f"{record.planner}, " if record.planner else ""
+    threads = f" by {record.threads} threads" if record.threads > 1 else ""
+    return f"{by}{record.simulations} simulations in {record.planning_s:.2f} s{threads}"
+
+
+def endings_text(belief: BeliefSummary) -> str:
+    """How probable the goal is, and each other ending that is likelier than one in two thousand."""
+    others = {"over": belief.over_probability, "failure": belief.failure_probability}
+    shown = {name: probability for name, probability in others.items() if probability >= 0.0005}
+    endings = {"goal": belief.goal_probability, **shown}
+    return "  ".join(f"{name} {probability:.3f}" for name, probability in endings.items())
 
 
 def _report_lines(report: BundleReport) -> list[str]:

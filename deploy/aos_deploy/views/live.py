@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.events import Event, ServiceChanged, Told
-from aos_deploy.views.lines import lines_of
+from aos_deploy.views.lines import effort_text, endings_text, lines_of
 from aos_protocol.messages import (
     ActionValue,
     BeliefSummary,
@@ -26,7 +26,7 @@ __all__ = ["LiveView", "Screen"]
 
 _BAR_CELLS = 20
 _FEWEST_STEPS = 3
-_OTHER_ROWS = 11
+_OTHER_ROWS = 12
 _SHOWN_VALUES = 4
 _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow", "ended": "dim"}
 
@@ -79,14 +79,16 @@ class Screen:
             yield from self._step_remark(shown)
             yield Text()
             yield columns
+            yield Text(effort_text(self.latest), style="dim")
         yield Text()
         yield from self._progress()
 
     def _headline(self) -> Text:
         text = Text(self.title, style="bold")
         if self.state is not None:
-            goal = f"{self.state.goal_probability:.3f}"
-            text.append(f"   step {self.state.step}   {self.state.phase}   goal {goal}", style="not bold")
+            goal = f"goal {self.state.goal_probability:.3f}"
+            endings = endings_text(self.latest.belief) if self.latest is not None else goal
+            text.append(f"   step {self.state.step}   {self.state.phase}   {endings}", style="not bold")
         return text
 
     def _services(self) -> Text:

@@ -58,25 +58,30 @@ def print_states(run: SimulatedRun) -> None:
 
 
 def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
-    """The states of the missions that have them; one row for each mission, and the summary."""
+    """The states of the missions that have them; one row for each mission, and the summary.
+
+    A row tells how the world has ended, and how the mission, which knows its belief alone.
+    """
     runs = tuple(runs)
     for run in runs:
         if run.states:
             print_states(run)
     table = Table()
-    for name in ("seed", "ending", "steps", "return"):
-        table.add_column(name, justify="right" if name != "ending" else "left")
+    for name in ("seed", "world", "mission", "steps", "return"):
+        table.add_column(name, justify="left" if name in ("world", "mission") else "right")
     table.add_column("actions and observations")
     for run in runs:
         story = ", ".join(
             f"{action} → {observation}"
             for action, observation in zip(run.actions, run.observations, strict=True)
         )
-        table.add_row(str(run.seed), run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
+        world = run.world_ending.value if run.world_ending is not None else "goes on"
+        table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
     console = Console()
     console.print(table)
     console.print(
         f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
+        f"believed in {summary['believed_goal_rate']:.0%}, failure in {summary['failure_rate']:.0%}, "
         f"discounted return {summary['mean_discounted_return']:+.2f} ± {summary['stderr']:.2f}, "
         f"{summary['mean_steps']:.1f} steps"
     )

@@ -72,6 +72,7 @@ def _variable(variable: StateVariable) -> Iterator[str]:
 
 def _special_state(special: SpecialState) -> Iterator[str]:
     flags = ", goal" * special.is_goal + ", once" * special.is_one_time
+    flags += "" if special.is_failure is None else ", failure" if special.is_failure else ", no failure"
     if special.condition is None:
         yield from _block("special state", special.code)
         return

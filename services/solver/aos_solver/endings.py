@@ -8,13 +8,17 @@ import msgspec
 
 from aos_protocol.messages import ActionValue, BeliefSummary
 
-__all__ = ["Ending", "MissionLimits", "ending_after_planning", "ending_of_belief"]
+__all__ = ["Ending", "MissionLimits", "believed_ending", "ending_after_planning", "ending_of_belief"]
 
 
 class Ending(StrEnum):
-    """How a mission ends; `FAULT` and `CANCELLED` come from outside the belief."""
+    """How a mission ends; `FAULT` and `CANCELLED` come from outside the belief.
+
+    `OVER` is an ending of the documents that is neither a goal nor a failure.
+    """
 
     GOAL = "goal"
+    OVER = "over"
     FAILURE = "failure"
     NOTHING_WORTHWHILE = "nothing_worthwhile"
     STEP_LIMIT = "step_limit"
@@ -34,15 +38,26 @@ class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
     stop_below_value: float | None = None
 
 
-def ending_of_belief(belief: BeliefSummary, steps_taken: int, limits: MissionLimits) -> Ending | None:
-    """The ending that a belief calls for after so many steps; None while there is something left to do.
+def believed_ending(belief: BeliefSummary, limits: MissionLimits) -> Ending | None:
+    """The ending that a belief holds for sure enough; None where the mission may well go on.
 
-    A mission that is surely over, but not surely by its goal, counts as a failure.
+    A mission that is surely over, but not surely in one way, counts as what it is at least: the endings are,
+    from the best to the worst, goal, over and failure.
     """
-    if belief.goal_probability >= limits.goal_probability:
+    probability = belief.goal_probability
+    if probability >= limits.goal_probability:
         return Ending.GOAL
-    if belief.goal_probability + belief.failure_probability >= limits.goal_probability:
-        return Ending.FAILURE
+    probability += belief.over_probability
+    if probability >= limits.goal_probability:
+        return Ending.OVER
+    probability += belief.failure_probability
+    return Ending.FAILURE if probability >= limits.goal_probability else None
+
+
+def ending_of_belief(belief: BeliefSummary, steps_taken: int, limits: MissionLimits) -> Ending | None:
+    """The ending that a belief calls for after so many steps; None while there is something left to do."""
+    if ending := believed_ending(belief, limits):
+        return ending
     if steps_taken >= limits.step_limit:
         return Ending.STEP_LIMIT
     return None

@@ -129,6 +129,9 @@ class Mission:
             actions=plan.actions,
             predicted=plan.predicted,
             belief=belief,
+            planner=plan.planner,
+            why=plan.why,
+            threads=plan.threads,
         )
         self._publish(record)
         return record
@@ -220,12 +223,20 @@ class Mission:
         self._ports.publish_state(state)
 
 
+def _endings(belief: BeliefSummary) -> str:
+    """How probable each ending is."""
+    endings = {
+        "goal": belief.goal_probability,
+        "over": belief.over_probability,
+        "failure": belief.failure_probability,
+    }
+    return ", ".join(f"{ending} {probability:.3f}" for ending, probability in endings.items())
+
+
 _REMARKS: dict[Ending, Callable[[BeliefSummary, MissionLimits], str]] = {
     Ending.GOAL: lambda belief, _: f"the goal is reached with probability {belief.goal_probability:.3f}",
-    Ending.FAILURE: lambda belief, _: (
-        "the mission is over without its goal: "
-        f"goal {belief.goal_probability:.3f}, failure {belief.failure_probability:.3f}"
-    ),
+    Ending.OVER: lambda belief, _: f"the mission is over without its goal or a failure: {_endings(belief)}",
+    Ending.FAILURE: lambda belief, _: f"the mission is over without its goal: {_endings(belief)}",
     Ending.NOTHING_WORTHWHILE: lambda _, limits: (
         f"no action is expected to return more than {limits.stop_below_value}"
     ),

@@ -1,6 +1,7 @@
 """Whole missions without a robot: the world is a hidden state that the documents' own model steps.
 
-The stop rules are the mission loop's. Rewards are the model's, so that returns can be compared.
+The stop rules are the mission loop's. Rewards are the model's, so that returns can be compared. A mission
+with a robot knows its belief alone; here the world is known too, and so whether the belief was right.
 """
 
 from __future__ import annotations
@@ -8,7 +9,13 @@ from __future__ import annotations
 import msgspec
 
 from aos_solver.child.engine import Engine
-from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
+from aos_solver.endings import (
+    Ending,
+    MissionLimits,
+    believed_ending,
+    ending_after_planning,
+    ending_of_belief,
+)
 from aos_solver.search import Search
 
 __all__ = ["SimulatedRun", "simulate_mission"]
@@ -17,7 +24,10 @@ __all__ = ["SimulatedRun", "simulate_mission"]
 class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
     """One mission: `total` is the undiscounted return (`return` in JSON).
 
-    `states` are texts of the world's state before the first action and after each, where they were wanted.
+    `ending` is why it stopped: what the belief called for, or the world's end where the belief has not
+    noticed it. `world_ending` is the truth: how the world has ended, None where it has not. `believed_ending`
+    is what the last belief held for sure enough. `states` are texts of the world's state before the first
+    action and after each, where they were wanted.
     """
 
     seed: int
@@ -28,6 +38,8 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
     actions: tuple[str, ...]
     observations: tuple[str, ...]
     states: tuple[str, ...] = ()
+    world_ending: Ending | None = None
+    believed_ending: Ending | None = None
 
 
 async def simulate_mission(
@@ -58,6 +70,8 @@ async def simulate_mission(
                 tuple(actions),
                 tuple(observations),
                 tuple(states),
+                Ending(world_ending) if world_ending else None,
+                believed_ending(belief, limits),
             )
         step = await engine.step_world(plan.index)
         total += step.reward

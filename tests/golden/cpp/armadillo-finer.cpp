@@ -1,5 +1,5 @@
 // Model of the project armadillo: 7 state variables, 5 skills.
-// Emitted by aos 0.1.0 from the documents of digest 5797713c31908468. Change the documents, not this file;
+// Emitted by aos 0.1.0 from the documents of digest fdf9e51061964189. Change the documents, not this file;
 // `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 
 #include "aos/model/model_support.hpp"
@@ -318,7 +318,7 @@ state.robot_at = state.hard_table.place;
   }
 
   static void special_state__1(const State& state, double& __reward, bool& __isGoalState,
-                               bool& __stopEvaluatingState, auto& AOS) {
+                               bool& __isFailureState, bool& __stopEvaluatingState, auto& AOS) {
     aos::blame::at(16);
 #line 67 "armadillo.ef"
 if (state.drink_served) {
@@ -329,23 +329,23 @@ if (state.drink_served) {
   }
 
   static void special_state__2(const State& state, double& __reward, bool& __isGoalState,
-                               bool& __stopEvaluatingState, auto& AOS) {
+                               bool& __isFailureState, bool& __stopEvaluatingState, auto& AOS) {
     aos::blame::at(17);
 #line 73 "armadillo.ef"
 if (state.person_injured) {
     __reward = -10;
-    __isGoalState = true;
+    __isFailureState = true;
 }
 #line 340 "model.cpp"
   }
 
   static void special_state__3(const State& state, double& __reward, bool& __isGoalState,
-                               bool& __stopEvaluatingState, auto& AOS) {
+                               bool& __isFailureState, bool& __stopEvaluatingState, auto& AOS) {
     aos::blame::at(18);
 #line 79 "armadillo.ef"
 // Both cans are lost: nothing is left to serve.
 if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
-    __isGoalState = true;
+    __isFailureState = true;
 }
 #line 351 "model.cpp"
   }
@@ -356,10 +356,10 @@ if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
     reward += aos::special_state(next, 0u, [&](auto&... result) {
       special_state__1(next, result..., random);
     });
-    reward += aos::special_state(next, 0u, [&](auto&... result) {
+    reward += aos::special_state<aos::Said::failures>(next, 0u, [&](auto&... result) {
       special_state__2(next, result..., random);
     });
-    reward += aos::special_state(next, 0u, [&](auto&... result) {
+    reward += aos::special_state<aos::Said::failures>(next, 0u, [&](auto&... result) {
       special_state__3(next, result..., random);
     });
     return reward;

@@ -2,7 +2,7 @@
 
 `declarations` looks at names and types, `model_code` at the C++ of environment and skills, `responses` at
 what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings,
-`unused` at what nothing mentions.
+`endings` at what ends a mission, `unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from aos_protocol.documents import AbstractionMapping
 from aos_protocol.local_types import told_variables
 from aos_registry.assembly import Assembly
 from aos_registry.check.declarations import check_environment_names, check_skill_declarations
+from aos_registry.check.endings import check_endings
 from aos_registry.check.given_observation import (
     check_given_observation,
     check_told_variables,
@@ -33,6 +34,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
     if assembly.environment is not None:
         check_environment_names(assembly.environment, scope, findings)
         check_environment_code(assembly.environment, scope, findings)
+        check_endings(assembly.environment, findings)
     for name, model in assembly.models.items():
         if assembly.environment is not None:
             check_skill_declarations(model, scope, findings)

@@ -26,8 +26,8 @@ from aos_runtime.snippets import (
 __all__ = ["SPECIAL_NAMES", "check_environment_code", "check_skill_code", "read_block"]
 
 SPECIAL_NAMES = frozenset({
-    "__heuristicValue", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime", "__moduleResponse",
-    "__moduleResponseStr", "__possibleParameters", "__reward", "__stopEvaluatingState",
+    "__heuristicValue", "__isFailureState", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime",
+    "__moduleResponse", "__moduleResponseStr", "__possibleParameters", "__reward", "__stopEvaluatingState",
 })  # fmt: skip
 _BUILT_INS = {
     "AOS": (

@@ -27,7 +27,7 @@ from aos_registry.documents.json_record import Record
 __all__ = ["read_environment", "read_low_level"]
 
 _RANGE = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)")
-_FORM_A = ("StateConditionCode", "Reward", "IsGoalState", "IsOneTimeReward")
+_FORM_A = ("StateConditionCode", "Reward", "IsGoalState", "IsFailureState", "IsOneTimeReward")
 
 
 def read_environment(record: Record, project: str, span: Span) -> Environment:
@@ -189,6 +189,7 @@ def _special_state(record: Record) -> SpecialState | None:
     condition = record.expression("StateConditionCode")
     reward = record.number("Reward")
     is_goal, is_one_time = record.boolean("IsGoalState"), record.boolean("IsOneTimeReward")
+    is_failure = record.boolean("IsFailureState") if record.has("IsFailureState") else None
     record.ignore("Comment")
     record.finish()
     if record.has("StateFunctionCode"):
@@ -200,7 +201,7 @@ def _special_state(record: Record) -> SpecialState | None:
         if not record.has("Reward"):
             record.findings.error("AOS105", 'a special state lacks "Reward"', record.span)
         return None
-    return SpecialState(record.span, condition, reward, is_goal, is_one_time)
+    return SpecialState(record.span, condition, reward, is_goal, is_one_time, is_failure)
 
 
 def _form_b(record: Record, code: tuple[Assignment, ...]) -> SpecialState | None:

@@ -100,6 +100,8 @@ def _form_a(section: Section, findings: Findings) -> SpecialState | None:
     condition, reward = section.last("state_condition", findings), section.last("reward", findings)
     is_goal = read_truth(section.last("is_goal_state", findings), findings)
     is_one_time = read_truth(section.last("is_one_time_reward", findings), findings)
+    failure = section.last("is_failure_state", findings)
+    is_failure = read_truth(failure, findings) if failure is not None else None
     code = condition.code() if condition is not None else None
     if code is None:
         findings.error("AOS105", "a special state needs `state_condition:`", section.span)
@@ -109,7 +111,7 @@ def _form_a(section: Section, findings: Findings) -> SpecialState | None:
     if code is None or number is None:
         return None
     holds = expression(code, drop_semicolon=True)
-    return SpecialState(section.span, holds, number, is_goal, is_one_time)
+    return SpecialState(section.span, holds, number, is_goal, is_one_time, is_failure)
 
 
 def _type(section: Section, findings: Findings) -> EnumType | CompoundType | None:

@@ -54,6 +54,7 @@ GRAMMARS: Mapping[str, Grammar] = {
                 "state_condition": _CPP,
                 "reward": _LINE,
                 "is_goal_state": _LINE,
+                "is_failure_state": _LINE,
                 "is_one_time_reward": _LINE,
             }
         ),

@@ -111,10 +111,12 @@ def _variable(variable: StateVariable) -> dict[str, Any]:
 def _special_state(special: SpecialState) -> dict[str, Any]:
     if special.condition is None:
         return {"StateFunctionCode": _block(special.code)}
+    failure = {} if special.is_failure is None else {"IsFailureState": special.is_failure}
     return {
         "StateConditionCode": _code(special.condition),
         "Reward": special.reward,
         **_given(IsGoalState=special.is_goal, IsOneTimeReward=special.is_one_time),
+        **failure,
     }
 
 

@@ -95,6 +95,8 @@ def _special_state(special: SpecialState) -> Iterator[str]:
     yield f"reward: {special.reward!r}"
     if special.is_goal:
         yield "is_goal_state: true"
+    if special.is_failure is not None:
+        yield f"is_failure_state: {str(special.is_failure).lower()}"
     if special.is_one_time:
         yield "is_one_time_reward: true"
 

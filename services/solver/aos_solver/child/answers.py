@@ -53,7 +53,8 @@ class EngineDescription(msgspec.Struct, frozen=True):
 class Plan(msgspec.Struct, frozen=True):
     """A decision: the index of the best action, and what the search found about each, in their order.
 
-    `planner` is the one that made it, and `why` it was that one. `known_simulations` were in the tree before.
+    `planner` is the one that made it, with so many `threads`, and `why` it was that one. `known_simulations`
+    were in the tree before.
     """
 
     index: int
@@ -66,6 +67,7 @@ class Plan(msgspec.Struct, frozen=True):
     known_simulations: int = 0
     planner: str = ""
     why: str = ""
+    threads: int = 1
 
     @property
     def best(self) -> ActionValue:
@@ -203,7 +205,7 @@ class ExportedBelief(msgspec.Struct, frozen=True):
 
 
 class WorldStart(msgspec.Struct, frozen=True):
-    """The hidden state of a new simulated world; `ending` is empty, `goal` or `failure`."""
+    """The hidden state of a new simulated world; `ending` is empty, `goal`, `failure` or `over`."""
 
     ending: str
 
@@ -232,8 +234,9 @@ class Worlds(msgspec.Struct, frozen=True):
 class WorldSteps(msgspec.Struct, frozen=True):
     """One step of all worlds, an entry for each in every array.
 
-    `endings` are bytes, 0 running, 1 goal, 2 failure; `rewards` of type float64, `observations` of int32. The
-    bytes of each array are as the machine has them. `texts` are empty unless the model has text observations.
+    `endings` are bytes, 0 running, 1 goal, 2 failure, 3 over; `rewards` of type float64, `observations` of
+    int32. The bytes of each array are as the machine has them. `texts` are empty unless the model has text
+    observations.
     """
 
     endings: bytes

@@ -130,17 +130,30 @@ class _Lowering:
         for number, special in enumerate(environment.special_states, 1):
             if special.condition is not None and not read_cpp_expression(special.condition.code).is_empty:
                 condition = self._pieces.expression(special.condition, self._code.outside)
-                section, is_used_up = None, special.is_one_time and not special.is_goal
+                section, says_failure = None, special.is_failure is not None
+                is_used_up = special.is_one_time and not (special.is_goal or special.is_failure)
             else:
                 condition, section = None, self._code.section(LOOKING, special.code)
                 is_used_up = section is not None and section.uses("__stopEvaluatingState")
+                says_failure = section is not None and section.uses("__isFailureState")
             if is_used_up and flags == _MAX_FLAGS:
                 message = f"more than {_MAX_FLAGS} special states that count once"
                 self._findings.error("AOS124", message, special.span, "Join some of them in one reward_code")
             bit = 1 << flags if is_used_up else 0
             flags += is_used_up
-            reward, is_goal, is_one_time = special.reward, special.is_goal, special.is_one_time
-            lowered.append(SpecialState(number, bit, condition, reward, is_goal, is_one_time, section))
+            lowered.append(
+                SpecialState(
+                    number,
+                    bit,
+                    condition,
+                    special.reward,
+                    special.is_goal,
+                    bool(special.is_failure),
+                    says_failure,
+                    special.is_one_time,
+                    section,
+                )
+            )
         return tuple(lowered)
 
     def _skill(self, skill: Skill) -> LoweredSkill:

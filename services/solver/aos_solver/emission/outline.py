@@ -66,7 +66,7 @@ def _special_state(special: SpecialState) -> Iterator[str]:
     if special.condition is None:
         yield from _section(special.section)
         return
-    ends = ", ends the mission" if special.is_goal else ""
+    ends = ", ends the mission" * special.is_terminal + " as a failure" * special.is_failure
     yield f"if {_one_line(special.condition)}: {special.reward:+g}{ends}  [{special.condition.snippet.span}]"
 
 

@@ -179,15 +179,25 @@ class Section(msgspec.Struct, frozen=True):
 
 
 class SpecialState(msgspec.Struct, frozen=True):
-    """Form A has a condition, form B a section. `bit` is the flag that uses it up; 0 for those that stay."""
+    """Form A has a condition, form B a section. `bit` is the flag that uses it up; 0 for those that stay.
+
+    `says_failure`: the documents say here what is a failure, and not the reward's sign.
+    """
 
     number: int
     bit: int
     condition: Piece | None
     reward: float
     is_goal: bool
+    is_failure: bool
+    says_failure: bool
     is_one_time: bool
     section: Section | None
+
+    @property
+    def is_terminal(self) -> bool:
+        """Of form A: whether the mission ends where the condition holds."""
+        return self.is_goal or self.is_failure
 
 
 # --- skills --------------------------------------------------------------------------------------------

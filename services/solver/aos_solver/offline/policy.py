@@ -169,4 +169,5 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         )
         spent_s = time.perf_counter() - begun_s
         horizon = engine.description.horizon
-        return Plan(best, 0, horizon, actions, prediction.predicted, spent_s, planner="policy")
+        why = "a policy file was asked for"
+        return Plan(best, 0, horizon, actions, prediction.predicted, spent_s, planner="policy", why=why)

@@ -163,6 +163,7 @@ class Belief {
     json.member("entropy", entropy());
     json.member("goal_probability", probability_of(Ending::goal));
     json.member("failure_probability", probability_of(Ending::failure));
+    json.member("over_probability", probability_of(Ending::over));
     json.member("states", particles_.size()).member("effective_states", effective_states());
     json.member("is_exact", is_exact()).member("error_bound", error_bound_).end_object();
   }

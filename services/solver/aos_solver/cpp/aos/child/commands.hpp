@@ -84,7 +84,9 @@ class Engine {
     const int best = search_.choice(estimates);
     json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
     json.member("known_simulations", known);
-    json.member("planner", search_.name()).member("why", search_.why());
+    const std::string_view name = search_.name();
+    json.member("planner", name).member("why", search_.why());
+    json.member("threads", name == "pomcp" ? budget.threads : 1);  // Only POMCP shares its work out.
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       const auto& estimate = estimates[static_cast<std::size_t>(action)];
@@ -341,6 +343,7 @@ class Engine {
       case Ending::running: return "";
       case Ending::goal: return "goal";
       case Ending::failure: return "failure";
+      case Ending::over: return "over";
     }
     return "";
   }

@@ -6,9 +6,9 @@
 
 namespace aos {
 
-// How a state has ended; running states go on.
-enum class Ending : std::uint8_t { running, goal, failure };
-inline constexpr int ending_count = 3;
+// How a state has ended; running states go on. `over` is neither a goal nor a failure.
+enum class Ending : std::uint8_t { running, goal, failure, over };
+inline constexpr int ending_count = 4;
 
 // >= 0: the number of a response within its skill; -1: no response was set; below: a text.
 using Observation = std::int64_t;

@@ -60,18 +60,33 @@ struct EnvironmentDefaults {
   static void state_heuristic(const auto&, double&, auto&) {}
 };
 
-// A special state on the next state: its reward, once more unless `bit` says that it is used up. The first goal decides
-// how the state ends. `evaluate` sets the reward, whether it is a goal, and whether it is used up now.
-template <class State>
+// What a special state says of how the mission ends: that it does, or also which endings are failures.
+enum class Said { endings, failures };
+
+// What is not said, the reward's sign says.
+template <Said said>
+Ending ending_of(double reward, bool is_failure) {
+  if constexpr (said == Said::failures) {
+    return is_failure ? Ending::failure : Ending::goal;
+  } else {
+    return reward > 0 ? Ending::goal : reward < 0 ? Ending::failure : Ending::over;
+  }
+}
+
+// A special state on the next state: its reward, once more unless `bit` says that it is used up. The first ending decides
+// how the state ends. `evaluate` sets the reward, whether the mission ends, also as a failure, and whether the special
+// state is used up now.
+template <Said said = Said::endings, class State>
 double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
   if constexpr (requires { next.__spent; }) {
     if ((next.__spent & bit) != 0) return 0;
   }
   double reward = 0;
   bool is_goal = false;
+  bool is_failure = false;
   bool is_used_up = false;
-  evaluate(reward, is_goal, is_used_up);
-  if (is_goal && next.__ending == Ending::running) next.__ending = reward > 0 ? Ending::goal : Ending::failure;
+  evaluate(reward, is_goal, is_failure, is_used_up);
+  if ((is_goal || is_failure) && next.__ending == Ending::running) next.__ending = ending_of<said>(reward, is_failure);
   if constexpr (requires { next.__spent; }) {
     if (is_used_up) next.__spent |= static_cast<decltype(next.__spent)>(bit);
   }
@@ -138,7 +153,7 @@ Step transition(State& next, const auto& parameters, auto& random) {
 
   if constexpr (Environment::has_extrinsic_changes) {
     double reward = 0;
-    const typename Environment::Chosen chosen{parameters};
+    const typename Environment::Chosen chosen{std::type_identity<Skill>{}, parameters};
     Environment::extrinsic_changes(state, next, reward, execution_time, chosen, random);
     check_reward(reward);
     Kept<State, Skill::keeps_state_> state_ = next;

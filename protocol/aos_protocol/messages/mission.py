@@ -1,0 +1,158 @@
+"""Where the mission is, what it believes, and what it decides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.documents import Project
+from aos_protocol.messages.base import Message
+from aos_protocol.messages.skills import Outcome
+
+__all__ = [
+    "ActionValue",
+    "BeliefSummary",
+    "CheckModel",
+    "DecisionRecord",
+    "History",
+    "HistoryQuery",
+    "Marginal",
+    "MissionQuery",
+    "MissionState",
+    "ModelCheck",
+    "PredictedObservation",
+    "StartMission",
+]
+
+
+class CheckModel(Message, frozen=True):
+    """The registry's question before it accepts documents: can the solver use them, now?"""
+
+    project: Project
+
+
+class ModelCheck(Message, frozen=True):
+    """The solver's answer: compile errors, or that the running mission cannot carry its belief over."""
+
+    diagnostics: tuple[Diagnostic, ...] = ()
+
+
+class StartMission(Message, frozen=True):
+    """Starts the mission that the solver was configured for. A second start changes nothing."""
+
+
+class Marginal(Message, frozen=True):
+    """The distribution of one state variable: value text to probability, most probable first.
+
+    Of many values only the most probable ones are told; `others` is the probability of all the rest.
+    """
+
+    variable: str
+    values: dict[str, float]
+    others: float = 0.0
+
+
+class BeliefSummary(Message, frozen=True):
+    """A belief for people: marginals of all variables, entropy in nats, and the chance of each ending.
+
+    `over_probability` is that of a mission that is over and is neither a goal nor a failure.
+    `states` is the number of distinct states; `effective_states` is how many of equal weight would tell as
+    much. No event's probability is further than `error_bound` from what Bayes' rule gives: 0 where the belief
+    is exact, 1 where steps had to be sampled and nothing is certain.
+    """
+
+    marginals: tuple[Marginal, ...]
+    entropy: float
+    goal_probability: float
+    failure_probability: float
+    states: int
+    is_exact: bool
+    effective_states: float = 0.0
+    error_bound: float = 0.0
+    over_probability: float = 0.0
+
+
+class MissionQuery(Message, frozen=True):
+    """Asks the solver where the mission is."""
+
+
+class MissionState(Message, frozen=True):
+    """Where the mission is: a `phase` of waiting, building, planning, acting, ended; and how it ended.
+
+    `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `step_limit`, `cancelled`, `fault`, or
+    empty while it runs. The first three are what the belief holds for sure enough: how the world has really
+    ended, nobody tells the robot. `remark` is one line for people.
+    """
+
+    mission: str
+    phase: str
+    step: int
+    goal_probability: float
+    ending: str = ""
+    remark: str = ""
+    revision: int = 0
+
+
+class ActionValue(Message, frozen=True):
+    """What the search found about one grounded action: mean return, visits, standard error of the mean."""
+
+    action: str
+    q: float
+    n: int
+    stderr: float
+
+
+class PredictedObservation(Message, frozen=True):
+    """A response the chosen action may bring, with its probability under the belief."""
+
+    response: str
+    probability: float
+
+
+class DecisionRecord(Message, frozen=True):
+    """One step of a mission, published twice: when decided (`outcome` is None) and when observed.
+
+    `sequence` is dense over the mission and names the publication, `step` names the decision, from 1.
+    `belief` is the belief decided on, or after the observation the updated one. `surprise` is
+    -log P(observation | belief, action) in nats; infinite surprise is given as `is_impossible`. `remark` says
+    what of the outcome could not be used for the belief. `planner` made the decision with so many `threads`;
+    `why` says why it was that planner and what it has found.
+    """
+
+    sequence: int
+    stamp_ns: int
+    mission: str
+    epoch: int
+    step: int
+    action: str
+    skill: str
+    parameters: dict[str, Any]
+    model_digest: str
+    revision: int
+    seed: int
+    simulations: int
+    horizon: int
+    planning_s: float
+    actions: tuple[ActionValue, ...]
+    predicted: tuple[PredictedObservation, ...]
+    belief: BeliefSummary
+    outcome: Outcome | None = None
+    surprise: float = 0.0
+    is_impossible: bool = False
+    remark: str = ""
+    planner: str = ""
+    why: str = ""
+    threads: int = 1
+
+
+class HistoryQuery(Message, frozen=True):
+    """Asks for the decision records with a sequence number of at least `since`."""
+
+    since: int = 0
+
+
+class History(Message, frozen=True):
+    """Decision records in order of their sequence numbers, and the mission they belong to."""
+
+    mission: str
+    records: tuple[DecisionRecord, ...]

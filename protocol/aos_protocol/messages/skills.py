@@ -1,0 +1,117 @@
+"""Activations: what the solver asks the middleware, and the middleware the adapters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aos_protocol.messages.base import Fault, Message
+
+__all__ = [
+    "Activate",
+    "ActivationId",
+    "Cancel",
+    "Cancelled",
+    "MappingQuery",
+    "MappingState",
+    "Outcome",
+    "SkillCall",
+    "SkillResult",
+    "TopicMessage",
+]
+
+
+class ActivationId(Message, frozen=True):
+    """Identifies one run of one grounded action for ever; ordered by epoch and step within a mission."""
+
+    mission: str
+    epoch: int
+    step: int
+
+    def __str__(self) -> str:
+        return f"{self.mission}-{self.epoch}-{self.step}"
+
+
+class Activate(Message, frozen=True):
+    """The solver's request to run a grounded action. A repeat of an ended id returns the stored outcome.
+
+    Parameter values are plain data: numbers, bools, strings (enum values by name), dicts for compounds.
+    `deadline_s` bounds the whole activation. `revision` is that of the model which decided, so that the
+    observation is one of that model's; 0 takes the newest. `variables` names the state variables that
+    parameters stand for.
+    """
+
+    id: ActivationId
+    skill: str
+    parameters: dict[str, Any]
+    deadline_s: float
+    revision: int = 0
+    variables: dict[str, str] = {}
+
+
+class Outcome(Message, frozen=True):
+    """How an activation ended: `status` is `observed`, `failed`, `timed_out`, `cancelled` or `unknown`.
+
+    `response` is the observation, empty unless observed. Local variables are as they were when the rules
+    ran, as text. `fault` says what went wrong. `assigned` are the new low-level values that came with the
+    response, as plain data, by the path of the `anyValue` from its state variable.
+    """
+
+    id: ActivationId
+    skill: str
+    status: str
+    response: str = ""
+    local_variables: dict[str, str] = {}
+    started_ns: int = 0
+    ended_ns: int = 0
+    fault: Fault | None = None
+    assigned: dict[str, Any] = {}
+
+
+class MappingQuery(Message, frozen=True):
+    """Asks the middleware which mappings it runs."""
+
+
+class MappingState(Message, frozen=True):
+    """The newest revision whose mappings run (0 before the first), its skills, and the newest one refused."""
+
+    revision: int
+    skills: tuple[str, ...]
+    refused: int = 0
+
+
+class SkillCall(Message, frozen=True):
+    """The middleware's request to an adapter. A repeat of an id returns what the first call returned."""
+
+    id: ActivationId
+    path: str
+    fields: dict[str, Any]
+    deadline_s: float
+
+
+class SkillResult(Message, frozen=True):
+    """An adapter's answer. `published` counts, by topic path, the messages sent on it since the adapter
+    started: whoever listens has seen everything once it has seen that `TopicMessage.number`.
+    """
+
+    id: ActivationId
+    fields: dict[str, Any]
+    published: dict[str, int] = {}
+
+
+class Cancel(Message, frozen=True):
+    """Stop whatever moves."""
+
+    reason: str = ""
+
+
+class Cancelled(Message, frozen=True):
+    """The activations that were stopped, as text."""
+
+    ids: tuple[str, ...] = ()
+
+
+class TopicMessage(Message, frozen=True):
+    """Raw data of the robot: the fields of one message, numbered from 1 for each topic."""
+
+    number: int
+    fields: dict[str, Any]

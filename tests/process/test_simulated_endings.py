@@ -1,0 +1,106 @@
+"""A simulated mission tells how its world has ended, and what the belief held for it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+from scripted_models import mapping_text
+from typer.testing import CliRunner
+
+from aos_deploy.cli import aos_app
+from aos_solver.endings import Ending, MissionLimits
+from aos_solver.search import Search
+from aos_solver.simulation import simulate_mission
+
+SERVED = 0.92
+"""Where nothing is seen the belief holds the goal for surer than the 0.9 that end a mission."""
+
+TABLE = {
+    "table.ef": """project: table
+horizon: 3
+discount: 1
+define_type: Cup
+enum_members: Held, Served, Spilt, Kept
+state_variable: Cup cup
+code:
+state.cup = Held;
+reward_code:
+if (state.cup == Served) { __reward = 10; __isGoalState = true; }
+reward_code:
+if (state.cup == Spilt) { __reward = -10; __isFailureState = true; }
+reward_code:
+if (state.cup == Kept) __isGoalState = true;
+""",
+    "serve.sd": f"""project: table
+dynamic_model:
+state__.cup = AOS.Bernoulli({SERVED}) ? Served : Spilt;
+__moduleResponse = done;
+""",
+    "serve.am": mapping_text("done", project="table"),
+    "keep.sd": """project: table
+dynamic_model:
+state__.cup = Kept;
+__reward = -1;
+""",
+    "keep.am": mapping_text(project="table"),
+}
+LIMITS = MissionLimits(goal_probability=0.9, step_limit=3)
+
+
+async def test_a_failure_that_the_belief_takes_for_the_goal_is_told(cache_dir: Path) -> None:
+    async with engine_of(await built_text(TABLE, cache_dir)) as engine:
+        runs = [
+            await simulate_mission(engine, Search(simulations=200, seed=seed), LIMITS)
+            for seed in range(1, 121)
+        ]
+    assert {run.ending for run in runs} == {run.believed_ending for run in runs} == {Ending.GOAL}
+    spilt = [run for run in runs if run.world_ending is Ending.FAILURE]
+    assert all(run.world_ending in (Ending.GOAL, Ending.FAILURE) for run in runs)
+    assert {run.total for run in spilt} == {-10.0}
+    # Of 120 missions 9.6 fail on the average; the binomial's standard deviation is 3.
+    assert 1 <= len(spilt) <= 20
+
+
+async def test_a_belief_tells_each_ending_apart(cache_dir: Path) -> None:
+    async with engine_of(await built_text(TABLE, cache_dir)) as engine:
+        served = (await engine.update("serve", "done")).summary
+        await engine.reset_belief()
+        kept = (await engine.update("keep", "DefaultObservation")).summary
+    assert served.goal_probability == pytest.approx(SERVED)
+    assert served.failure_probability == pytest.approx(1 - SERVED)
+    assert served.over_probability == 0
+    assert (kept.goal_probability, kept.failure_probability, kept.over_probability) == (0, 0, 1)
+
+
+async def test_a_mission_can_be_over_without_a_goal_or_a_failure(cache_dir: Path) -> None:
+    keep = {name: text for name, text in TABLE.items() if not name.startswith("serve")}
+    async with engine_of(await built_text(keep, cache_dir)) as engine:
+        run = await simulate_mission(engine, Search(simulations=100, seed=1), LIMITS)
+    assert (run.ending, run.world_ending, run.believed_ending) == (Ending.OVER,) * 3
+    assert run.total == -1
+
+
+def test_goals_are_counted_by_the_world(
+    tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    for name, text in TABLE.items():
+        (tmp_path / name).write_text(text)
+    command = ["simulate", str(tmp_path), "--runs", "40", "--simulations", "100"]
+    app = aos_app(command)
+    app = aos_app(command)
+    app = aos_app(command)
+    done = CliRunner().invoke(app, [*command, "--json"])
+    assert done.exit_code == 0, done.output
+    campaign = json.loads(done.stdout)
+    endings = [run["world_ending"] for run in campaign["runs"]]
+    summary = campaign["summary"]
+    assert summary["believed_goal_rate"] == 1
+    assert summary["goal_rate"] == endings.count("goal") / 40 < 1
+    assert summary["failure_rate"] == endings.count("failure") / 40
+    assert summary["over_rate"] == 0
+    told = CliRunner().invoke(app, command).stdout
+    assert "believed in 100%" in told

@@ -1,0 +1,65 @@
+"""Extrinsic changes know which skill was chosen, also where skills have the same parameters or none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from scripted_models import ScriptedModel, mapping_text, scripted, text_project
+
+PARAMETERLESS = "project: test\ndynamic_model:\n"
+
+
+def skill_over(values: str) -> str:
+    """A skill with one parameter, which takes these values."""
+    possible = (
+        f"for (int by : std::vector<int>{{{values}}}) __possibleParameters.push_back(std::make_tuple(by));"
+    )
+    return f"project: test\nparameter: int by\navailable_parameters_code:\n{possible}\ndynamic_model:\n"
+
+
+BIRD = {
+    "bird.ef": """project: test
+horizon: 7
+discount: 0.95
+state_variable: int seen
+code:
+state.seen = 0;
+extrinsic_code:
+state_.seen = (fly != NULL) + 2 * (rest != NULL) + 4 * (never != NULL);
+if (turn != NULL) state_.seen += 10 * turn->by;
+if (lean) state_.seen += 100 * lean->by;
+__reward = fly != NULL ? -1 : 0;
+""",
+    "fly.sd": PARAMETERLESS,
+    "rest.sd": PARAMETERLESS,
+    "sing.sd": PARAMETERLESS,
+    "turn.sd": skill_over("2, 3"),
+    "lean.sd": skill_over("4"),
+    "never.sd": skill_over(""),
+    **{f"{skill}.am": mapping_text() for skill in ("fly", "rest", "sing", "turn", "lean", "never")},
+}
+
+
+@pytest.fixture(scope="module")
+def bird(cache_dir: Path) -> ScriptedModel:
+    return scripted(text_project(BIRD), cache_dir)
+
+
+@pytest.mark.parametrize(
+    ("action", "seen"),
+    [("fly", 1), ("rest", 2), ("sing", 0), ("turn(by=2)", 20), ("turn(by=3)", 30), ("lean(by=4)", 400)],
+)
+def test_only_the_chosen_skill_is_seen(bird: ScriptedModel, action: str, seen: int) -> None:
+    assert bird.play(action).values("seen") == ["0", str(seen)]
+
+
+def test_a_skill_is_charged_for_itself_alone(bird: ScriptedModel) -> None:
+    assert bird.play("fly", "rest", "fly", "sing").rewards == [-1, 0, -1, 0]
+
+
+def test_the_emitted_text_tells_skills_apart_by_their_names(bird: ScriptedModel) -> None:
+    chosen = bird.emitted.cpp.split("struct Chosen {")[1].split("};")[0]
+    for skill in ("fly", "rest", "turn", "lean", "never"):
+        assert f"if constexpr (std::same_as<Skill, skill__{skill}>) {skill} = &parameters;" in chosen
+    assert "sing" not in chosen

@@ -1,0 +1,155 @@
+"""How a mission ends: by what special states say of it, in all dialects, and by what a belief holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from scripted_models import ScriptedModel, mapping_text, scripted, text_project
+
+from aos_deploy.exit_codes import exit_code_of_mission
+from aos_protocol.documents import Environment
+from aos_protocol.messages import BeliefSummary, MissionState
+from aos_registry.convert import Dialect, convert, without_origins
+from aos_registry.load import load_files
+from aos_solver.endings import Ending, MissionLimits, believed_ending
+
+RUNNING, GOAL, FAILURE, OVER = range(4)
+
+ROOM = """project: test
+horizon: 3
+discount: 0.9
+state_variable: int n
+code:
+state.n = 0;
+reward_code:
+if (state.n == 1) { __reward = 0; __isGoalState = true; __isFailureState = false; }
+reward_code:
+if (state.n == 2) { __reward = 5; __isFailureState = true; }
+reward_code:
+if (state.n == 3) { __reward = -5; __isGoalState = true; }
+reward_code:
+if (state.n == 4) __isGoalState = true;
+reward_code:
+if (state.n == 5) { __reward = 2; __isGoalState = true; }
+special_state:
+state_condition: state.n == 6
+reward: -2
+is_goal_state: true
+is_failure_state: false
+special_state:
+state_condition: state.n == 7
+reward: 3
+is_failure_state: true
+special_state:
+state_condition: state.n == 8
+reward: 0
+is_goal_state: true
+special_state:
+state_condition: state.n == 9
+reward: -1
+is_goal_state: true
+special_state:
+state_condition: state.n == 10
+reward: 0
+is_goal_state: true
+is_failure_state: true
+"""
+GO = """project: test
+parameter: int to
+available_parameters_code:
+for (int to = 0; to < 12; to++) __possibleParameters.push_back(std::make_tuple(to));
+dynamic_model:
+state__.n = to;
+"""
+BUNDLE = {"room.ef": ROOM, "go.sd": GO, "go.am": mapping_text()}
+
+
+@pytest.fixture(scope="module")
+def room(cache_dir: Path) -> ScriptedModel:
+    return scripted(text_project(BUNDLE), cache_dir)
+
+
+def ending_at(room: ScriptedModel, place: int) -> int:
+    ending = room.play(f"go(to={place})").steps[0]["ending"]
+    assert isinstance(ending, int)
+    return ending
+
+
+@pytest.mark.parametrize(
+    ("place", "ending"), [(1, GOAL), (2, FAILURE), (6, GOAL), (7, FAILURE), (10, FAILURE)]
+)
+def test_what_is_said_of_failure_counts_whatever_the_reward(
+    room: ScriptedModel, place: int, ending: int
+) -> None:
+    assert ending_at(room, place) == ending
+
+
+@pytest.mark.parametrize(("place", "ending"), [(3, FAILURE), (4, OVER), (5, GOAL), (8, OVER), (9, FAILURE)])
+def test_where_nothing_is_said_of_failure_the_rewards_sign_says_it(
+    room: ScriptedModel, place: int, ending: int
+) -> None:
+    assert ending_at(room, place) == ending
+
+
+def test_other_states_go_on(room: ScriptedModel) -> None:
+    assert [ending_at(room, place) for place in (0, 11)] == [RUNNING, RUNNING]
+
+
+def test_endings_that_their_reward_decides_are_told(room: ScriptedModel) -> None:
+    found = load_files({name: text.encode() for name, text in BUNDLE.items()}).diagnostics
+    told = {each.span.line: each.message for each in found if each.code == "AOS137"}
+    lines = ROOM.splitlines()
+    assert [lines[line] for line in sorted(told)] == [
+        "if (state.n == 3) { __reward = -5; __isGoalState = true; }",
+        "if (state.n == 4) __isGoalState = true;",
+        "state_condition: state.n == 8",
+        "state_condition: state.n == 9",
+    ]
+    assert "failure" in told[11]
+    assert "neither" in told[13]
+
+
+def test_both_dialects_say_the_same_of_failure() -> None:
+    sdl = {"environment.ef": ROOM.encode()}
+    as_json, findings = convert(sdl, Dialect.JSON)
+    assert not any(finding.is_error for finding in findings)
+    assert as_json["environment.ef.json"].count('"IsFailureState": false') == 1
+    assert as_json["environment.ef.json"].count('"IsFailureState": true') == 2
+    back, _ = convert({name: text.encode() for name, text in as_json.items()}, Dialect.SDL)
+    again = load_files({**BUNDLE_OF_SKILL, "room.ef": back["environment.ef"].encode()}).project
+    assert again is not None
+    assert said(again.environment) == said(text_project(BUNDLE).environment)
+
+
+BUNDLE_OF_SKILL = {name: text.encode() for name, text in BUNDLE.items() if name != "room.ef"}
+
+
+def said(environment: Environment) -> list[object]:
+    return [without_origins(special) for special in environment.special_states]
+
+
+def belief(goal: float, over: float, failure: float) -> BeliefSummary:
+    return BeliefSummary((), 0.0, goal, failure, 3, True, over_probability=over)
+
+
+@pytest.mark.parametrize(
+    ("goal", "over", "failure", "ending"),
+    [
+        (0.95, 0.0, 0.05, Ending.GOAL),
+        (0.5, 0.45, 0.05, Ending.OVER),
+        (0.0, 0.95, 0.0, Ending.OVER),
+        (0.5, 0.0, 0.45, Ending.FAILURE),
+        (0.0, 0.5, 0.45, Ending.FAILURE),
+        (0.4, 0.2, 0.2, None),
+    ],
+)
+def test_a_mission_that_is_surely_over_counts_as_what_it_is_at_least(
+    goal: float, over: float, failure: float, ending: Ending | None
+) -> None:
+    assert believed_ending(belief(goal, over, failure), MissionLimits(goal_probability=0.9)) is ending
+
+
+def test_every_ending_has_an_exit_code_of_its_own() -> None:
+    codes = {ending: exit_code_of_mission(MissionState("m", "ended", 1, 0.0, ending)) for ending in Ending}
+    assert len(set(codes.values())) == len(Ending)
