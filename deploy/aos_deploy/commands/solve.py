@@ -39,6 +39,7 @@ _TOLD_NAMES = 12
 _GRAPH_ENDINGS = (".dot", ".svg")
 _MEANINGS = {
     "precision": "the bounds are as near as asked for",
+    "settled": "the bounds come no nearer",
     "time": "the time is used up",
     "memory": "the memory is used up",
     "stopped": "stopped",

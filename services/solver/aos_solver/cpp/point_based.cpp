@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "point_based/haste.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/sarsop.hpp"
 
@@ -11,20 +13,13 @@ namespace aos::point_based {
 
 namespace {
 
-constexpr double closed_share = 1e-4;  // of the largest reward: a gap that no decision depends on
-constexpr std::size_t most_bytes = std::size_t{512} << 20;
-
-double largest_reward(const FlatModel& model) {
-  double largest = 0;
-  for (const double reward : model.rewards) largest = std::max(largest, std::abs(reward));
-  return largest;
-}
+constexpr double closed_share = 1e-5;  // of the value: a gap that no decision depends on
+constexpr std::size_t max_bytes = std::size_t{512} << 20;
 
 }  // namespace
 
 struct OnlineSarsop::Solver {
-  explicit Solver(FlatModel flat)
-      : model(std::move(flat)), regions(model), sarsop(model, regions), precision(closed_share * largest_reward(model)) {}
+  explicit Solver(FlatModel flat) : model(std::move(flat)), haste(model), regions(model), sarsop(model, regions) {}
 
   // All states that are worth anything in one region.
   bool is_in_one_region(const std::vector<std::pair<std::uint32_t, double>>& belief) const {
@@ -37,22 +32,25 @@ struct OnlineSarsop::Solver {
     return true;
   }
 
-  // `trial` returns how many states it has backed up.
+  // The nearer the discount is to 1, the less is lost by putting off what can be had now; the gap has to be less.
+  double precision() const {
+    const double size = std::max(std::abs(sarsop.lower()), std::abs(sarsop.upper()));
+    return std::max(closed_share * std::min(1.0, 20 * (1 - model.discount)) * size, sarsop.noise());
+  }
+  bool is_closed() const { return sarsop.upper() - sarsop.lower() <= precision(); }
+
+  // `trial` returns whether there is more to find out.
   template <class Trial>
-  std::uint64_t repeat(std::uint64_t most_states, const IsOver& is_over, Trial&& trial) const {
-    std::uint64_t states = 0;
-    do {
-      const std::uint64_t more = trial();
-      if (more == 0) break;
-      states += more;
-    } while ((most_states == 0 || states < most_states) && !is_over());
-    return states;
+  std::uint64_t repeat(std::uint64_t max_work, const IsOver& is_over, Trial&& trial) {
+    const std::uint64_t before = sarsop.work();
+    while (trial() && (max_work == 0 || sarsop.work() - before < max_work) && !is_over()) {}
+    return sarsop.work() - before;
   }
 
   FlatModel model;
+  Haste haste;
   Regions regions;
   Sarsop sarsop;
-  double precision;
 };
 
 OnlineSarsop::OnlineSarsop(FlatModel model) : solver_(std::make_unique<Solver>(std::move(model))) {}
@@ -62,24 +60,33 @@ void OnlineSarsop::start_over() { solver_->sarsop.start_over(); }
 
 bool OnlineSarsop::move_to(const std::vector<std::pair<std::uint32_t, double>>& belief) {
   if (!solver_->is_in_one_region(belief)) return false;
-  solver_->sarsop.move_to({1, belief}, most_bytes);
+  solver_->sarsop.move_to({1, belief}, max_bytes);
   return true;
 }
 
-std::uint64_t OnlineSarsop::improve(std::uint64_t most_states, const IsOver& is_over) {
-  Sarsop& sarsop = solver_->sarsop;
-  return solver_->repeat(most_states, is_over, [&]() -> std::uint64_t {
-    const bool is_closed = sarsop.upper() - sarsop.lower() <= solver_->precision;
-    return is_closed ? 0 : sarsop.improve(solver_->precision, is_over);
+std::uint64_t OnlineSarsop::improve(std::uint64_t max_work, const IsOver& is_over) {
+  return solver_->repeat(max_work, is_over, [&] {
+    return !solver_->is_closed() && solver_->sarsop.improve(solver_->precision(), is_over);
   });
 }
 
-std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, std::uint64_t most_states, const IsOver& is_over) {
-  return solver_->repeat(most_states, is_over,
-                         [&] { return solver_->sarsop.improve_below(action, solver_->precision, is_over); });
+std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over) {
+  return solver_->repeat(max_work, is_over,
+                         [&] { return solver_->sarsop.improve_below(action, solver_->precision(), is_over); });
 }
 
-std::vector<ActionBounds> OnlineSarsop::action_bounds() { return solver_->sarsop.action_bounds(); }
-std::pair<double, double> OnlineSarsop::bounds() { return {solver_->sarsop.lower(), solver_->sarsop.upper()}; }
+std::vector<ActionBounds> OnlineSarsop::action_bounds() {
+  std::vector<ActionBounds> bounds = solver_->sarsop.action_bounds();
+  for (ActionBounds& action : bounds) {
+    action.lower -= solver_->haste.below();
+    action.upper += solver_->haste.above();
+  }
+  return bounds;
+}
+
+std::pair<double, double> OnlineSarsop::bounds() {
+  const Sarsop& sarsop = solver_->sarsop;
+  return checked(sarsop.lower() - solver_->haste.below(), sarsop.upper() + solver_->haste.above());
+}
 
 }  // namespace aos::point_based

@@ -40,7 +40,7 @@ class Bounds(msgspec.Struct, frozen=True):
     vectors: int
     beliefs: int
     backups: int
-    ending: Literal["", "precision", "time", "memory", "stopped"]
+    ending: Literal["", "precision", "settled", "time", "memory", "stopped"]
 
     @property
     def gap(self) -> float:

@@ -1,11 +1,17 @@
 // The beliefs that were met, what actions lead to from them, and both bounds of their values.
+//
+// With a horizon a belief is one node for every number of decisions that are left. A plan of fewer decisions is a plan
+// of more as well, with any action repeated at its end; so alpha vectors serve all beliefs with that many left or more.
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -13,11 +19,11 @@
 #include "point_based/bounds.hpp"
 #include "point_based/initial_bounds.hpp"
 #include "point_based/regions.hpp"
+#include "point_based/rounding.hpp"
 
 namespace aos::point_based {
 
-inline constexpr double negligible = 1e-12;
-
+// An observation leads to a belief that holds `probability` times the node's, and a rest.
 struct Successor {
   double probability;
   std::uint32_t sight;
@@ -30,6 +36,8 @@ struct Branch {
   double reward;
   double upper;
   double lower = -std::numeric_limits<double>::infinity();
+  double rest = 0;        // the probability that is in no successor
+  double rest_upper = 0;  // and what it is worth at most
   bool is_open = false;
   std::vector<Successor> successors{};
 };
@@ -37,6 +45,7 @@ struct Branch {
 struct Node {
   Belief belief;
   std::uint32_t region;
+  std::uint32_t left;                // decisions; 0 where there is no end
   std::uint32_t vector = 0;          // the best alpha vector
   std::uint32_t seen_vectors = 0;    // how many the lower bound is of
   std::uint32_t seen_changes = 0;    // of the upper bound
@@ -51,44 +60,88 @@ struct Node {
 class BeliefGraph {
  public:
   BeliefGraph(const FlatModel& model, const Regions& regions)
-      : model_(model), regions_(regions) {
-    const InitialBounds bounds{model, regions};
-    const ActionValues informed = bounds.informed_values();
-    std::vector<std::vector<double>> blind;
-    for (std::size_t action = 0; action < model.actions; ++action) blind.push_back(bounds.blind_values(action));
+      : model_(model), regions_(regions), rounding_(rounding_of(longest_sum())) {
+    InitialBounds bounds{model, regions, rounding_};
+    informed_ = std::move(bounds.informed);
+    for (const ActionValues& values : informed_) sizes_.push_back(size_of(values));
+    add_tails(bounds.blind);
+    for (const Region& region : regions.all) add_blind(region, bounds.blind);
     std::size_t largest = 0;
-    for (const Region& region : regions.all) {
-      largest = std::max(largest, region.states.size());
-      add_bounds(region, informed, blind);
-    }
+    for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
     posterior_.assign(largest, 0.0);
+    dense_.assign(largest, 0.0);
+    upper_.resize(regions.all.size() * informed_.size());
+    // So that what is merged and left out moves no bound by more than a small part of what decisions depend on.
+    const double decisions = lasting_decisions(model);
+    const double harmless = 1e-7 / (decisions * decisions);
+    negligible_ = std::min(1e-12, harmless);
+    kept_bits_ = std::clamp(static_cast<int>(std::ceil(-std::log2(harmless))), 30, 47);
   }
 
   // The node of a belief over the region's states (by local number, ascending; normalised).
-  std::uint32_t node_of(std::uint32_t region, const Belief& belief) {
-    const Key key = key_of(region, belief);
+  std::uint32_t node_of(std::uint32_t region, std::uint32_t left, const Belief& belief) {
+    const Key key = key_of(region, left, belief);
     const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(nodes_.size()));
     if (!is_new) return entry->second;
     bytes_ += sizeof(Node) + belief.size() * (sizeof(double) + sizeof(std::uint32_t)) + 64;
     Node& node = nodes_.emplace_back();
     node.region = region;
+    node.left = left;
     node.belief = belief;
-    UpperBound& bound = upper_[region];
+    UpperBound& bound = upper_of(region, left);
     const std::vector<double> informed = informed_values(node);
     node.corner = bound.corner_of(node.belief);
     node.upper = std::min(bound.of(node.belief, node.corner), *std::max_element(informed.begin(), informed.end()));
     node.seen_changes = bound.changes();
+    work_ += belief.size() * (model_.actions + 1 + bound.points());
     refresh_lower(node);
     return entry->second;
   }
 
   Node& operator[](std::uint32_t number) { return nodes_[number]; }
+  const Node& operator[](std::uint32_t number) const { return nodes_[number]; }
   std::size_t size() const { return nodes_.size(); }
   std::size_t bytes() const { return bytes_; }
+  // Numbers that were multiplied so far.
+  std::uint64_t work() const { return work_; }
+  void count_work(std::uint64_t work) { work_ += work; }
+  // Relative to the sizes of numbers.
+  double rounding() const { return rounding_; }
+  // So much in values is a matter of rounding.
+  double noise() const { return 2 * rounding_ * sizes_.back() * lasting_decisions(model_); }
   LowerBound& lower(std::uint32_t region) { return lower_[region]; }
   const LowerBound& lower(std::uint32_t region) const { return lower_[region]; }
-  UpperBound& upper(std::uint32_t region) { return upper_[region]; }
-  void count_bytes(std::size_t bytes) { bytes_ += bytes; }
+  UpperBound& upper_of(std::uint32_t region, std::uint32_t left) {
+    std::unique_ptr<UpperBound>& bound = upper_[left * regions_.all.size() + region];
+    if (!bound) {
+      std::vector<double> corners;
+      for (const std::uint32_t state : regions_.all[region].states) {
+        const double* first = informed_[left].data() + model_.row(state, 0);
+        corners.push_back(*std::max_element(first, first + model_.actions));
+      }
+      bound = std::make_unique<UpperBound>(std::move(corners), rounding_, dense_);
+    }
+    return *bound;
+  }
+  void add_vector(std::uint32_t region, AlphaVector vector) {
+    bytes_ += vector.values.size() * sizeof(double) + sizeof vector;
+    largest_value_ = std::max(largest_value_, vector.size);
+    lower_[region].add(std::move(vector));
+  }
+  // No alpha vector has one that is further from 0.
+  double largest_value() const { return largest_value_; }
+
+  bool is_endless() const { return model_.horizon == 0; }
+  // Decisions that are left after one; nothing is left after the last.
+  bool is_last(const Node& node) const { return node.left == 1; }
+  std::uint32_t left_after(const Node& node) const { return node.left == 0 ? 0 : node.left - 1; }
+
+  // Whether longer plans are worth no less than shorter ones, since some action costs nothing anywhere.
+  bool is_free_to_go_on() const { return is_free_; }
+  // What a plan of `length` decisions gives at least in those up to `left`.
+  double tail(std::uint32_t length, std::uint32_t left) const {
+    return powers_[length] * tails_[left - length] * (1 + 8 * ulp);
+  }
 
   // Lists the actions, those left out that cannot be the best.
   void expand(Node& node) {
@@ -97,23 +150,22 @@ class BeliefGraph {
     const std::vector<double> informed = informed_values(node);
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       if (informed[action] < node.lower) continue;
-      node.branches.push_back({action, expected(move(node, action).rewards, node.belief), informed[action]});
+      node.branches.push_back(closed_branch(node, action, informed[action]));
       bytes_ += sizeof(Branch);
     }
   }
 
   // Finds where an action leads.
   void open(const Node& node, Branch& branch) {
+    if (branch.is_open) return;
     branch.is_open = true;
-    add_successors(node.belief, move(node, branch.action), branch.successors);
+    if (!is_last(node)) add_successors(node.belief, left_after(node), move(node, branch.action), branch);
     bytes_ += branch.successors.size() * sizeof(Successor);
   }
 
-  // What an action leads to, whether or not it may be the best; `upper` bounds what it is worth.
-  Branch branch(const Node& node, std::uint32_t action, double upper) {
-    Branch branch{action, expected(move(node, action).rewards, node.belief), upper};
-    add_successors(node.belief, move(node, action), branch.successors);
-    return branch;
+  // An action, whether or not it may be the best; `upper` bounds what it is worth.
+  Branch closed_branch(const Node& node, std::uint32_t action, double upper) const {
+    return {action, expected(move(node, action).rewards, node.belief), upper};
   }
 
   // Keeps the bounds of the beginning only.
@@ -128,10 +180,12 @@ class BeliefGraph {
     uninformed_.clear();
     nodes_.clear();
     bytes_ = 0;
-    for (UpperBound& bound : upper_) bound.forget_points();
+    for (const auto& bound : upper_) {
+      if (bound) bound->forget_points();
+    }
     for (LowerBound& bound : lower_) {
       bound.close_gaps();
-      for (std::uint32_t number = 0; number < bound.size(); ++number) {
+      for (std::uint32_t number = bound.blind(); number < bound.size(); ++number) {
         bytes_ += bound[number].values.size() * sizeof(double) + sizeof(AlphaVector);
       }
     }
@@ -139,10 +193,11 @@ class BeliefGraph {
 
   // What each action is worth at most, by what knowing more would give.
   std::vector<double> informed_values(const Node& node) const {
-    const double* const values = informed_[node.region].data();
-    std::vector<double> sums(model_.actions, 0.0);
+    const double* const values = informed_[node.left].data();
+    const std::vector<std::uint32_t>& states = regions_.all[node.region].states;
+    std::vector<double> sums(model_.actions, rounding_ * sizes_[node.left]);
     for (std::size_t i = 0; i < node.belief.size(); ++i) {
-      const double* const row = values + model_.row(node.belief.states[i], 0);
+      const double* const row = values + model_.row(states[node.belief.states[i]], 0);
       const double probability = node.belief.probabilities[i];
       for (std::size_t action = 0; action < sums.size(); ++action) sums[action] += probability * row[action];
     }
@@ -154,40 +209,48 @@ class BeliefGraph {
     if (bound[node.vector].is_gone()) node.seen_vectors = 0;
     if (node.seen_vectors == bound.size()) return;
     double best = node.seen_vectors == 0 ? -std::numeric_limits<double>::infinity() : node.lower;
+    const auto take = [&](std::uint32_t number) {
+      const double value = value_of(bound[number], node);
+      if (value <= best) return;
+      best = value;
+      node.vector = number;
+    };
+    if (node.seen_vectors == 0) {
+      bound.for_blind(node.left, take);
+      node.seen_vectors = bound.blind();
+    }
     for (; node.seen_vectors < bound.size(); ++node.seen_vectors) {
       const AlphaVector& vector = bound[node.seen_vectors];
-      if (vector.is_gone()) continue;
-      const double value = expected(vector.values, node.belief);
-      if (value <= best) continue;
-      best = value;
-      node.vector = node.seen_vectors;
+      if (!vector.is_gone() && vector.length <= node.left) take(node.seen_vectors);
     }
     node.lower = std::max(node.lower, best);
   }
 
   void refresh_upper(Node& node) {
-    UpperBound& bound = upper_[node.region];
+    UpperBound& bound = upper_of(node.region, node.left);
+    work_ += std::min<std::size_t>(bound.changes() - node.seen_changes, bound.points()) * node.belief.size();
     node.upper = bound.of(node.belief, node.corner, node.upper, node.seen_changes);
     node.seen_changes = bound.changes();
   }
 
-  // Where an observation leads from a region about which nothing else is known.
-  std::uint32_t uninformed_successor(std::uint32_t region, std::uint32_t action, std::uint32_t sight) {
-    const std::uint64_t key = (std::uint64_t{region} * model_.actions + action) << 24 | sight;
-    const auto known = uninformed_.find(key);
-    if (known != uninformed_.end()) return known->second;
+  // Where an observation leads from a region about which nothing else is known, with so many decisions left then.
+  std::uint32_t uninformed_successor(std::uint32_t region, std::uint32_t left, std::uint32_t action,
+                                     std::uint32_t sight) {
     const Region& from = regions_.all[region];
-    Belief belief;
-    for (std::uint32_t state = 0; state < from.states.size(); ++state) {
-      belief.states.push_back(state);
-      belief.probabilities.push_back(1.0 / static_cast<double>(from.states.size()));
+    std::vector<std::uint32_t>& known =
+        uninformed_[(std::uint64_t{region} * informed_.size() + left) * model_.actions + action];
+    if (known.empty()) {
+      Belief belief;
+      for (std::uint32_t state = 0; state < from.states.size(); ++state) {
+        belief.states.push_back(state);
+        belief.probabilities.push_back(1.0 / static_cast<double>(from.states.size()));
+      }
+      Branch branch{action, 0, 0};
+      add_successors(belief, left, from.moves[action], branch);
+      known.assign(from.moves[action].sights.size(), nowhere);
+      for (const Successor& successor : branch.successors) known[successor.sight] = successor.node;
     }
-    std::vector<Successor> successors;
-    add_successors(belief, from.moves[action], successors);
-    for (const Successor& successor : successors) {
-      uninformed_[(std::uint64_t{region} * model_.actions + action) << 24 | successor.sight] = successor.node;
-    }
-    return uninformed_.at(key);
+    return known[sight];
   }
 
  private:
@@ -199,48 +262,104 @@ class BeliefGraph {
     std::size_t operator()(const Key& key) const { return key.high ^ key.low; }
   };
 
+  static double size_of(const ActionValues& values) {
+    double size = 0;
+    for (const double value : values) size = std::max(size, std::abs(value));
+    return size;
+  }
+
+  // Of all that are worked out here.
+  std::size_t longest_sum() const {
+    std::size_t longest = longest_row(model_.outcomes) + longest_row(model_.readings);
+    for (const Region& region : regions_.all) {
+      longest = std::max(longest, region.states.size());
+      for (const Move& move : region.moves) {
+        longest = std::max(longest, move.sights.size());
+        for (const Sight& sight : move.sights) longest = std::max(longest, sight.landings.size());
+      }
+    }
+    return longest;
+  }
+
   const Move& move(const Node& node, std::uint32_t action) const { return regions_.all[node.region].moves[action]; }
 
-  static std::uint64_t mixed(std::uint64_t left, std::uint64_t right) {
-    std::uint64_t x = (left ^ right) * 0x9e3779b97f4a7c15u;
+  double value_of(const AlphaVector& vector, const Node& node) {
+    work_ += node.belief.size();
+    const double value = expected(vector.values, node.belief) - rounding_ * vector.size;
+    return vector.length == node.left ? value : value + tail(vector.length, node.left);
+  }
+
+  static std::uint64_t mixed(std::uint64_t x) {
+    x *= 0x9e3779b97f4a7c15u;
     x ^= x >> 32;
     x *= 0xd6e8feb86659fd93u;
     return x ^ (x >> 29);
   }
 
-  // Probabilities are rounded to 1e-9, so that different ways to the same belief meet.
-  static Key key_of(std::uint32_t region, const Belief& belief) {
-    Key key{mixed(0x9ae16a3b2f90404fu, region), mixed(0xc949d7c7509e6557u, region)};
+  // Of probabilities the first digits only, so that different ways to the same belief meet.
+  Key key_of(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
+    Key key{mixed(std::uint64_t{left} << 32 | region), mixed(~(std::uint64_t{left} << 32 | region))};
+    const int dropped = 52 - kept_bits_;
+    const std::uint64_t half = std::uint64_t{1} << dropped >> 1;
     for (std::size_t i = 0; i < belief.size(); ++i) {
       // Sums, so that a processor need not finish one state before it begins the next.
-      const auto rounded = static_cast<std::uint64_t>(static_cast<std::int64_t>(belief.probabilities[i] * 1e9 + 0.5));
-      key.high += mixed(rounded, belief.states[i]);
-      key.low += mixed(rounded * 0x2545f4914f6cdd1du, ~std::uint64_t{belief.states[i]});
+      const std::uint64_t rounded = (std::bit_cast<std::uint64_t>(belief.probabilities[i]) + half) >> dropped;
+      key.high += mixed(rounded + belief.states[i] * 0xff51afd7ed558ccdu);
+      key.low += mixed(rounded * 0x2545f4914f6cdd1du ^ ~std::uint64_t{belief.states[i]});
     }
     return key;
   }
 
-  void add_bounds(const Region& region, const ActionValues& informed, const std::vector<std::vector<double>>& blind) {
-    ActionValues own;
-    std::vector<double> corners;
-    for (const std::uint32_t state : region.states) {
-      const double* first = informed.data() + model_.row(state, 0);
-      own.insert(own.end(), first, first + model_.actions);
-      corners.push_back(*std::max_element(first, first + model_.actions));
+  // What is surely not lost by going on with one action, wherever a plan has ended.
+  void add_tails(const std::vector<ActionValues>& blind) {
+    double power = 1;
+    for (const ActionValues& values : blind) {
+      double best = -std::numeric_limits<double>::infinity();
+      for (std::size_t action = 0; action < model_.actions; ++action) {
+        double least = 0;
+        for (std::size_t state = 0; state < model_.states; ++state) {
+          least = std::min(least, values[model_.row(state, action)]);
+        }
+        best = std::max(best, least);
+      }
+      tails_.push_back(is_endless() ? 0 : best);
+      if (best < 0) is_free_ = false;
+      powers_.push_back(power);
+      power *= model_.discount * (1 + 2 * ulp);
     }
-    informed_.push_back(std::move(own));
-    upper_.emplace_back(std::move(corners));
+    if (is_endless()) is_free_ = true;
+  }
+
+  void add_blind(const Region& region, const std::vector<ActionValues>& blind) {
+    LowerBound lower;
     std::vector<AlphaVector> vectors;
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
-      AlphaVector vector{action, true, {}};
-      for (const std::uint32_t state : region.states) vector.values.push_back(blind[action][state]);
-      const auto is_no_better = [&](const AlphaVector& known) { return is_nowhere_above(vector.values, known.values); };
-      if (std::any_of(vectors.begin(), vectors.end(), is_no_better)) continue;
-      std::erase_if(vectors, [&](const AlphaVector& known) { return is_nowhere_above(known.values, vector.values); });
-      vectors.push_back(std::move(vector));
+      const std::size_t first = vectors.size();
+      for (std::uint32_t left = is_endless() ? 0 : 1; left < blind.size(); ++left) {
+        std::vector<double> values;
+        for (const std::uint32_t state : region.states) values.push_back(blind[left][model_.row(state, action)]);
+        if (vectors.size() > first) {  // longer plans only where they give more
+          const AlphaVector& before = vectors.back();
+          const double worth_it = tail(before.length, left) + 1e-9 * before.size;
+          const auto gives_no_more = [&](double value, double known) { return value <= known + worth_it; };
+          if (std::equal(values.begin(), values.end(), before.values.begin(), gives_no_more)) continue;
+        }
+        vectors.emplace_back(action, left, std::move(values));
+      }
     }
-    LowerBound lower;
-    for (AlphaVector& vector : vectors) lower.add(std::move(vector));
+    if (is_endless()) {  // one of each action
+      for (std::size_t i = vectors.size(); i-- > 0;) {
+        for (std::size_t j = 0; j < vectors.size(); ++j) {
+          if (i == j || !is_nowhere_above(vectors[i].values, vectors[j].values)) continue;
+          vectors.erase(vectors.begin() + static_cast<std::ptrdiff_t>(i));
+          break;
+        }
+      }
+    }
+    for (AlphaVector& vector : vectors) {
+      largest_value_ = std::max(largest_value_, vector.size);
+      lower.add_blind(std::move(vector));
+    }
     lower_.push_back(std::move(lower));
   }
 
@@ -248,23 +367,56 @@ class BeliefGraph {
     return std::equal(values.begin(), values.end(), others.begin(), std::less_equal<>{});
   }
 
-  void add_successors(const Belief& belief, const Move& move, std::vector<Successor>& successors) {
+  void add_successors(const Belief& belief, std::uint32_t left, const Move& move, Branch& branch) {
     predicted_.assign(move.targets, 0.0);
     for (std::size_t i = 0; i < belief.size(); ++i) {
       const auto* last = move.flows.end(belief.states[i]);
       for (const auto* flow = move.flows.begin(belief.states[i]); flow != last; ++flow) {
         predicted_[flow->target] += belief.probabilities[i] * flow->probability;
       }
+      work_ += static_cast<std::uint64_t>(last - move.flows.begin(belief.states[i]));
     }
     for (std::uint32_t number = 0; number < move.sights.size(); ++number) {
       const Sight& sight = move.sights[number];
       next_.states.clear();
       next_.probabilities.clear();
       const double total = sight.is_ascending ? add_landings(sight) : gather_landings(sight);
-      if (total <= negligible) continue;
-      normalise(next_, total);
-      successors.push_back({total, number, node_of(sight.region, next_)});
+      work_ += sight.landings.size();
+      if (total > negligible_) {
+        add_successor(sight.region, left, number, total, branch);
+      } else if (total > 0) {
+        add_rest(branch, total * (1 + rounding_), upper_of(sight.region, left).highest());
+      }
     }
+  }
+
+  static void add_rest(Branch& branch, double probability, double highest) {
+    branch.rest += probability;
+    branch.rest_upper += probability * highest;
+  }
+
+  // For the belief in `next_`, which sums to `total`.
+  void add_successor(std::uint32_t region, std::uint32_t left, std::uint32_t sight, double total, Branch& branch) {
+    weights_ = next_.probabilities;
+    weighted_ = next_.states;
+    normalise(next_, total);
+    const std::uint32_t number = node_of(region, left, next_);
+    const double share = share_of(nodes_[number].belief) * (1 - 4 * rounding_);
+    const double rest = std::max(0.0, total - share) + 8 * rounding_ * total;
+    branch.successors.push_back({share, sight, number});
+    add_rest(branch, rest, upper_of(region, left).highest());
+  }
+
+  // How many times what was to be added holds a belief.
+  double share_of(const Belief& belief) const {
+    double share = std::numeric_limits<double>::infinity();
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      while (place < weighted_.size() && weighted_[place] < belief.states[i]) ++place;
+      if (place == weighted_.size() || weighted_[place] != belief.states[i]) return 0;
+      if (weights_[place] < share * belief.probabilities[i]) share = weights_[place] / belief.probabilities[i];
+    }
+    return share;
   }
 
   // Sets `next_` where each landing is in a state of its own. Returns the sum of the probabilities.
@@ -295,29 +447,44 @@ class BeliefGraph {
   }
 
   // States that are next to impossible are left out.
-  static void normalise(Belief& belief, double total) {
+  void normalise(Belief& belief, double total) const {
     std::size_t kept = 0;
+    double sum = 0;
     for (std::size_t i = 0; i < belief.size(); ++i) {
-      if (belief.probabilities[i] <= negligible * total) continue;
+      if (belief.probabilities[i] <= negligible_ * total) continue;
       belief.states[kept] = belief.states[i];
-      belief.probabilities[kept++] = belief.probabilities[i] / total;
+      belief.probabilities[kept++] = belief.probabilities[i];
+      sum += belief.probabilities[kept - 1];
     }
     belief.states.resize(kept);
     belief.probabilities.resize(kept);
+    for (double& probability : belief.probabilities) probability /= sum;
   }
 
   const FlatModel& model_;
   const Regions& regions_;
-  std::vector<ActionValues> informed_;  // of a region, by its states
-  std::vector<LowerBound> lower_;
-  std::vector<UpperBound> upper_;
+  double rounding_;
+  double negligible_ = 0;
+  int kept_bits_ = 0;
+  std::vector<ActionValues> informed_;  // by layer
+  std::vector<double> sizes_;           // of the largest of these, by layer
+  std::vector<double> tails_;           // by decisions: what going on costs
+  std::vector<double> powers_;          // of the discount
+  bool is_free_ = true;
+  double largest_value_ = 0;
+  std::vector<LowerBound> lower_;                   // by region
+  std::vector<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
   std::deque<Node> nodes_;
   std::unordered_map<Key, std::uint32_t, KeyHash> index_;
-  std::unordered_map<std::uint64_t, std::uint32_t> uninformed_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> uninformed_;  // by region, decisions left, action
   std::size_t bytes_ = 0;
+  std::uint64_t work_ = 0;
   std::vector<double> predicted_;
   std::vector<double> posterior_;
-  Belief next_;  // room for one belief
+  std::vector<double> dense_;
+  Belief next_;  // room for one belief, and for its weights before it was normalised
+  std::vector<std::uint32_t> weighted_;
+  std::vector<double> weights_;
 };
 
 }  // namespace aos::point_based

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -19,12 +21,17 @@ struct Belief {
   std::size_t size() const { return states.size(); }
 };
 
-// Values by a region's states: for every one what a plan gives that begins with `action`.
+// Values by a region's states: for every one what a plan of `length` decisions gives at least that begins with `action`.
 struct AlphaVector {
   std::uint32_t action;
-  bool is_blind;  // always this action; never given up
+  std::uint32_t length;  // 0 where there is no end
   std::vector<double> values;
+  double size = 0;  // of the largest value
 
+  AlphaVector(std::uint32_t of_action, std::uint32_t of_length, std::vector<double> of_states)
+      : action(of_action), length(of_length), values(std::move(of_states)) {
+    for (const double value : values) size = std::max(size, std::abs(value));
+  }
   bool is_gone() const { return values.empty(); }
 };
 
@@ -48,13 +55,19 @@ inline double expected(const std::vector<double>& values, const Belief& belief) 
   return weighted_sum(belief.probabilities, [&](std::size_t i) { return values[belief.states[i]]; });
 }
 
-// Alpha vectors of a region. Their numbers stay; those that were given up are empty.
+// Alpha vectors of a region. Their numbers stay; those that were given up are empty. The first ones always do the same
+// action, and are never given up.
 class LowerBound {
  public:
-  std::uint32_t add(AlphaVector vector) {
+  // Those of an action in the order of their lengths.
+  void add_blind(AlphaVector vector) {
+    vectors_.push_back(std::move(vector));
+    ++blind_;
+    ++kept_;
+  }
+  void add(AlphaVector vector) {
     vectors_.push_back(std::move(vector));
     ++kept_;
-    return static_cast<std::uint32_t>(vectors_.size() - 1);
   }
   void give_up(std::uint32_t number) {
     vectors_[number].values = {};
@@ -62,6 +75,7 @@ class LowerBound {
   }
   const AlphaVector& operator[](std::uint32_t number) const { return vectors_[number]; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(vectors_.size()); }
+  std::uint32_t blind() const { return blind_; }
   std::size_t kept() const { return kept_; }
   // Numbers those that were kept anew.
   void close_gaps() {
@@ -69,12 +83,22 @@ class LowerBound {
   }
   // Keeps the vectors of the beginning only.
   void keep_blind() {
-    std::erase_if(vectors_, [](const AlphaVector& vector) { return !vector.is_blind; });
-    kept_ = vectors_.size();
+    vectors_.erase(vectors_.begin() + blind_, vectors_.end());
+    kept_ = blind_;
+  }
+  // For every action the longest of its blind vectors that has no more than so many decisions.
+  template <class Take>
+  void for_blind(std::uint32_t left, Take&& take) const {
+    for (std::uint32_t number = 0; number < blind_; ++number) {
+      if (vectors_[number].length > left) continue;
+      const bool is_last = number + 1 == blind_ || vectors_[number + 1].action != vectors_[number].action;
+      if (is_last || vectors_[number + 1].length > left) take(number);
+    }
   }
 
  private:
-  std::vector<AlphaVector> vectors_;
+  std::deque<AlphaVector> vectors_;  // which stay where they are
+  std::uint32_t blind_ = 0;
   std::size_t kept_ = 0;
 };
 
@@ -82,7 +106,19 @@ class LowerBound {
 // and one belief ("sawtooth": Hauskrecht, 2000).
 class UpperBound {
  public:
-  explicit UpperBound(std::vector<double> corners) : corners_(std::move(corners)), dense_(corners_.size(), 0.0) {}
+  // `rounding` is relative, of the longest sum; `dense` is room for a belief, all 0 between calls.
+  UpperBound(std::vector<double> corners, double rounding, std::vector<double>& dense)
+      : corners_(std::move(corners)), dense_(dense), rounding_(rounding) {
+    double size = 0;
+    for (const double value : corners_) {
+      size = std::max(size, std::abs(value));
+      highest_ = std::max(highest_, value);
+    }
+    error_ = 4 * rounding * size;
+  }
+
+  // The highest value of a single state, or 0.
+  double highest() const { return highest_; }
 
   // Interpolated from single states; `corner` below.
   double corner_of(const Belief& belief) const { return expected(corners_, belief); }
@@ -104,7 +140,7 @@ class UpperBound {
     spread(belief);
     for (const Point& point : points_) lower(drop, point, belief.size());
     clear(belief);
-    return corner + drop;
+    return corner + drop + error_ - rounding_ * drop;
   }
   // `value` improved by what has changed since so many changes.
   double of(const Belief& belief, double corner, double value, std::uint32_t seen) {
@@ -114,7 +150,7 @@ class UpperBound {
     spread(belief);
     for (std::size_t i = seen; i < changes_.size(); ++i) lower(drop, points_[changes_[i]], belief.size());
     clear(belief);
-    return std::min(value, corner + drop);
+    return std::min(value, corner + drop + error_ - rounding_ * drop);
   }
 
   // Keeps the values of single states only.
@@ -155,7 +191,10 @@ class UpperBound {
   }
 
   std::vector<double> corners_;
-  std::vector<double> dense_;
+  std::vector<double>& dense_;
+  double highest_ = 0;
+  double rounding_;
+  double error_ = 0;  // of interpolations from single states
   std::vector<Point> points_;
   std::vector<std::uint32_t> changes_;
 };

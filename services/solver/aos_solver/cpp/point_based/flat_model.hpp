@@ -41,6 +41,7 @@ struct FlatModel {
   std::size_t actions = 0;
   std::size_t observations = 0;
   double discount = 0;
+  std::size_t horizon = 0;  // so many decisions are rewarded; 0: without end, with a discount below 1
   std::vector<double> rewards;
   Rows<Outcome> outcomes;  // of (state, action)
   Rows<Reading> readings;  // of a sensing

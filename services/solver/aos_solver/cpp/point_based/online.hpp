@@ -25,23 +25,26 @@ class OnlineSarsop {
  public:
   using IsOver = std::function<bool()>;
 
-  // Works out the first bounds. The discount must be below 1.
+  // Works out the first bounds. Without a horizon the discount must be below 1.
+  // Throws std::length_error where there are too many states for so long a horizon.
   explicit OnlineSarsop(FlatModel model);
   ~OnlineSarsop();
 
   // Forgets all that trials have found out; keeps the first bounds.
   void start_over();
 
-  // Goes on from a belief, by state. Returns whether it is one that the model's starts can lead to.
+  // Goes on from a belief, by state, with the whole horizon to go. Its probabilities may sum to less than 1: what is
+  // missing is worth nothing. Returns whether it is one that the model's starts can lead to.
   bool move_to(const std::vector<std::pair<std::uint32_t, double>>& belief);
 
-  // Runs trials, one at least, until `is_over()`, until so many states were backed up (0: no limit), or until nothing is
-  // left to find out. Returns how many states were backed up.
-  std::uint64_t improve(std::uint64_t most_states, const IsOver& is_over);
+  // Runs trials, one at least, until `is_over()`, until so much work is done (0: no limit), or until nothing is left to
+  // find out. Returns the work: how many numbers were multiplied, of states by what they lead to or by alpha vectors.
+  std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over);
   // The same below an action that is carried out.
-  std::uint64_t improve_below(std::uint32_t action, std::uint64_t most_states, const IsOver& is_over);
+  std::uint64_t improve_below(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over);
 
-  // Of all actions, of the belief moved to; discounted, without end.
+  // Of all actions, of the belief moved to; discounted, of so many decisions as the horizon has.
+  // These and `bounds` hold as they stand, rounding included.
   std::vector<ActionBounds> action_bounds();
   // What the belief moved to is worth at least and at most.
   std::pair<double, double> bounds();

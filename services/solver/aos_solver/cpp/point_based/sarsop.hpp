@@ -10,7 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,6 +21,17 @@
 #include "point_based/online.hpp"
 
 namespace aos::point_based {
+
+// A mistake in this folder, whatever the model.
+struct CrossedBounds : std::logic_error {
+  using std::logic_error::logic_error;
+};
+
+// Bounds that are told.
+inline std::pair<double, double> checked(double lower, double upper) {
+  if (lower <= upper) return {lower, upper};
+  throw CrossedBounds("the lower bound " + std::to_string(lower) + " is above the upper bound " + std::to_string(upper));
+}
 
 class Sarsop {
  public:
@@ -27,8 +41,12 @@ class Sarsop {
   }
 
   // What a policy is sure to give from the start, and what none can give more than; discounted.
-  double lower() { return over_roots(&Node::lower); }
-  double upper() { return over_roots(&Node::upper); }
+  double lower() const { return over_roots(&Node::lower, -1); }
+  double upper() const { return over_roots(&Node::upper, 1); }
+  // Bounds that are so near, beside the values themselves, are as near as numbers tell.
+  double noise() const { return graph_.noise(); }
+  // Numbers that were multiplied so far.
+  std::uint64_t work() const { return graph_.work(); }
   std::size_t beliefs() const { return graph_.size(); }
   std::size_t bytes() const { return graph_.bytes(); }
   std::uint64_t backups() const { return backups_; }
@@ -41,7 +59,7 @@ class Sarsop {
 
   // Forgets all that trials have found out.
   void start_over() {
-    roots_.clear();
+    forget_roots();
     graph_.start_over();
     vectors_added_ = 0;
     sampled_ = 0;
@@ -53,43 +71,40 @@ class Sarsop {
       prune();
       graph_.forget_beliefs();
     }
-    roots_.clear();
-    trials_.assign(model_.actions, 0);
+    forget_roots();
     add_start(start);
   }
 
-  // One trial, with backups; it is cut short after `is_over()`. Returns how many states were backed up.
+  // One trial, with backups; it is cut short after `is_over()`. Returns whether there was anything to find out.
   template <class IsOver>
-  std::uint64_t improve(double precision, IsOver&& is_over) {
+  bool improve(double precision, IsOver&& is_over) {
     const Root* widest = nullptr;
     for (const Root& root : roots_) {
       if (widest == nullptr || weighted_gap(root) > weighted_gap(*widest)) widest = &root;
     }
-    return widest == nullptr ? 0 : improve_from(widest->node, precision, is_over);
+    return widest != nullptr && improve_from(widest->node, precision, is_over);
   }
 
   // The same below an action that is carried out at the only start.
   template <class IsOver>
-  std::uint64_t improve_below(std::uint32_t action, double precision, IsOver&& is_over) {
-    if (roots_.empty()) return 0;
-    const Node& root = graph_[roots_.front().node];
-    const Branch branch = graph_.branch(root, action, root.upper);
+  bool improve_below(std::uint32_t action, double precision, IsOver&& is_over) {
+    if (roots_.empty()) return false;
+    const Branch& branch = root_branch(action);
     refreshed_lower(branch);
     refreshed_upper(branch);
     const Successor* next = widest_of(branch.successors, precision);
-    return next == nullptr ? 0 : improve_from(next->node, precision, is_over);
+    return next != nullptr && improve_from(next->node, precision, is_over);
   }
 
   // Of all actions at the only start.
   std::vector<ActionBounds> action_bounds() {
     std::vector<ActionBounds> bounds(model_.actions);
     if (roots_.empty()) return bounds;
-    const Node& root = graph_[roots_.front().node];
-    const std::vector<double> informed = graph_.informed_values(root);
+    const double weight = roots_.front().weight;
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
-      const Branch branch = graph_.branch(root, action, informed[action]);
-      const double upper = std::min(branch.upper, refreshed_upper(branch));
-      bounds[action] = {refreshed_lower(branch), upper, trials_[action]};
+      Branch& branch = root_branch(action);
+      refresh(branch);
+      bounds[action] = {moved(weight * branch.lower, -1), moved(weight * branch.upper, 1), trials_[action]};
     }
     return bounds;
   }
@@ -120,8 +135,8 @@ class Sarsop {
     }
     for (std::uint32_t region = 0; region < regions_.all.size(); ++region) {
       LowerBound& bound = graph_.lower(region);
-      for (std::uint32_t number = 0; number < bound.size(); ++number) {
-        if (!is_best[region][number] && !bound[number].is_gone() && !bound[number].is_blind) bound.give_up(number);
+      for (std::uint32_t number = bound.blind(); number < bound.size(); ++number) {
+        if (!is_best[region][number] && !bound[number].is_gone()) bound.give_up(number);
       }
     }
   }
@@ -134,6 +149,13 @@ class Sarsop {
 
   static constexpr double share_of_gap_ = 0.1;  // of the root's, that a trial tries to come below
   static constexpr std::size_t longest_trial_ = 1000;
+
+  void forget_roots() {
+    roots_.clear();
+    dropped_at_root_.clear();
+    trials_.assign(model_.actions, 0);
+    idle_ = 0;
+  }
 
   void add_start(const Start& start) {
     Belief belief;
@@ -152,30 +174,55 @@ class Sarsop {
       belief.states.push_back(local);
       belief.probabilities.push_back(probability / total);
     }
-    roots_.push_back({start.weight * total, graph_.node_of(region, belief)});
+    const auto left = static_cast<std::uint32_t>(model_.horizon);
+    const double share = start.weight * total;
+    roots_.push_back({share, graph_.node_of(region, left, belief)});
   }
 
+  // Whether a trial has found anything out, or one of the other kind may.
   template <class IsOver>
-  std::uint64_t improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
+  bool improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
+    has_learnt_ = false;
     sample(number, precision, is_over);
-    std::uint64_t states = 0;
-    for (auto step = path_.rbegin(); step != path_.rend(); ++step) {
-      backup(*step);
-      states += graph_[*step].belief.size();
-    }
+    for (auto step = path_.rbegin(); step != path_.rend(); ++step) backup(*step);
     if (vectors_added_ > std::max<std::size_t>(200, vectors() / 4)) prune();
-    return states;
+    idle_ = has_learnt_ ? 0 : idle_ + 1;
+    return idle_ < 2;
   }
 
-  double over_roots(double Node::*bound) {
+  // Outwards, by more than rounding can have moved it inwards.
+  double moved(double value, double direction) const { return value + direction * 8 * graph_.rounding() * std::abs(value); }
+
+  double over_roots(double Node::*bound, double direction) const {
     double sum = 0;
-    for (const Root& root : roots_) sum += root.weight * graph_[root.node].*bound;
-    return sum;
+    double size = 0;
+    for (const Root& root : roots_) {
+      const double value = root.weight * graph_[root.node].*bound;
+      sum += value;
+      size += std::abs(value);
+    }
+    return sum + direction * 8 * graph_.rounding() * size;
   }
 
-  double weighted_gap(const Root& root) {
+  double weighted_gap(const Root& root) const {
     const Node& node = graph_[root.node];
     return root.weight * (node.upper - node.lower);
+  }
+
+  // Of the only start; of what was dropped there as well. Open.
+  Branch& root_branch(std::uint32_t action) {
+    Node& node = graph_[roots_.front().node];
+    graph_.expand(node);
+    for (Branch& branch : node.branches) {
+      if (branch.action == action) return graph_.open(node, branch), branch;
+    }
+    for (Branch& branch : dropped_at_root_) {
+      if (branch.action == action) return branch;
+    }
+    Branch& branch = dropped_at_root_.emplace_back(
+        graph_.closed_branch(node, action, graph_.informed_values(node)[action]));
+    graph_.open(node, branch);
+    return branch;
   }
 
   template <class IsOver>
@@ -194,8 +241,8 @@ class Sarsop {
       path_.push_back(number);
       graph_.expand(node);
       if (is_over()) return;
-      if (node.branches.empty()) return;
-      const Branch* const best = followed_branch(node, follows_upper);
+      const Branch* const best = followed_branch(node, follows_upper, is_over);
+      if (best == nullptr) return;
       double best_lower = -std::numeric_limits<double>::infinity();
       for (const Branch& branch : node.branches) best_lower = std::max(best_lower, branch.lower);
       if (path_.size() == 1) ++trials_[best->action];
@@ -218,12 +265,13 @@ class Sarsop {
   }
 
   // With the highest upper bound, or the highest middle of both bounds, among those of which it is known where they lead;
-  // the one with the highest upper bound always is. Refreshes the bounds of these.
-  const Branch* followed_branch(Node& node, bool follows_upper) {
+  // the one with the highest upper bound always is. None if `is_over()` before. Refreshes the bounds of these.
+  template <class IsOver>
+  const Branch* followed_branch(Node& node, bool follows_upper, IsOver&& is_over) {
     for (Branch& branch : node.branches) {
       if (branch.is_open) refresh(branch);
     }
-    while (true) {
+    while (!node.branches.empty()) {
       Branch* highest = &node.branches.front();
       Branch* likeliest = nullptr;
       for (Branch& branch : node.branches) {
@@ -234,7 +282,10 @@ class Sarsop {
       if (highest->is_open) return follows_upper ? highest : likeliest;
       graph_.open(node, *highest);
       refresh(*highest);
+      has_learnt_ = true;
+      if (is_over()) break;
     }
+    return nullptr;
   }
 
   void refresh(Branch& branch) {
@@ -257,20 +308,25 @@ class Sarsop {
   }
 
   double refreshed_lower(const Branch& branch) {
-    return backed_up(branch, [this](Node& node) { return graph_.refresh_lower(node), node.lower; });
+    const double rest = -branch.rest * graph_.largest_value();
+    return backed_up(branch, rest, -1, [this](Node& node) { return graph_.refresh_lower(node), node.lower; });
   }
 
   double refreshed_upper(const Branch& branch) {
-    return backed_up(branch, [this](Node& node) { return graph_.refresh_upper(node), node.upper; });
+    return backed_up(branch, branch.rest_upper, 1, [this](Node& node) { return graph_.refresh_upper(node), node.upper; });
   }
 
-  // The branch's value, given that of each node behind it.
+  // The branch's value, given that of each node behind it and of the rest; moved outwards.
   template <class ValueOf>
-  double backed_up(const Branch& branch, ValueOf value_of) {
-    double sum = 0;
-    for (const Successor& successor : branch.successors)
-      sum += successor.probability * value_of(graph_[successor.node]);
-    return branch.reward + model_.discount * sum;
+  double backed_up(const Branch& branch, double rest, double direction, ValueOf value_of) {
+    double sum = rest;
+    double size = std::abs(branch.reward) + std::abs(rest);
+    for (const Successor& successor : branch.successors) {
+      const double part = successor.probability * value_of(graph_[successor.node]);
+      sum += part;
+      size += std::abs(part);
+    }
+    return branch.reward + model_.discount * sum + direction * graph_.rounding() * size;
   }
 
   void backup(std::uint32_t number) {
@@ -282,63 +338,97 @@ class Sarsop {
     double best_lower = -std::numeric_limits<double>::infinity();
     double best_upper = best_lower;
     for (Branch& branch : node.branches) {
-      if (!branch.is_open) {
-        best_upper = std::max(best_upper, branch.upper);
-        continue;
-      }
-      refresh(branch);
+      if (branch.is_open) refresh(branch);
       best_upper = std::max(best_upper, branch.upper);
-      if (best != nullptr && branch.lower <= best_lower) continue;
+      if (!branch.is_open || (best != nullptr && branch.lower <= best_lower)) continue;
       best = &branch;
       best_lower = branch.lower;
     }
-    const double worth_it = 1e-9 * (1 + std::abs(node.lower));
-    if (best != nullptr && best_lower > node.lower + worth_it) add_vector(node, *best);
+    const double worth_it = graph_.noise();
+    if (best != nullptr && best_lower > node.lower + worth_it) {
+      const double before = node.lower;
+      add_vector(node, *best);
+      if (node.lower > before + worth_it) has_learnt_ = true;
+    }
     if (best_upper < node.upper - worth_it) {
+      has_learnt_ = true;
       node.upper = best_upper;
-      UpperBound& bound = graph_.upper(node.region);
+      UpperBound& bound = graph_.upper_of(node.region, node.left);
       if (node.point == nowhere) {
         node.point = bound.add(node.belief, node.corner, node.upper);
       } else {
         bound.improve(node.point, node.corner, node.upper);
       }
     }
-    std::erase_if(node.branches, [&](const Branch& branch) { return branch.upper < node.lower - worth_it; });
+    std::erase_if(node.branches, [&](const Branch& branch) { return branch.upper < node.lower; });
   }
 
+  // The plan that begins with the branch's action and goes on with the best plan of each node behind it. A plan for
+  // what cannot be observed from here is chosen as if nothing were known, since the vector is for the whole region.
   void add_vector(Node& node, const Branch& branch) {
+    const Move& move = regions_.all[node.region].moves[branch.action];
+    std::vector<double> values = move.rewards;
+    std::uint32_t length = node.left;
+    double size = 0;
+    if (!graph_.is_last(node)) {
+      const std::uint32_t left = graph_.is_free_to_go_on() ? longest_plan(branch) : graph_.left_after(node);
+      length = graph_.is_endless() ? 0 : left + 1;
+      choose_plans(node, branch, left);
+      later_.assign(move.targets, 0.0);
+      for (std::uint32_t sight = 0; sight < move.sights.size(); ++sight) {
+        if (chosen_[sight] == nullptr) continue;
+        const AlphaVector& plan = *chosen_[sight];
+        const double tail = plan.length == left ? 0 : graph_.tail(plan.length, left);
+        size = std::max(size, plan.size - tail);
+        for (const Sight::Landing& landing : move.sights[sight].landings) {
+          later_[landing.target] += landing.probability * (plan.values[landing.local] + tail);
+        }
+        graph_.count_work(move.sights[sight].landings.size());
+      }
+      graph_.count_work(move.flows.elements.size());
+      for (std::size_t state = 0; state < values.size(); ++state) {
+        double sum = 0;
+        for (const auto* flow = move.flows.begin(state); flow != move.flows.end(state); ++flow) {
+          sum += flow->probability * later_[flow->target];
+        }
+        values[state] += model_.discount * sum - 2 * graph_.rounding() * (size + std::abs(move.rewards[state]));
+      }
+    }
+    graph_.add_vector(node.region, {branch.action, length, std::move(values)});
+    ++vectors_added_;
+    graph_.refresh_lower(node);
+  }
+
+  // Of the best plans behind a branch.
+  std::uint32_t longest_plan(const Branch& branch) {
+    std::uint32_t longest = graph_.is_endless() ? 0 : 1;
+    for (const Successor& successor : branch.successors) {
+      const Node& child = graph_[successor.node];
+      longest = std::max(longest, graph_.lower(child.region)[child.vector].length);
+    }
+    return longest;
+  }
+
+  // By sight; none where nothing may follow.
+  void choose_plans(const Node& node, const Branch& branch, std::uint32_t left) {
     const Move& move = regions_.all[node.region].moves[branch.action];
     chosen_.assign(move.sights.size(), nullptr);
     for (const Successor& successor : branch.successors) {
       const Node& child = graph_[successor.node];
       chosen_[successor.sight] = &graph_.lower(child.region)[child.vector];
     }
-    later_.assign(move.targets, 0.0);
     for (std::uint32_t sight = 0; sight < move.sights.size(); ++sight) {
-      if (chosen_[sight] == nullptr) chosen_[sight] = &uninformed_choice(node.region, branch.action, sight);
-      const std::vector<double>& values = chosen_[sight]->values;
-      for (const Sight::Landing& landing : move.sights[sight].landings) {
-        later_[landing.target] += landing.probability * values[landing.local];
+      if (chosen_[sight] != nullptr) continue;
+      const std::uint32_t number = graph_.uninformed_successor(node.region, left, branch.action, sight);
+      if (number == nowhere) {
+        const std::uint32_t region = move.sights[sight].region;
+        graph_.lower(region).for_blind(left, [&](std::uint32_t blind) { chosen_[sight] = &graph_.lower(region)[blind]; });
+        continue;
       }
+      Node& child = graph_[number];
+      graph_.refresh_lower(child);
+      chosen_[sight] = &graph_.lower(child.region)[child.vector];
     }
-    AlphaVector vector{branch.action, false, move.rewards};
-    for (std::size_t state = 0; state < vector.values.size(); ++state) {
-      double sum = 0;
-      for (const auto* flow = move.flows.begin(state); flow != move.flows.end(state); ++flow) {
-        sum += flow->probability * later_[flow->target];
-      }
-      vector.values[state] += model_.discount * sum;
-    }
-    graph_.count_bytes(vector.values.size() * sizeof(double) + sizeof vector);
-    graph_.lower(node.region).add(std::move(vector));
-    ++vectors_added_;
-    graph_.refresh_lower(node);
-  }
-
-  const AlphaVector& uninformed_choice(std::uint32_t region, std::uint32_t action, std::uint32_t sight) {
-    Node& node = graph_[graph_.uninformed_successor(region, action, sight)];
-    graph_.refresh_lower(node);
-    return graph_.lower(node.region)[node.vector];
   }
 
   const FlatModel& model_;
@@ -352,6 +442,9 @@ class Sarsop {
   std::uint64_t sampled_ = 0;  // trials
   std::uint64_t backups_ = 0;
   std::size_t vectors_added_ = 0;
+  bool has_learnt_ = false;  // in this trial
+  int idle_ = 0;             // trials one after another that have learnt nothing
+  std::deque<Branch> dropped_at_root_;
 };
 
 }  // namespace aos::point_based

@@ -1,7 +1,7 @@
 // The offline solver: a flat model in, alpha vectors out, and on the way a line of JSON for every progress.
 //
 // It ends when the bounds are as near as asked for, when its time or memory is used up, or when anything comes on
-// standard input or that is closed; what is written then is the best so far.
+// standard input or that is closed, or when trials find nothing more; what is written then is the best so far.
 #include <poll.h>
 #include <unistd.h>
 
@@ -35,10 +35,11 @@ bool is_told_to_stop() {
   return ::poll(&input, 1, 0) > 0;
 }
 
-void tell(Sarsop& solver, const char* ending) {
+void report(Sarsop& solver, const char* ending) {
+  const auto [lower, upper] = checked(solver.lower(), solver.upper());
   aos::JsonWriter json;
   json.begin_object().member("seconds", cpu_seconds());
-  json.member("lower", solver.lower()).member("upper", solver.upper());
+  json.member("lower", lower).member("upper", upper);
   json.member("vectors", solver.vectors()).member("beliefs", solver.beliefs()).member("backups", solver.backups());
   json.member("ending", ending).end_object();
   std::puts(json.text().c_str());
@@ -49,7 +50,7 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
   double next_line = 0;
   for (;;) {
     if (const double now = cpu_seconds(); now >= next_line) {
-      tell(solver, "");
+      report(solver, "");
       // Often at first, when most happens.
       next_line = now + std::clamp(0.25 * now, 0.005, 2.0);
     }
@@ -57,7 +58,7 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
     if (cpu_seconds() >= seconds) return "time";
     if (solver.bytes() >= memory_bytes) return "memory";
     if (is_told_to_stop()) return "stopped";
-    solver.improve(precision, [] { return false; });
+    if (!solver.improve(precision, [] { return false; })) return "settled";
   }
 }
 
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
     const char* ending = improve(solver, std::atof(argv[3]), std::atof(argv[4]), std::strtoull(argv[5], nullptr, 10));
     solver.prune();
     write_policy(argv[2], regions, solver);
-    tell(solver, ending);
+    report(solver, ending);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

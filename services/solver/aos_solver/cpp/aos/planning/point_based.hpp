@@ -73,7 +73,7 @@ class PointBased {
   std::vector<ActionEstimate> estimates() const {
     std::vector<ActionEstimate> result;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
-      result.push_back({running_ * bounds.lower, bounds.trials + 1, 0});
+      result.push_back({bounds.lower, bounds.trials + 1, 0});
     }
     return result;
   }

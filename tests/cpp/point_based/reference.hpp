@@ -1,0 +1,262 @@
+// What a belief is worth, from below and from above, by another way than the solver's: all beliefs that can be reached
+// are listed, up to a limit, in long doubles; those at the limit are worth between the best of always doing the same
+// and what somebody who sees the state would get.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "point_based/flat_model.hpp"
+
+namespace truth {
+
+using aos::point_based::FlatModel;
+using Real = long double;
+using Values = std::vector<Real>;
+using Belief = std::vector<std::pair<std::uint32_t, Real>>;  // by state, ascending
+
+struct Interval {
+  Real lower = -std::numeric_limits<Real>::infinity();
+  Real upper = std::numeric_limits<Real>::infinity();
+};
+
+class Reference {
+ public:
+  explicit Reference(const FlatModel& model) : model_(model) {
+    if (model.horizon == 0) {
+      seen_.push_back(best_policy_values());
+      for (std::size_t action = 0; action < model.actions; ++action) {
+        always_.push_back({policy_values(std::vector<std::size_t>(model.states, action))});
+      }
+      random_.push_back(random_values());
+    } else {
+      add_layers();
+    }
+    for (const double reward : model.rewards) largest_ = std::max<Real>(largest_, std::abs(reward));
+  }
+
+  // Of every action at a belief, with so many beliefs listed.
+  std::vector<Interval> action_values(const Belief& belief, std::size_t max_nodes) {
+    nodes_.clear();
+    known_.clear();
+    node_of(belief, model_.horizon);
+    for (std::size_t i = 0; i < nodes_.size() && nodes_.size() < max_nodes; ++i) {
+      if (model_.horizon == 0 || nodes_[i].left > 0) expand(i);
+    }
+    const std::size_t sweeps = model_.horizon == 0 ? 400 : 1;
+    for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
+      Real change = 0;
+      for (std::size_t i = nodes_.size(); i-- > 0;) change = std::max(change, back_up(nodes_[i]));
+      if (change == 0) break;
+    }
+    std::vector<Interval> values(model_.actions);
+    for (std::size_t action = 0; action < model_.actions; ++action) {
+      values[action] = nodes_[0].branches.empty() ? Interval{} : value_of(nodes_[0].branches[action]);
+    }
+    return values;
+  }
+
+  // Of somebody who acts by chance.
+  Real random_value(const Belief& belief) const { return expected(random_.back(), belief); }
+
+  // By so much rounding may harm the figures here, and the claims that are compared to them.
+  Real tolerance() const {
+    const Real time = model_.horizon == 0 ? 1 / (1 - Real{model_.discount}) : static_cast<Real>(model_.horizon);
+    return 1e-17L * largest_ * time * time + 1e-300L;
+  }
+
+  // After an action and an observation, not normalised.
+  std::map<std::uint32_t, std::map<std::uint32_t, Real>> successors(const Belief& belief, std::size_t action) const {
+    std::map<std::uint32_t, std::map<std::uint32_t, Real>> by_observation;
+    for (const auto& [state, probability] : belief) {
+      const std::size_t row = model_.row(state, action);
+      for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+        const auto* last = model_.readings.end(outcome->sensing);
+        for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
+          const Real weight = probability * outcome->probability * reading->probability;
+          if (weight > 0) by_observation[reading->observation][outcome->next] += weight;
+        }
+      }
+    }
+    return by_observation;
+  }
+
+ private:
+  struct Branch {
+    Real reward = 0;
+    std::vector<std::pair<Real, std::size_t>> successors;
+  };
+  struct Node {
+    Belief belief;
+    std::size_t left;
+    Interval value;
+    std::vector<Branch> branches;
+  };
+
+  static Real expected(const Values& values, const Belief& belief) {
+    Real sum = 0;
+    for (const auto& [state, probability] : belief) sum += probability * values[state];
+    return sum;
+  }
+
+  Real row_value(std::size_t row, const Values& later) const {
+    Real sum = 0;
+    for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+      sum += Real{outcome->probability} * later[outcome->next];
+    }
+    return Real{model_.rewards[row]} + Real{model_.discount} * sum;
+  }
+
+  void add_layers() {
+    seen_.assign(1, Values(model_.states, 0));
+    random_ = seen_;
+    always_.assign(model_.actions, seen_);
+    for (std::size_t left = 1; left <= model_.horizon; ++left) {
+      Values best(model_.states, -std::numeric_limits<Real>::infinity()), mean(model_.states, 0);
+      for (std::size_t action = 0; action < model_.actions; ++action) {
+        Values same(model_.states);
+        for (std::size_t state = 0; state < model_.states; ++state) {
+          const std::size_t row = model_.row(state, action);
+          same[state] = row_value(row, always_[action].back());
+          best[state] = std::max(best[state], row_value(row, seen_.back()));
+          mean[state] += row_value(row, random_.back()) / static_cast<Real>(model_.actions);
+        }
+        always_[action].push_back(std::move(same));
+      }
+      seen_.push_back(std::move(best));
+      random_.push_back(std::move(mean));
+    }
+  }
+
+  // By elimination: exact but for rounding.
+  Values policy_values(const std::vector<std::size_t>& policy) const {
+    return solved([&](std::size_t state, auto&& add) { add(model_.row(state, policy[state]), 1); });
+  }
+  Values random_values() const {
+    return solved([&](std::size_t state, auto&& add) {
+      const Real share = 1 / static_cast<Real>(model_.actions);
+      for (std::size_t action = 0; action < model_.actions; ++action) add(model_.row(state, action), share);
+    });
+  }
+
+  template <class RowsOf>
+  Values solved(RowsOf&& rows_of) const {
+    const std::size_t count = model_.states;
+    std::vector<Values> matrix(count, Values(count + 1, 0));
+    for (std::size_t state = 0; state < count; ++state) {
+      matrix[state][state] = 1;
+      rows_of(state, [&](std::size_t row, Real share) {
+        matrix[state][count] += share * model_.rewards[row];
+        for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+          matrix[state][outcome->next] -= share * Real{model_.discount} * outcome->probability;
+        }
+      });
+    }
+    for (std::size_t column = 0; column < count; ++column) {
+      std::size_t pivot = column;
+      for (std::size_t row = column + 1; row < count; ++row) {
+        if (std::abs(matrix[row][column]) > std::abs(matrix[pivot][column])) pivot = row;
+      }
+      std::swap(matrix[column], matrix[pivot]);
+      for (std::size_t row = 0; row < count; ++row) {
+        if (row == column || matrix[row][column] == 0) continue;
+        const Real share = matrix[row][column] / matrix[column][column];
+        for (std::size_t i = column; i <= count; ++i) matrix[row][i] -= share * matrix[column][i];
+      }
+    }
+    Values values(count);
+    for (std::size_t state = 0; state < count; ++state) values[state] = matrix[state][count] / matrix[state][state];
+    return values;
+  }
+
+  // Policies improved until nothing improves (Howard).
+  Values best_policy_values() const {
+    std::vector<std::size_t> policy(model_.states, 0);
+    Values values;
+    for (bool has_improved = true; has_improved;) {
+      values = policy_values(policy);
+      has_improved = false;
+      for (std::size_t state = 0; state < model_.states; ++state) {
+        for (std::size_t action = 0; action < model_.actions; ++action) {
+          const Real now = row_value(model_.row(state, policy[state]), values);
+          const Real other = row_value(model_.row(state, action), values);
+          if (other <= now + 1e-15L * (std::abs(now) + std::abs(other))) continue;
+          policy[state] = action;
+          has_improved = true;
+        }
+      }
+    }
+    return values;
+  }
+
+  std::size_t node_of(const Belief& belief, std::size_t left) {
+    std::vector<std::pair<std::uint32_t, std::uint64_t>> key{{0, left}};
+    // Nearer than the tolerance allows for; equal beliefs by different ways are one.
+    for (const auto& [state, probability] : belief) {
+      key.emplace_back(state, static_cast<std::uint64_t>(std::llround(probability * 0x1p60L) >> 4));
+    }
+    const auto [entry, is_new] = known_.try_emplace(std::move(key), nodes_.size());
+    if (is_new) {
+      const std::size_t layer = model_.horizon == 0 ? 0 : left;
+      Interval value{-std::numeric_limits<Real>::infinity(), expected(seen_[layer], belief)};
+      for (const std::vector<Values>& same : always_) value.lower = std::max(value.lower, expected(same[layer], belief));
+      nodes_.push_back({belief, left, value, {}});
+    }
+    return entry->second;
+  }
+
+  void expand(std::size_t number) {
+    std::vector<Branch> branches(model_.actions);
+    for (std::size_t action = 0; action < model_.actions; ++action) {
+      for (const auto& [state, probability] : nodes_[number].belief) {
+        branches[action].reward += probability * model_.rewards[model_.row(state, action)];
+      }
+      const std::size_t left = model_.horizon == 0 ? 0 : nodes_[number].left - 1;
+      for (const auto& [observation, weights] : successors(nodes_[number].belief, action)) {
+        Real total = 0;
+        for (const auto& [state, weight] : weights) total += weight;
+        Belief next;
+        for (const auto& [state, weight] : weights) next.emplace_back(state, weight / total);
+        branches[action].successors.emplace_back(total, node_of(next, left));
+      }
+    }
+    nodes_[number].branches = std::move(branches);
+  }
+
+  Interval value_of(const Branch& branch) const {
+    Interval value{branch.reward, branch.reward};
+    for (const auto& [probability, next] : branch.successors) {
+      value.lower += model_.discount * probability * nodes_[next].value.lower;
+      value.upper += model_.discount * probability * nodes_[next].value.upper;
+    }
+    return value;
+  }
+
+  Real back_up(Node& node) {
+    if (node.branches.empty()) return 0;
+    Interval best{-std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()};
+    for (const Branch& branch : node.branches) {
+      const Interval value = value_of(branch);
+      best.lower = std::max(best.lower, value.lower);
+      best.upper = std::max(best.upper, value.upper);
+    }
+    const Interval before = node.value;
+    node.value = {std::max(before.lower, best.lower), std::min(before.upper, best.upper)};
+    return std::max(node.value.lower - before.lower, before.upper - node.value.upper);
+  }
+
+  const FlatModel& model_;
+  Real largest_ = 0;
+  std::vector<Values> seen_;                   // by decisions left
+  std::vector<std::vector<Values>> always_;    // by action, decisions left
+  std::vector<Values> random_;
+  std::vector<Node> nodes_;
+  std::map<std::vector<std::pair<std::uint32_t, std::uint64_t>>, std::size_t> known_;
+};
+
+}  // namespace truth
