@@ -33,6 +33,7 @@ class Script {
   void Uninitialize(bool& value) { value = false; }
   void Initialize(bool& value) { value = true; }
   bool IsInitialized(bool value) { return value; }
+  void report(NumberKey, const Distribution&) {}
 
  private:
   double next(double otherwise) {
@@ -73,6 +74,7 @@ class Dice {
   void Uninitialize(bool& value) { value = false; }
   void Initialize(bool& value) { value = true; }
   bool IsInitialized(bool value) { return value; }
+  void report(NumberKey, const Distribution&) {}
 
  private:
   template <class Weights>

@@ -57,6 +57,30 @@ text = __input.text
 response_local_variable: text
 """,
 }
+SENSING = {
+    "sense.sd": """project: kettle
+dynamic_model:
+__moduleResponse = sensed;
+__observed.weight = AOS.SampleNormal(7, 0.5);
+for (int i = 1; i < 3; i++) __observed.echoes.push_back(AOS.SampleUniform(i, i + 1));
+""",
+    "sense.am": """project: kettle
+response: sensed
+response_rule: True
+module_activation: skill
+path: /sense
+local_variable: weight
+type: float
+from_ros_service_response: true
+code:
+weight = __input.weight
+local_variable: echoes
+type: float[]
+from_ros_service_response: true
+code:
+echoes = __input.echoes
+""",
+}
 
 
 @pytest.fixture
@@ -124,6 +148,32 @@ def test_text_observations_are_bytes(kettle: Path) -> None:
     observation, *_ = environment.step(environment.action_names.index("read"))
     assert bytes(observation).rstrip(b"\0") == b"cold"
     environment.close()
+
+
+@pytest.mark.filterwarnings("ignore:.*A Box observation space m.* value is -?infinity")
+def test_numbers_beside_a_response_have_columns(kettle: Path) -> None:
+    """Of an array as many as there is room for; what a response does not report is marked."""
+    for name, text in SENSING.items():
+        (kettle / name).write_text(text)
+    environment = AosEnv(kettle, max_episode_steps=20, array_room=3)
+    check_env(environment, skip_render_check=True)
+    assert environment.number_names == ("echoes[0]", "echoes[1]", "echoes[2]", "weight")
+    environment.close()
+    worlds = AosVectorEnv(kettle, 200, array_room=3)
+    assert worlds.action_names == ("heat", "sense")
+    worlds.reset(seed=1)
+    actions = np.arange(200) % 2
+    observed, *_ = worlds.step(actions)
+    assert observed["numbers"].shape == observed["reported"].shape == (200, 4)
+    assert worlds.observation_space.contains(observed)
+    is_sensed = actions == 1
+    assert (observed["reported"][is_sensed] == [1, 1, 0, 1]).all()
+    assert not observed["reported"][~is_sensed].any()
+    assert not observed["numbers"][~is_sensed].any()
+    weights = observed["numbers"][is_sensed, 3]
+    assert abs(weights.mean() - 7) < 0.2
+    assert ((observed["numbers"][is_sensed, 0] >= 1) & (observed["numbers"][is_sensed, 0] <= 2)).all()
+    worlds.close()
 
 
 def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> None:

@@ -118,6 +118,9 @@ MISUSES = {
     "string observation": Rule(
         "go glue.json", '{"ResponseRules"', '{"FromStringLocalVariable": "«txt", "ResponseRules"', "AOS110"
     ),
+    "__observed": Rule(
+        "go.sd", "__reward = -1;", "__observed.steps = «1 + AOS.SampleNormal(0, 1);", "AOS138"
+    ),
     "state given observation": Rule(
         "go.json",
         '"DynamicModel"',

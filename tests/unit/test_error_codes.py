@@ -23,6 +23,7 @@ MORE_RULES = [
          '[«{"StateConditionCode": "state.at == eLab", "Reward": -5.0', "AOS137"),
     Rule("go.sd", "__reward = -1;", "__reward = -1;\n«door.room = Hall;", "AOS128"),
     Rule("room.ef", "state_variable: Room", "state_variable: int «spare\nstate_variable: Room", "AOS133"),
+    Rule("go.sd", "__reward = -1;", "«__observed.width = AOS.SampleNormal(1, 1);", "AOS136"),
     Rule("go.am", "response: arrived", "response: «lost\nresponse_rule: not ok\nresponse: arrived", "AOS117"),
     Rule("go.am", "response_rule: ok", "response_rule: True\nresponse: lost\nresponse_rule: «ok", "AOS118"),
     Rule("go glue.json", '"FromROSServiceResponse": true', '«"RosParameter": "/ok"', "AOS124"),

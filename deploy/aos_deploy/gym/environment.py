@@ -9,8 +9,9 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_deploy.gym.spaces import Observation, observation_space
-from aos_deploy.gym.worlds import ENDINGS, HiddenWorlds, as_bytes
+from aos_deploy.gym.number_columns import Numbers
+from aos_deploy.gym.spaces import Observation, observation_space, observations
+from aos_deploy.gym.worlds import ENDINGS, HiddenWorlds
 
 __all__ = ["AosEnv"]
 
@@ -22,17 +23,21 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
 
     An episode terminates when the mission does, and is truncated after `max_episode_steps` if given. `info`
     has the `action`, the `response` and the `ending` in words. In a bundle with text observations these are
-    bytes: see `aos_deploy.gym.spaces`.
+    bytes, and with numbers beside responses dicts: see `aos_deploy.gym.spaces`. `number_names` has the names
+    of these numbers; of an array there are the first `array_room`.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
 
-    def __init__(self, bundle: str | Path, *, max_episode_steps: int | None = None) -> None:
-        self._worlds = HiddenWorlds(Path(bundle))
+    def __init__(
+        self, bundle: str | Path, *, max_episode_steps: int | None = None, array_room: int = 16
+    ) -> None:
+        self._worlds = HiddenWorlds(Path(bundle), array_room)
         self._most_steps = max_episode_steps
         self._steps = 0
         self.action_names = self._worlds.actions
         self.response_names = self._worlds.responses
+        self.number_names = self._worlds.number_names
         self.discount = self._worlds.discount
         self.action_space = gymnasium.spaces.Discrete(len(self.action_names))
         self.observation_space = observation_space(self._worlds)
@@ -44,7 +49,7 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
         super().reset(seed=seed)
         self._worlds.start([int(self.np_random.integers(MOST_SEEDS))])
         self._steps = 0
-        return self._observation(np.int64(0), ""), {}
+        return self._observation(*self._worlds.nothing_observed(1)), {}
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Runs a grounded action."""
@@ -57,15 +62,16 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
             "ending": ENDINGS[done.endings[0]],
         }
         is_cut = self._most_steps is not None and self._steps >= self._most_steps
-        observation = self._observation(done.observations[0], text)
+        observation = self._observation(done.observations, done.texts, done.numbers)
         return observation, float(done.rewards[0]), bool(done.endings[0]), is_cut, info
 
     def close(self) -> None:
         """Ends the child process."""
         self._worlds.close()
 
-    def _observation(self, number: np.int64, text: str) -> Observation:
-        if not self._worlds.has_texts:
-            return number
-        row: NDArray[np.uint8] = as_bytes([text])[0]
-        return row
+    def _observation(self, responses: NDArray[np.int64], texts: list[str], numbers: Numbers) -> Observation:
+        rows = observations(self._worlds, responses, texts, numbers)
+        if isinstance(rows, dict):
+            return {name: values[0] for name, values in rows.items()}
+        observation: Observation = rows[0]
+        return observation

@@ -12,15 +12,15 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from aos_deploy.gym.environment import MOST_SEEDS
-from aos_deploy.gym.spaces import observation_space
-from aos_deploy.gym.worlds import HiddenWorlds, as_bytes
+from aos_deploy.gym.spaces import observation_space, observations
+from aos_deploy.gym.worlds import HiddenWorlds
 
 __all__ = ["AosVectorEnv"]
 
 Numbers = NDArray[Any]
 
 
-class AosVectorEnv(gymnasium.vector.VectorEnv[Numbers, Numbers, Numbers]):
+class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
     """`num_envs` worlds of a bundle's model, in which `AosEnv`'s spaces hold for each.
 
     A world whose episode is over starts anew in the next step, whose action for it is ignored.
@@ -28,12 +28,20 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Numbers, Numbers, Numbers]):
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
-    def __init__(self, bundle: str | Path, num_envs: int, *, max_episode_steps: int | None = None) -> None:
-        self._worlds = HiddenWorlds(Path(bundle))
+    def __init__(
+        self,
+        bundle: str | Path,
+        num_envs: int,
+        *,
+        max_episode_steps: int | None = None,
+        array_room: int = 16,
+    ) -> None:
+        self._worlds = HiddenWorlds(Path(bundle), array_room)
         self._most_steps = max_episode_steps
         self.num_envs = num_envs
         self.action_names = self._worlds.actions
         self.response_names = self._worlds.responses
+        self.number_names = self._worlds.number_names
         self.discount = self._worlds.discount
         self.single_action_space = gymnasium.spaces.Discrete(len(self.action_names))
         self.single_observation_space = observation_space(self._worlds)
@@ -44,7 +52,7 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Numbers, Numbers, Numbers]):
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Numbers, dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """New episodes everywhere; a list gives each world a seed of its own."""
         if isinstance(seed, list):
             seeds = [int(np.random.default_rng(each).integers(MOST_SEEDS)) for each in seed]
@@ -54,9 +62,9 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Numbers, Numbers, Numbers]):
         self._worlds.start(seeds)
         self._steps[:] = 0
         self._is_over[:] = False
-        return self._observations(np.zeros(self.num_envs, np.int64), [""] * self.num_envs), {}
+        return observations(self._worlds, *self._worlds.nothing_observed(self.num_envs)), {}
 
-    def step(self, actions: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers, dict[str, Any]]:
+    def step(self, actions: Numbers) -> tuple[Any, Numbers, Numbers, Numbers, dict[str, Any]]:
         """Runs an action in each world."""
         done = self._worlds.step(np.where(self._is_over, -1, actions))
         self._steps = np.where(self._is_over, 0, self._steps + 1)
@@ -65,12 +73,9 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Numbers, Numbers, Numbers]):
         if self._most_steps is not None:
             is_truncated = self._steps >= self._most_steps
         self._is_over = is_terminated | is_truncated
-        observations = self._observations(done.observations, done.texts)
-        return observations, done.rewards, is_terminated, is_truncated, {}
+        observed = observations(self._worlds, done.observations, done.texts, done.numbers)
+        return observed, done.rewards, is_terminated, is_truncated, {}
 
     def close_extras(self, **_: Any) -> None:
         """Ends the child process."""
         self._worlds.close()
-
-    def _observations(self, numbers: Numbers, texts: list[str]) -> Numbers:
-        return as_bytes(texts) if self._worlds.has_texts else numbers

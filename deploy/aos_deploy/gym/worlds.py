@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from aos_deploy.gym.number_columns import NumberColumns, Numbers
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import DocumentError
 from aos_registry.load import load_bundle
@@ -34,15 +35,17 @@ class Steps(NamedTuple):
     texts: list[str]
     rewards: NDArray[np.float64]
     endings: NDArray[np.uint8]
+    numbers: Numbers
 
 
 class HiddenWorlds:
     """Owns an engine child and the event loop that talks to it; to be used in the thread that made it.
 
     `actions` and `responses` are names by number; response 0 means that nothing is told, as at a start.
+    `number_names` are those of the numbers that are reported beside responses, of an array `array_room`.
     """
 
-    def __init__(self, bundle: Path) -> None:
+    def __init__(self, bundle: Path, array_room: int) -> None:
         self._loop = asyncio.new_event_loop()
         try:
             self._engine = self._run(_start(bundle))
@@ -50,7 +53,10 @@ class HiddenWorlds:
         except BaseException:
             self._loop.close()
             raise
-        self.actions = tuple(action.name for action in self._engine.description.actions)
+        actions = self._engine.description.actions
+        self.actions = tuple(action.name for action in actions)
+        self._columns = NumberColumns([action.skill for action in actions], self._engine.observed, array_room)
+        self.number_names = self._columns.names
         self.responses = told.observations
         self.has_texts = told.has_texts
         self.discount = self._engine.description.discount
@@ -59,14 +65,22 @@ class HiddenWorlds:
         """One new world for each seed."""
         self._run(self._engine.reset_worlds(seeds))
 
+    def nothing_observed(self, worlds: int) -> tuple[NDArray[np.int64], list[str], Numbers]:
+        """Responses, texts and numbers as so many worlds have them at a start."""
+        shape = (worlds, len(self.number_names))
+        numbers = Numbers(np.zeros(shape), np.zeros(shape, np.int8))
+        return np.zeros(worlds, np.int64), [""] * worlds, numbers
+
     def step(self, actions: NDArray[Any]) -> Steps:
         """One action in each world; -1 starts it anew."""
-        done = self._run(self._engine.step_worlds(actions.astype(np.int32).tobytes()))
+        numbered = actions.astype(np.int32)
+        done = self._run(self._engine.step_worlds(numbered.tobytes()))
         return Steps(
             np.frombuffer(done.observations, np.int32).astype(np.int64),
             done.texts,
             np.frombuffer(done.rewards, np.float64).copy(),
             np.frombuffer(done.endings, np.uint8),
+            self._columns.rows(numbered, done),
         )
 
     def close(self) -> None:

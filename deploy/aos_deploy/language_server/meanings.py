@@ -185,6 +185,7 @@ BUILT_INS: Mapping[str, str] = {
     "__moduleExecutionTime": "How long the skill takes.",
     "__moduleResponse": "The response the skill gives: one that its mapping names.",
     "__moduleResponseStr": "The response as any text.",
+    "__observed": "Numbers beside the response: `__observed.NAME = AOS.SampleNormal(mean, deviation)`.",
     "__input": "The call's result, or the topic's message.",
     "AOS.Bernoulli": "`AOS.Bernoulli(p)`: true with probability p.",
     "AOS.SampleDiscrete": "`AOS.SampleDiscrete(Enum, {weights})`: a value, by normalised weights.",

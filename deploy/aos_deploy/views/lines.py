@@ -6,6 +6,7 @@ import sys
 from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
+from aos_deploy.views.observations import observation_text
 from aos_protocol.diagnostics import render
 from aos_protocol.messages import BeliefSummary, BundleReport, DecisionRecord, MissionState
 
@@ -72,7 +73,8 @@ def decision_line(record: DecisionRecord) -> str:
         values = ", ".join(f"{action.action} {action.q:+.2f}" for action in others)
         return f"{head}  [{values}]  {effort_text(record)}"
     outcome = record.outcome
-    what = outcome.response if outcome.status == "observed" else outcome.status
+    is_observed = outcome.status == "observed"
+    what = observation_text(outcome.response, outcome.numbers) if is_observed else outcome.status
     if outcome.fault is not None:
         what = f"{what} ({outcome.fault.message})"
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.views.lines import effort_text, endings_text, lines_of
+from aos_deploy.views.observations import observation_text
 from aos_protocol.messages import (
     ActionValue,
     BeliefSummary,
@@ -163,7 +164,9 @@ def _observation(record: DecisionRecord) -> Text:
         return Text("...", style="dim")
     if outcome.status != "observed":
         return Text(outcome.status, style="red")
-    return Text(outcome.response, style="red" if record.is_impossible else "")
+    return Text(
+        observation_text(outcome.response, outcome.numbers), style="red" if record.is_impossible else ""
+    )
 
 
 def _belief_table(belief: BeliefSummary) -> Table:

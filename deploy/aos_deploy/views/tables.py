@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from aos_deploy.views.observations import observation_text
 from aos_protocol.messages import ActionValue
 from aos_solver.simulation import SimulatedRun
 
@@ -51,7 +52,7 @@ def print_states(run: SimulatedRun) -> None:
     table.add_column("step", justify="right")
     for name in ("action", "observation", "state"):
         table.add_column(name)
-    rows = zip(("", *run.actions), ("", *run.observations), run.states, strict=True)
+    rows = zip(("", *run.actions), ("", *_observations(run)), run.states, strict=True)
     for number, (action, observation, state) in enumerate(rows):
         table.add_row(str(number), Text(action), Text(observation), Text(state.rstrip()))
     Console().print(table)
@@ -73,7 +74,7 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
     for run in runs:
         story = ", ".join(
             f"{action} → {observation}"
-            for action, observation in zip(run.actions, run.observations, strict=True)
+            for action, observation in zip(run.actions, _observations(run), strict=True)
         )
         world = run.world_ending.value if run.world_ending is not None else "goes on"
         table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
@@ -85,3 +86,8 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
         f"discounted return {summary['mean_discounted_return']:+.2f} ± {summary['stderr']:.2f}, "
         f"{summary['mean_steps']:.1f} steps"
     )
+
+
+def _observations(run: SimulatedRun) -> list[str]:
+    numbers = run.numbers or ({},) * len(run.observations)
+    return [observation_text(*observation) for observation in zip(run.observations, numbers, strict=True)]

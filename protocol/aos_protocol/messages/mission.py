@@ -114,9 +114,9 @@ class DecisionRecord(Message, frozen=True):
 
     `sequence` is dense over the mission and names the publication, `step` names the decision, from 1.
     `belief` is the belief decided on, or after the observation the updated one. `surprise` is
-    -log P(observation | belief, action) in nats; infinite surprise is given as `is_impossible`. `remark` says
-    what of the outcome could not be used for the belief. `planner` made the decision with so many `threads`;
-    `why` says why it was that planner and what it has found.
+    -log P(observation | belief, action) in nats, of a density where numbers were observed; infinite surprise
+    is given as `is_impossible`. `remark` says what of the outcome could not be used for the belief. `planner`
+    made the decision with so many `threads`; `why` says why it was that planner and what it has found.
     """
 
     sequence: int

@@ -51,7 +51,8 @@ class Activate(Message, frozen=True):
 class Outcome(Message, frozen=True):
     """How an activation ended: `status` is `observed`, `failed`, `timed_out`, `cancelled` or `unknown`.
 
-    `response` is the observation, empty unless observed. Local variables are as they were when the rules
+    `response` is the observation, empty unless observed. `numbers` are what was observed beside it, by name:
+    a number, or a list with null for those that are missing. Local variables are as they were when the rules
     ran, as text. `fault` says what went wrong. `assigned` are the new low-level values that came with the
     response, as plain data, by the path of the `anyValue` from its state variable.
     """
@@ -65,6 +66,7 @@ class Outcome(Message, frozen=True):
     ended_ns: int = 0
     fault: Fault | None = None
     assigned: dict[str, Any] = {}
+    numbers: dict[str, Any] = {}
 
 
 class MappingQuery(Message, frozen=True):

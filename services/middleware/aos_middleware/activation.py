@@ -11,8 +11,11 @@ import asyncio
 import logging
 from typing import Any, NamedTuple
 
+import msgspec
+
 from aos_middleware.evaluator import Evaluator, MappingFault
 from aos_middleware.low_level import LowLevelValues, assigned_variables
+from aos_middleware.observed_numbers import observed_numbers
 from aos_protocol.documents import AbstractionMapping, LocalSource
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_protocol.keys import Keys
@@ -63,29 +66,37 @@ class Surroundings(NamedTuple):
     low_level: LowLevelValues
 
 
+class _Observation(msgspec.Struct, frozen=True):
+    """What an activation brought: see `Outcome`."""
+
+    response: str = ""
+    local_variables: dict[str, str] = {}
+    assigned: dict[str, Any] = {}
+    numbers: dict[str, Any] = {}
+
+
 async def run_activation(request: Activate, evaluator: Evaluator, around: Surroundings) -> Outcome:
     """How the activation ended, within its deadline. Whatever goes wrong is in the outcome."""
     started_ns = around.clock.now_ns()
-    response = ""
-    local_variables: dict[str, str] = {}
-    assigned: dict[str, Any] = {}
+    observation = _Observation()
     fault: AosError | None = None
     try:
-        response, local_variables, assigned = await _Activation(request, evaluator, around).run()
+        observation = await _Activation(request, evaluator, around).run()
     except MappingFault as error:
-        fault, local_variables = error, error.local_variables
+        fault, observation = error, _Observation(local_variables=error.local_variables)
     except AosError as error:
         fault = error
     return Outcome(
         request.id,
         request.skill,
         "observed" if fault is None else _STATUS.get(fault.code, "failed"),
-        response,
-        local_variables,
+        observation.response,
+        observation.local_variables,
         started_ns,
         around.clock.now_ns(),
         None if fault is None else fault_of(fault),
-        assigned,
+        observation.assigned,
+        observation.numbers,
     )
 
 
@@ -112,16 +123,20 @@ class _Activation:
         self._has_seen = asyncio.Event()
         self._fault: AosError | None = None
 
-    async def run(self) -> tuple[str, dict[str, str], dict[str, Any]]:
-        """The response, the local variables as text, and new low-level values of state variables."""
+    async def run(self) -> _Observation:
+        """From the fields of the call to what is observed."""
         constants = self._evaluator.emitted.constants
         fields = await self._evaluator.begin(*self._low_level.arguments(self._request, constants))
         result = await self._listening_call(fields)
         observed = await self._evaluator.finish(result.fields)
         if observed.response is None:
             raise self._no_response(observed.local_variables)
-        assigned = assigned_variables(observed.assigned, self._request)
-        return observed.response, observed.local_variables, assigned
+        return _Observation(
+            observed.response,
+            observed.local_variables,
+            assigned_variables(observed.assigned, self._request),
+            observed_numbers(self._evaluator.emitted.observed, observed.local_variables),
+        )
 
     async def _listening_call(self, fields: dict[str, Any]) -> SkillResult:
         """Calls the skill while topic messages are evaluated.

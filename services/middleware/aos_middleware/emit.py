@@ -10,6 +10,7 @@ import hashlib
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import jinja2
 import msgspec
@@ -20,6 +21,7 @@ from aos_middleware.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill
 from aos_protocol.errors import DocumentError
+from aos_runtime.observed import reported_numbers
 
 __all__ = ["EmittedMapping", "emit_mapping"]
 
@@ -39,7 +41,8 @@ class EmittedMapping(msgspec.Struct, frozen=True):
     """A mapping as a Python module. `digest` is over `python`, and so over the documents with their places.
 
     `origins[i]` is where line i + 1 of `python` came from, None for lines that no document part made.
-    `constants` names the low-level constants behind the state's `anyValue`s, and is in the digest too.
+    `constants` names the low-level constants behind the state's `anyValue`s, `observed` the local variables
+    that are observed as numbers; both are in the digest too.
     """
 
     skill: str
@@ -48,6 +51,7 @@ class EmittedMapping(msgspec.Struct, frozen=True):
     origins: tuple[LineOrigin | None, ...]
     mapping: AbstractionMapping
     constants: Mapping[str, str] = {}
+    observed: tuple[str, ...] = ()
 
     @property
     def file_name(self) -> str:
@@ -101,14 +105,15 @@ def emit_mapping(
     )
     python, origins = sections.marks.separate(rendered)
     constant_names = dict(constants or {})
-    digest = hashlib.sha256(msgspec.msgpack.encode([python, constant_names])).hexdigest()[:_DIGEST_LENGTH]
-    emitted = EmittedMapping(skill.name, python, digest, origins, mapping, constant_names)
+    observed = tuple(number.name for number in reported_numbers(skill.model))
+    digest = _digest_of(python, constant_names, observed)
+    emitted = EmittedMapping(skill.name, python, digest, origins, mapping, constant_names, observed)
     _check_whole(emitted)
     return emitted
 
 
-def _digest_of(*documents: msgspec.Struct | None) -> str:
-    return hashlib.sha256(msgspec.msgpack.encode(documents)).hexdigest()[:_DIGEST_LENGTH]
+def _digest_of(*parts: Any) -> str:
+    return hashlib.sha256(msgspec.msgpack.encode(parts)).hexdigest()[:_DIGEST_LENGTH]
 
 
 def _check_whole(emitted: EmittedMapping) -> None:

@@ -170,7 +170,9 @@ class Mission:
         engine = self._model.engine
         if outcome.status == "observed":
             self._lost_in_a_row = 0
-            return await engine.update(decision.action, outcome.response, outcome.local_variables)
+            return await engine.update(
+                decision.action, outcome.response, outcome.local_variables, outcome.numbers
+            )
         if outcome.fault is not None and outcome.status == "failed":
             raise AosError(outcome.fault.message, code=outcome.fault.code, hint=outcome.fault.hint)
         self._lost_in_a_row += 1

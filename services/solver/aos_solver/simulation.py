@@ -26,8 +26,9 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
 
     `ending` is why it stopped: what the belief called for, or the world's end where the belief has not
     noticed it. `world_ending` is the truth: how the world has ended, None where it has not. `believed_ending`
-    is what the last belief held for sure enough. `states` are texts of the world's state before the first
-    action and after each, where they were wanted.
+    is what the last belief held for sure enough. `numbers` are what was observed beside each response,
+    where a model reports any. `states` are texts of the world's state before the first action and after each,
+    where they were wanted.
     """
 
     seed: int
@@ -40,6 +41,7 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
     states: tuple[str, ...] = ()
     world_ending: Ending | None = None
     believed_ending: Ending | None = None
+    numbers: tuple[dict[str, float | list[float | None]], ...] = ()
 
 
 async def simulate_mission(
@@ -52,6 +54,7 @@ async def simulate_mission(
     total = discounted = 0.0
     actions: list[str] = []
     observations: list[str] = []
+    numbers: list[dict[str, float | list[float | None]]] = []
     states = [await engine.world_state()] if with_states else []
     while True:
         ending = ending_of_belief(belief, len(actions), limits)
@@ -72,13 +75,15 @@ async def simulate_mission(
                 tuple(states),
                 Ending(world_ending) if world_ending else None,
                 believed_ending(belief, limits),
+                tuple(numbers) if any(numbers) else (),
             )
         step = await engine.step_world(plan.index)
         total += step.reward
         discounted += discount ** len(actions) * step.reward
         actions.append(plan.best.action)
         observations.append(step.response)
+        numbers.append(step.numbers)
         if with_states:
             states.append(await engine.world_state())
-        belief = (await engine.update(plan.best.action, step.response)).summary
+        belief = (await engine.update(plan.best.action, step.response, numbers=step.numbers)).summary
         world_ending = step.ending

@@ -2,7 +2,8 @@
 
 `declarations` looks at names and types, `model_code` at the C++ of environment and skills, `responses` at
 what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings,
-`endings` at what ends a mission, `unused` at what nothing mentions.
+`endings` at what ends a mission, `observed_numbers` at numbers beside responses, `unused` at what nothing
+mentions.
 """
 
 from __future__ import annotations
@@ -19,10 +20,16 @@ from aos_registry.check.given_observation import (
 )
 from aos_registry.check.mapping_code import check_low_level, check_mapping
 from aos_registry.check.model_code import check_environment_code, check_skill_code
+from aos_registry.check.observed_numbers import (
+    check_environment_reports,
+    check_observed_numbers,
+    check_reports,
+)
 from aos_registry.check.responses import check_responses
 from aos_registry.check.scope import Scope
 from aos_registry.check.unused import check_unused_locals, check_unused_variables
 from aos_registry.documents.source import Findings
+from aos_runtime.observed import reported_numbers
 
 __all__ = ["check"]
 
@@ -35,13 +42,16 @@ def check(assembly: Assembly, findings: Findings) -> None:
         check_environment_names(assembly.environment, scope, findings)
         check_environment_code(assembly.environment, scope, findings)
         check_endings(assembly.environment, findings)
+        check_environment_reports(assembly.environment, findings)
     for name, model in assembly.models.items():
         if assembly.environment is not None:
             check_skill_declarations(model, scope, findings)
         check_skill_code(model, scope, findings)
+        check_reports(model, findings)
         if name in assembly.mappings:
             check_responses(model, assembly.mappings[name], scope, findings)
             check_given_observation(model, assembly.mappings[name], findings)
+            check_observed_numbers(model, assembly.mappings[name], assembly.environment, findings)
     for name, mapping in assembly.mappings.items():
         before = len(findings)
         check_mapping(mapping, assembly.models.get(name), scope, findings)
@@ -60,4 +70,6 @@ def _told_to_model(mapping: AbstractionMapping, name: str, assembly: Assembly) -
     """The names of local variables that an update of the belief uses."""
     model, environment = assembly.models.get(name), assembly.environment
     named = names_in_given_observation(model) if model is not None else frozenset()
+    if model is not None:
+        named = named.union(number.name for number in reported_numbers(model))
     return named.union(told_variables(mapping, environment) if environment is not None else ())

@@ -27,7 +27,8 @@ __all__ = ["SPECIAL_NAMES", "check_environment_code", "check_skill_code", "read_
 
 SPECIAL_NAMES = frozenset({
     "__heuristicValue", "__isFailureState", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime",
-    "__moduleResponse", "__moduleResponseStr", "__possibleParameters", "__reward", "__stopEvaluatingState",
+    "__moduleResponse", "__moduleResponseStr", "__observed", "__possibleParameters", "__reward",
+    "__stopEvaluatingState",
 })  # fmt: skip
 _BUILT_INS = {
     "AOS": (

@@ -74,6 +74,9 @@ class Plan(msgspec.Struct, frozen=True):
         return self.actions[self.index]
 
 
+_ROUNDING = 1e-9
+
+
 class EngineFault(msgspec.Struct, frozen=True):
     """What model code did wrong; `piece` is the number of the piece that ran, 0 where none did."""
 
@@ -83,21 +86,33 @@ class EngineFault(msgspec.Struct, frozen=True):
 
 
 class BeliefUpdate(msgspec.Struct, frozen=True):
-    """The belief after an outcome; `probability` is P(observation | belief, action) before it.
+    """The belief after an outcome, and log P(observation | belief, action) before it.
 
-    `uncorrected` is why the local variables of the outcome did not correct it, `remark` that for people.
+    With numbers P is a density, in units of the numbers. `has_other_numbers` says that the model reports no
+    such numbers with that response, so that the response counted alone. `uncorrected` is why the local
+    variables of the outcome did not correct the belief, `remark` both for people.
     """
 
-    probability: float
+    log_probability: float
     is_impossible: bool
     summary: BeliefSummary
+    has_other_numbers: bool = False
     uncorrected: EngineFault | None = None
     remark: str = ""
 
     @property
+    def probability(self) -> float:
+        """P(observation | belief, action), or its density; 0 for an impossible observation."""
+        return 0.0 if self.is_impossible else math.exp(self.log_probability)
+
+    @property
     def surprise(self) -> float:
-        """-log P(observation | belief, action) in nats; 0 for an impossible one, which is marked as such."""
-        return 0.0 if self.is_impossible else max(0.0, -math.log(self.probability))
+        """-log P(observation | belief, action) in nats; 0 for an impossible one, which is marked as such.
+
+        Rounding makes no certain response surprising; a density may be above 1, and its surprise negative.
+        """
+        is_certain = abs(self.log_probability) < _ROUNDING
+        return 0.0 if self.is_impossible or is_certain else -self.log_probability
 
 
 class ExactValue(msgspec.Struct, frozen=True):
@@ -216,12 +231,22 @@ class WorldState(msgspec.Struct, frozen=True):
     state: str
 
 
-class WorldStep(msgspec.Struct, frozen=True):
-    """One step of the simulated world."""
+class EngineStep(msgspec.Struct, frozen=True):
+    """One step of the simulated world; its numbers are name, index and value."""
 
     reward: float
     response: str
     ending: str
+    numbers: tuple[tuple[int, int, float], ...] = ()
+
+
+class WorldStep(msgspec.Struct, frozen=True):
+    """One step of the simulated world; `numbers` are what was observed beside the response, by name."""
+
+    reward: float
+    response: str
+    ending: str
+    numbers: dict[str, float | list[float | None]] = {}
 
 
 class Worlds(msgspec.Struct, frozen=True):
@@ -237,12 +262,17 @@ class WorldSteps(msgspec.Struct, frozen=True):
     `endings` are bytes, 0 running, 1 goal, 2 failure, 3 over; `rewards` of type float64, `observations` of
     int32. The bytes of each array are as the machine has them. `texts` are empty unless the model has text
     observations.
+    The arrays of observed numbers have an entry for each of these: the world, of int32, the key, of uint32,
+    which is the name's place times 65536 and the index, and the value, of float64.
     """
 
     endings: bytes
     rewards: bytes
     observations: bytes
     texts: list[str]
+    number_worlds: bytes = b""
+    number_keys: bytes = b""
+    number_values: bytes = b""
 
 
 class SampleCount(msgspec.Struct, frozen=True):

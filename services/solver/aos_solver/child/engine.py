@@ -12,7 +12,7 @@ import logging
 import re
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
-from typing import Literal, Self, TypeVar
+from typing import Any, Literal, Self, TypeVar
 
 import msgspec
 
@@ -23,6 +23,7 @@ from aos_solver.child.answers import (
     BeliefUpdate,
     EngineDescription,
     EngineFault,
+    EngineStep,
     ExactValues,
     Explored,
     ExportedBelief,
@@ -39,8 +40,10 @@ from aos_solver.child.answers import (
 )
 from aos_solver.child.engine_child import EngineChild, EngineStart, ImpossiblePolicy, KilledError
 from aos_solver.child.local_values import UnusableLocals, local_values_line
+from aos_solver.child.observed_numbers import numbers_by_name, numbers_field
 from aos_solver.child.replay import at_its_statement
 from aos_solver.child.shared_memory import SharedMemory
+from aos_solver.emission.program import Observed
 
 __all__ = ["Engine", "ImpossiblePolicy", "Planner", "Stepping"]
 
@@ -119,6 +122,11 @@ class Engine:
         return self._built.emitted.digest
 
     @property
+    def observed(self) -> Mapping[str, tuple[Observed, ...]]:
+        """The numbers that skills report beside their responses, for those that do."""
+        return self._built.emitted.observed
+
+    @property
     def pid(self) -> int | None:
         """The guarded child's process id; None while there is no child."""
         return self._child.pid if self._child else None
@@ -185,18 +193,41 @@ class Engine:
         return await self._ask(f"predict\t{index}", Prediction)
 
     async def update(
-        self, action: str, response: str, local_variables: Mapping[str, str] | None = None
+        self,
+        action: str,
+        response: str,
+        local_variables: Mapping[str, str] | None = None,
+        numbers: Mapping[str, Any] | None = None,
     ) -> BeliefUpdate:
-        """Bayes' rule after an action and its observation.
+        """Bayes' rule after an action and its observation: a response, and the numbers reported beside it.
 
-        The local variables of a real outcome, as text, correct the belief where the skill's documents say so;
-        where they cannot, the belief is that of the response alone, and the update's remark says why.
+        The local variables of a real outcome, as text, correct the belief where the skill's documents say so.
+        The update's remark says why numbers or local variables could not be used.
         """
         if any(mark in response for mark in "\t\n"):
             raise ModelError(f"the response {response!r} has a tab or a line end in it", code="AOS310")
         index = self._index(action)
-        command = f"update\t{index}\t{response}"
-        wanted = self._built.emitted.locals.get(self.description.actions[index].skill)
+        skill = self.description.actions[index].skill
+        observed = self.observed.get(skill, ())
+        field = numbers_field(observed, numbers or {})
+        update = await self._corrected(action, f"update\t{index}\t{response}\t{field}", local_variables)
+        if not update.has_other_numbers:
+            return update
+        given = {**(numbers or {}), **(local_variables or {})}
+        told = ", ".join(f"{number.name} = {given.get(number.name, 'nothing')}" for number in observed)
+        remark = (
+            f"the numbers of {action} do not count ({told}): "
+            f"the model reports others with the response {response}"
+        )
+        log.warning("%s", remark)
+        remark = f"{remark}; {update.remark}" if update.remark else remark
+        return msgspec.structs.replace(update, remark=remark)
+
+    async def _corrected(
+        self, action: str, command: str, local_variables: Mapping[str, str] | None
+    ) -> BeliefUpdate:
+        """The answer to an update, with the local variables where the skill's documents want them."""
+        wanted = self._built.emitted.locals.get(self.description.actions[self._index(action)].skill)
         if wanted is None or local_variables is None:
             return await self._change_belief(command, BeliefUpdate)
         try:
@@ -256,9 +287,10 @@ class Engine:
 
     async def step_world(self, index: int) -> WorldStep:
         """Runs an action on the hidden state, by the model."""
-        step = await self._ask(f"step_world\t{index}", WorldStep)
+        step = await self._ask(f"step_world\t{index}", EngineStep)
         self._world.append(f"step_world\t{index}")
-        return step
+        observed = self.observed.get(self.description.actions[index].skill, ())
+        return WorldStep(step.reward, step.response, step.ending, numbers_by_name(observed, step.numbers))
 
     async def world_state(self) -> str:
         """The hidden state as text for people."""

@@ -17,7 +17,7 @@ import jinja2
 import msgspec
 
 from aos_protocol.diagnostics import Span
-from aos_solver.emission.program import Local, ObjectList, Piece, Program, Skill, Variable
+from aos_solver.emission.program import Local, ObjectList, Observed, Piece, Program, Skill, Variable
 
 __all__ = ["MODEL_FILE", "EmittedModel", "Origin", "emit"]
 
@@ -46,7 +46,8 @@ class EmittedModel(msgspec.Struct, frozen=True):
 
     `state_digest` is that of the declared state: models with the same can take over each other's beliefs.
     `locals` are the local variables that the engine wants with a real observation, for each skill whose
-    observations correct the belief. `choosing_skills` are those whose parameters stand for state variables.
+    observations correct the belief; `observed` are the numbers that a skill reports. `choosing_skills` are
+    those whose parameters stand for state variables.
     """
 
     project: str
@@ -57,6 +58,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
     pieces: tuple[Piece, ...]
     origins: dict[int, tuple[Origin, ...]]
     locals: dict[str, tuple[Local, ...]] = {}
+    observed: dict[str, tuple[Observed, ...]] = {}
     choosing_skills: frozenset[str] = frozenset()
 
     def locate(self, line: int, byte_column: int = 1) -> Span | None:
@@ -103,6 +105,7 @@ def emit(program: Program) -> EmittedModel:
         pieces=program.pieces,
         origins=origins,
         locals={skill.name: skill.locals for skill in program.skills if skill.is_corrected},
+        observed={skill.name: skill.observed for skill in program.skills if skill.observed},
         choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
     )
 

@@ -12,6 +12,7 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
 from aos_protocol.local_types import LocalType, local_type, told_variables
+from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import read_cpp_expression
 from aos_solver.emission.cpp_library import headers_for
 from aos_solver.emission.findings import Findings
@@ -38,7 +39,7 @@ from aos_solver.emission.lower_state import (
 )
 from aos_solver.emission.lower_types import Types, lower_enum
 from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
-from aos_solver.emission.program import Local, Parameter, Program, SpecialState
+from aos_solver.emission.program import Local, Observed, Parameter, Program, SpecialState
 from aos_solver.emission.program import Skill as LoweredSkill
 
 __all__ = ["lower"]
@@ -182,6 +183,7 @@ class _Lowering:
             rollout_policy=code.section(LOOKING, model.rollout_policy),
             given_observation=code.section(GIVEN, model.state_given_observation),
             told=told_variables(mapping, self._project.environment),
+            observed=tuple(Observed(number.name, number.is_array) for number in reported_numbers(model)),
             keeps_state=copies.keeps_state,
             keeps_state_=copies.keeps_state_,
         )

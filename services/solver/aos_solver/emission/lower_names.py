@@ -18,9 +18,10 @@ _OF_THE_LANGUAGE = frozenset({
 _OF_NAMESPACES = frozenset({"model"})
 """What no type can be called, and everything else can."""
 _OF_EMITTED_SKILLS = frozenset({
-    "Locals", "Parameters", "Response", "execution_time", "given_observation", "has_text_response",
-    "locals", "make_groundings", "next_state", "possible_parameters", "precondition", "read_locals",
-    "response_names", "rollout_policy", "violation_penalty",
+    "Locals", "Observed", "Parameters", "Response", "execution_time", "given_observation",
+    "has_text_response", "locals", "make_groundings", "next_state", "number_count",
+    "possible_parameters", "precondition", "read_locals", "response_names", "rollout_policy",
+    "violation_penalty",
 })  # fmt: skip
 _OF_EMITTED_ENVIRONMENTS = frozenset({
     "Chosen", "extrinsic_changes", "has_extrinsic_changes", "initial_belief", "is_one_state", "name_of",

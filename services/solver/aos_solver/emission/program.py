@@ -23,6 +23,7 @@ __all__ = [
     "Local",
     "Loop",
     "ObjectList",
+    "Observed",
     "Parameter",
     "ParameterValues",
     "Piece",
@@ -217,11 +218,19 @@ class Local(msgspec.Struct, frozen=True):
     kind: LocalType
 
 
+class Observed(msgspec.Struct, frozen=True):
+    """A number, or an array of numbers, that a skill reports beside its response."""
+
+    name: str
+    is_array: bool
+
+
 class Skill(msgspec.Struct, frozen=True):
     """A skill: its responses in the order of the mapping's rules, its parameters, its functions.
 
     `document` is the file that describes it. `told` are the local variables whose values a real observation
     tells to the state variables of their names, `locals` those and what `given_observation` uses.
+    `observed` are the numbers that it reports.
     `keeps_state` and `keeps_state_`: a step needs these copies of the state (see `lower_copies`).
     """
 
@@ -239,6 +248,7 @@ class Skill(msgspec.Struct, frozen=True):
     given_observation: Section | None = None
     locals: tuple[Local, ...] = ()
     told: tuple[str, ...] = ()
+    observed: tuple[Observed, ...] = ()
     keeps_state: bool = True
     keeps_state_: bool = True
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import msgspec
 
 from aos_protocol.documents import Snippet
+from aos_runtime.observed import reports_in
 from aos_runtime.snippets import Call, Cpp, Extent
 from aos_solver.emission.program import Edit
 from aos_solver.emission.rewrite_containers import container_edits
@@ -40,23 +41,33 @@ def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tupl
     - `AOSUtils::` becomes `AOSUtils.`
     - `state.<Type>Objects`, a view made on demand, gets its `()`
     - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
+    - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
     - objects and containers: see `rewrite_objects` and `rewrite_containers`
     """
-    edits: list[tuple[Extent | int, str]] = list(_of_mentions(cpp, rewriting))
+    reported = [report.draw for report in reports_in(cpp)]
+    edits: list[tuple[Extent | int, str]] = list(_of_mentions(cpp, rewriting, reported))
+    for draw in reported:
+        edits += _of_reported(draw)
     unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
     for start, end, text in unnamed:
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))
     for call in cpp.calls:
-        edits += _of_call(call, cpp.code, rewriting)
+        if call not in reported:
+            edits += _of_call(call, cpp.code, rewriting)
     # Last, since a bracket that goes to the same place has to come before it.
     edits += [(offset, ";") for offset in cpp.missing_semicolons]
     unique = list(dict.fromkeys(edits))
     return cpp.replace(unique), tuple(sorted(_placed(unique, cpp.code), key=lambda e: (e.line, e.column)))
 
 
-def _of_mentions(cpp: Cpp, rewriting: Rewriting) -> Iterator[tuple[Extent | int, str]]:
+def _of_mentions(
+    cpp: Cpp, rewriting: Rewriting, reported: Iterable[Call]
+) -> Iterator[tuple[Extent | int, str]]:
+    renamed = {draw.function.start for draw in reported}
     for mention in cpp.mentions:
+        if mention.root.start in renamed:
+            continue
         if scope := re.compile(r"AOSUtils\s*::").match(cpp.code, mention.root.start):
             yield _extent(cpp.code, scope.end() - 2, scope.end()), "."
         if mention.path[0] not in _STATES or len(mention.path) < 2:
@@ -69,6 +80,21 @@ def _of_mentions(cpp: Cpp, rewriting: Rewriting) -> Iterator[tuple[Extent | int,
             pattern = re.compile(rf"\s*(?:\.|->)\s*{name}\b(?!\s*\()")
             if found := pattern.match(cpp.code, after_root):
                 yield found.end(), "()"
+
+
+_DISTRIBUTIONS = {
+    "Bernoulli": "aos::Bernoulli",
+    "SampleDiscrete": "aos::Discrete",
+    "SampleNormal": "aos::Normal",
+    "SampleUniform": "aos::Uniform",
+}
+
+
+def _of_reported(draw: Call) -> Iterator[tuple[Extent | int, str]]:
+    """Of an enum's values the number is reported, whatever the enum is called."""
+    yield draw.function, _DISTRIBUTIONS[draw.name[1]]
+    if draw.name[1] == "SampleDiscrete" and len(draw.arguments) == 2:
+        yield draw.arguments[0], "aos::normalised"
 
 
 def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Extent | int, str]]:

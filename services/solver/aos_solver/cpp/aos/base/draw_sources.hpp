@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "aos/base/enumerator.hpp"
@@ -27,6 +28,10 @@ inline constexpr AnySource::Functions functions_of{
           return static_cast<Source*>(source)->choose(weights, count, total);
         },
     .uniform = [](void* source) { return static_cast<Source*>(source)->uniform(); },
+    .report =
+        [](void* source, std::uint32_t key, const Distribution& distribution) {
+          static_cast<Source*>(source)->report(key, distribution);
+        },
 };
 
 }  // namespace detail
@@ -56,6 +61,11 @@ double Enumerator::uniform() {
   if (chance_ == nullptr) throw NotEnumerable{"a draw is continuous"};
   if (depth_ == choices_.size()) choices_.push_back({0, none, no_alternatives, chance_->uniform()});
   return choices_[depth_++].value;
+}
+
+void Enumerator::report(std::uint32_t key, const Distribution& distribution) {
+  if (sink_ == nullptr) throw NotEnumerable{numbers_are_observed};
+  sink_->take(key, distribution);
 }
 
 double Enumerator::combinations() const {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -12,6 +14,7 @@ namespace aos {
 struct NotEnumerable {
   const char* reason;
 };
+inline constexpr const char* numbers_are_observed = "what is observed are numbers";
 
 inline constexpr int path_budget = 4096;
 
@@ -22,8 +25,8 @@ inline constexpr int path_budget = 4096;
 // ones, which usually decide what is observed, enumerated.
 class Enumerator : public Draws<Enumerator> {
  public:
-  // Of the path; given the draws that were left to chance.
-  double probability() const { return probability_; }
+  // Of the path; given the draws that were left to chance. With what its sink makes of the numbers that it reports.
+  double probability() const { return sink_ == nullptr ? probability_ : probability_ * sink_->weight(); }
 
   // How many choices are known of the path: all of the one before it that it shares.
   std::size_t draws() const { return choices_.size(); }
@@ -37,6 +40,10 @@ class Enumerator : public Draws<Enumerator> {
 
   int choose(const double* weights, int count, double total);
   double uniform();
+  // Numbers are not enumerated: without a sink that has another use for them this throws NotEnumerable.
+  void report(std::uint32_t key, const Distribution& distribution);
+  // Returns the sink before.
+  NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
   // Calls `run(enumerator)` once for each path; after it, `probability()` is the path's. Throws NotEnumerable.
   template <class Run>
@@ -105,6 +112,7 @@ class Enumerator : public Draws<Enumerator> {
   void run_once(Run& run) {
     depth_ = 0;
     probability_ = 1;
+    if (sink_ != nullptr) sink_->begin();
     run(*this);
   }
 
@@ -113,6 +121,7 @@ class Enumerator : public Draws<Enumerator> {
   double probability_ = 1;
   Sampler* chance_ = nullptr;
   std::size_t by_chance_ = 0;
+  NumberSink* sink_ = nullptr;
 };
 
 // Before a step along a path: what it takes, in draws. A large state costs as much to copy.

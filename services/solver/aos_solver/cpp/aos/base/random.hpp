@@ -8,11 +8,31 @@
 #include <cstdint>
 #include <initializer_list>
 #include <numbers>
+#include <utility>
 
 namespace aos {
 
 // Out of the way of the code that runs in every step.
 [[noreturn, gnu::cold]] void bad_weights(const char* text);
+
+// What the sum of weights may be off 1 and is still meant to be 1: single precision explains it.
+inline constexpr double weight_rounding = 1e-5;
+
+class Distribution;
+
+// What becomes of the numbers that a step reports: see observed_numbers.hpp.
+class NumberSink {
+ public:
+  // A step begins.
+  virtual void begin() {}
+  virtual void take(std::uint32_t key, const Distribution& distribution) = 0;
+  // What the step since `begin` counts for, as far as its numbers tell; 1 for every step unless `weighs`.
+  virtual double weight() { return 1; }
+  virtual bool weighs() const { return false; }
+
+ protected:
+  ~NumberSink() = default;
+};
 
 // The built-ins that document code calls on `AOS` and `AOSUtils`. A source gives `flag(probability)`,
 // `choose(weights, count, total)` with a positive total, and `uniform()`.
@@ -38,7 +58,7 @@ class Draws {
     Copied copied{weights};
     const double total = checked_total(copied.weights.data(), copied.count, /*may_be_zero=*/true);
     const double gap = 1 - total;
-    if (gap <= rounding) return source().choose(copied.weights.data(), copied.count, total);
+    if (gap <= weight_rounding) return source().choose(copied.weights.data(), copied.count, total);
     copied.append(gap);
     const int drawn = source().choose(copied.weights.data(), copied.count, 1.0);
     return drawn == copied.count - 1 ? -1 : drawn;
@@ -56,7 +76,6 @@ class Draws {
   bool IsInitialized(bool value) { return value; }
 
  private:
-  static constexpr double rounding = 1e-5;
   static constexpr int most_weights = 512;
 
   struct Copied {
@@ -123,6 +142,13 @@ class Sampler : public Draws<Sampler> {
   }
 
   bool flag(double probability) { return uniform() < probability; }
+  // Without a sink, numbers that are reported are not drawn.
+  void report(std::uint32_t key, const Distribution& distribution) {
+    if (sink_ != nullptr) sink_->take(key, distribution);
+  }
+  // Returns the sink before.
+  NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
+
   int choose(const double* weights, int count, double total) {
     double left = uniform() * total;
     int last = 0;
@@ -137,6 +163,7 @@ class Sampler : public Draws<Sampler> {
 
  private:
   std::array<std::uint64_t, 4> words_;
+  NumberSink* sink_ = nullptr;
 };
 
 class Enumerator;
@@ -148,6 +175,7 @@ class AnySource : public Draws<AnySource> {
     bool (*flag)(void* source, double probability);
     int (*choose)(void* source, const double* weights, int count, double total);
     double (*uniform)(void* source);
+    void (*report)(void* source, std::uint32_t key, const Distribution& distribution);
   };
 
   explicit AnySource(Sampler& sampler);
@@ -158,6 +186,7 @@ class AnySource : public Draws<AnySource> {
     return functions_.choose(source_, weights, count, total);
   }
   double uniform() { return functions_.uniform(source_); }
+  void report(std::uint32_t key, const Distribution& distribution) { functions_.report(source_, key, distribution); }
 
  private:
   void* source_;

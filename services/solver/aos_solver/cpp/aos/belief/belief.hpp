@@ -14,6 +14,7 @@
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/json.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/belief/marginals.hpp"
@@ -94,10 +95,10 @@ class Belief {
 
   // After an action, before any observation.
   Belief predicted(int action, Sampler& random) const {
-    return gathered(action, random, [](Observation) { return true; }).first;
+    return gathered(action, ignored_numbers, random, [](Observation) { return true; }).first;
   }
 
-  // How likely each observation is after an action, the likeliest first.
+  // How likely each response is after an action, whatever numbers come with it; the likeliest first.
   ObservationOdds observations(int action, Sampler& random) const {
     std::unordered_map<Observation, double> odds;
     const auto add = [&](const State&, Observation observation, double weight) {
@@ -106,10 +107,11 @@ class Belief {
     };
     double total = 1;
     try {
-      enumerate_outcomes<Model>(particles_, action, most_paths(), add);
+      enumerate_outcomes<Model>(particles_, action, ignored_numbers, most_paths(), add);
     } catch (const NotEnumerable&) {
       odds.clear();
-      total = DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, random}.draw(add, [&] { odds.clear(); });
+      total = DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, ignored_numbers, random}.draw(
+          add, [&] { odds.clear(); });
     }
     ObservationOdds sorted(odds.begin(), odds.end());
     for (auto& [observation, probability] : sorted) probability /= total;
@@ -119,9 +121,15 @@ class Belief {
     return sorted;
   }
 
-  // The posterior and the probability of the observation; an empty belief and 0 where that is impossible.
-  std::pair<Belief, double> posterior(int action, Observation observation, Sampler& random) const {
-    return gathered(action, random, [&](Observation seen) { return seen == observation; });
+  // The posterior and the logarithm of the observation's probability, which is a density where numbers were observed; an
+  // empty belief where that is impossible. `numbers` weighs each step by those that it reports.
+  template <class Numbers>
+  std::pair<Belief, double> posterior(int action, Observation response, Numbers& numbers, Sampler& random) const {
+    while (true) {
+      auto [belief, probability] =
+          gathered(action, numbers, random, [&](Observation seen) { return seen == response; });
+      if (!numbers.rescale()) return {std::move(belief), std::log(probability) + numbers.log_scale()};
+    }
   }
 
   // `share` of `other` and the rest of this one.
@@ -219,12 +227,13 @@ class Belief {
   // The outcomes whose observation is of use, as a belief, and their probability.
   //
   // Let two beliefs agree but for a share e of each. What was observed has probability p under this one, and so at least
-  // p - e under what they share: after it they agree but for e / p. Thinning out adds what it drops.
+  // p - e under what they share: after it they agree but for e / p. Thinning out adds what it drops. A density may be
+  // any number under the share: where numbers weigh, nothing is known of a belief that is not exact.
   template <class IsOfUse>
-  std::pair<Belief, double> gathered(int action, Sampler& random, IsOfUse&& is_of_use) const {
+  std::pair<Belief, double> gathered(int action, NumberSink& numbers, Sampler& random, IsOfUse&& is_of_use) const {
     Gathering<Model> gathering;
     const auto add = [&](const State& next, Observation seen, double weight) {
-      if (!is_of_use(seen)) return false;
+      if (!is_of_use(seen) || weight <= 0) return false;
       gathering.add(next, weight);
       return true;
     };
@@ -232,20 +241,22 @@ class Belief {
       if (is_thin()) throw NotEnumerable{"the states were drawn, and are few"};
       const std::size_t most = most_states(source_);
       double gone = 0;
-      enumerate_outcomes<Model>(particles_, action, most_paths(), [&](const State& next, Observation seen, double weight) {
+      const auto add_some = [&](const State& next, Observation seen, double weight) {
         add(next, seen, weight);
         if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
-      });
+      };
+      enumerate_outcomes<Model>(particles_, action, numbers, most_paths(), add_some);
       if (is_drawn() && gathering.size() < few_particles) throw NotEnumerable{"few of the drawn states agree"};
       gone += gathering.reduce(most, random);
       const double probability = gathering.total();
-      const double error_bound = probability > 0 ? (error_bound_ + gone) / probability : 0;
+      const double bound_before = error_bound_ > 0 && numbers.weighs() ? probability : error_bound_;
+      const double error_bound = probability > 0 ? (bound_before + gone) / probability : 0;
       return {followed(Belief{gathering, error_bound, source_}, action, random), probability};
     } catch (const NotEnumerable&) {
       gathering.clear();
     }
     const double drawn =
-        DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, random}.draw(add, [&] { gathering.clear(); });
+        DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, numbers, random}.draw(add, [&] { gathering.clear(); });
     const double probability = gathering.total() / drawn;
     gathering.reduce(particle_count, random);
     return {followed(Belief{gathering, 1, Source::drawing}, action, random), probability};

@@ -30,12 +30,15 @@ inline constexpr std::size_t scarce_particles = particle_count / 100;  // hardly
 inline constexpr std::size_t trials_per_mixture = 8;
 inline constexpr std::size_t trials_per_mixture_at_last = 2;
 
-// Calls `visit(next, observation, weight)` for every outcome of an action. Throws NotEnumerable where a step cannot be
-// enumerated, or where all together have more than `most_paths` paths, soon if the first states tell.
+// Calls `visit(next, observation, weight)` for every outcome of an action, whose numbers go to `numbers`. Throws
+// NotEnumerable where a step cannot be enumerated, or where all together have more than `most_paths` paths, soon if the
+// first states tell.
 template <class Model, class Visit>
-void enumerate_outcomes(const std::vector<Particle<Model>>& particles, int action, std::size_t most_paths, Visit&& visit) {
+void enumerate_outcomes(const std::vector<Particle<Model>>& particles, int action, NumberSink& numbers,
+                        std::size_t most_paths, Visit&& visit) {
   constexpr std::size_t telling = 64;
   Enumerator draws;
+  draws.report_to(&numbers);
   std::size_t paths = 0;
   std::size_t states = 0;
   for (const auto& [state, weight] : particles) {
@@ -68,12 +71,14 @@ class DrawnOutcomes {
 
   // `is_thin`: whether the states were drawn, and have become few.
   DrawnOutcomes(const std::vector<Particle<Model>>& particles, const Unobserved<Model>& unobserved, bool is_thin,
-                int action, Sampler& random)
+                int action, NumberSink& numbers, Sampler& random)
       : particles_(particles),
         unobserved_(unobserved),
         action_(action),
         random_(random),
-        trials_per_mixture_(is_thin ? trials_per_mixture : 0) {}
+        trials_per_mixture_(is_thin ? trials_per_mixture : 0) {
+    draws_.report_to(&numbers);
+  }
 
   // Calls `visit(next, observation, weight)`, which says whether it has a use for the outcome, and `restart()` where what
   // was visited so far is to be forgotten, as a better way was found. Returns the weight of all outcomes, visited ones and
@@ -192,7 +197,7 @@ class DrawnOutcomes {
     Step step;
     ++steps_;
     draws_.draw_path(random_, [&](Enumerator& path) { step = Model::step(next, action_, path); });
-    return visit(next, step.observation, 1.0) ? 1 : 0;
+    return visit(next, step.observation, draws_.probability()) ? 1 : 0;
   }
 
   template <class Visit>

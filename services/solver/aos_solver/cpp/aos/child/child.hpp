@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "aos/base/fault.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/child/bad_command.hpp"
 #include "aos/child/commands.hpp"
 #include "aos/model/blame.hpp"
@@ -32,13 +33,13 @@ namespace aos {
 
 namespace detail {
 
-inline std::vector<std::string_view> fields_of(std::string_view line) {
+inline std::vector<std::string_view> fields_of(std::string_view line, char separator = '\t') {
   std::vector<std::string_view> fields;
   for (;;) {
-    const auto tab = line.find('\t');
-    fields.push_back(line.substr(0, tab));
-    if (tab == std::string_view::npos) return fields;
-    line.remove_prefix(tab + 1);
+    const auto end = line.find(separator);
+    fields.push_back(line.substr(0, end));
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
   }
 }
 
@@ -58,6 +59,17 @@ template <class Number>
 std::vector<Number> numbers_from(const std::vector<std::string_view>& fields, std::size_t first) {
   std::vector<Number> numbers;
   for (std::size_t index = first; index < fields.size(); ++index) numbers.push_back(number_of<Number>(fields, index));
+  return numbers;
+}
+
+// Each as its name's number, its index and its value, all apart by spaces.
+inline ObservedNumbers observed_numbers_of(std::string_view text) {
+  const auto parts = text.empty() ? std::vector<std::string_view>{} : fields_of(text, ' ');
+  ObservedNumbers numbers;
+  for (std::size_t part = 0; part < parts.size(); part += 3) {
+    const auto key = number_key(number_of<std::uint32_t>(parts, part), number_of<std::uint32_t>(parts, part + 1));
+    if (!numbers.add(key, number_of<double>(parts, part + 2))) throw BadCommand{"a number is given twice"};
+  }
   return numbers;
 }
 
@@ -96,8 +108,9 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "propose_left_out") return engine.propose_left_out(json);
   if (command == "predict") return engine.predict(json, whole(1));
   if (command == "update") {
-    const bool has_locals = fields.size() > 3;
-    return engine.update(json, whole(1), fields.at(2), has_locals ? std::optional{fields[3]} : std::nullopt);
+    const bool has_locals = fields.size() > 4;
+    const auto locals = has_locals ? std::optional{fields[4]} : std::nullopt;
+    return engine.update(json, whole(1), fields.at(2), observed_numbers_of(fields.at(3)), locals);
   }
   if (command == "update_without_observation") return engine.update_without_observation(json, whole(1), real(2));
   if (command == "export_belief") {

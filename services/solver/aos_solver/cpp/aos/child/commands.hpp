@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "aos/base/clock.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/json.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/kept_beliefs.hpp"
 #include "aos/child/bad_command.hpp"
@@ -152,15 +154,27 @@ class Engine {
     json.member("limit", reached.limit()).end_object();
   }
 
-  // `locals`, where given, are the values of the mapping's local variables, and the belief is corrected with them; a fault
-  // in that is told with the answer, which is then that of the response alone.
-  void update(JsonWriter& json, int action, std::string_view response, std::optional<std::string_view> locals) {
+  // `numbers` were observed beside the response. Where no step of the model reports just these with it, the response
+  // counts alone. `locals`, where given, are the values of the mapping's local variables, and the belief is corrected with
+  // them; a fault in that is told with the answer, which is then that of the observation alone.
+  void update(JsonWriter& json, int action, std::string_view response, const ObservedNumbers& numbers,
+              std::optional<std::string_view> locals) {
     const Observation observation = observation_of(checked(action), response);
     Uncorrected uncorrected;
-    auto [posterior, probability] = locals ? corrected_posterior(action, observation, *locals, uncorrected)
-                                           : belief_.posterior(action, observation, random_);
+    const auto by = [&](auto&& sink) {
+      return locals ? corrected_posterior(action, observation, sink, *locals, uncorrected)
+                    : belief_.posterior(action, observation, sink, random_);
+    };
+    auto [posterior, log_probability] = by(WeighedNumbers{numbers});
+    bool has_other_numbers = false;
+    if (posterior.particles().empty() && Model::number_count(Model::skill_of(action)) > 0) {
+      WeighedNumbers reported{numbers, /*by_value=*/false};
+      has_other_numbers = belief_.posterior(action, observation, reported, random_).first.particles().empty();
+      if (has_other_numbers) std::tie(posterior, log_probability) = by(ignored_numbers);
+    }
     const bool is_impossible = posterior.particles().empty();
-    json.begin_object().member("probability", probability).member("is_impossible", is_impossible);
+    json.begin_object().member("log_probability", is_impossible ? 0 : log_probability);
+    json.member("is_impossible", is_impossible).member("has_other_numbers", has_other_numbers && !is_impossible);
     if (!uncorrected.code.empty()) {
       json.key("uncorrected").begin_object().member("code", uncorrected.code).member("text", uncorrected.text);
       json.member("piece", uncorrected.piece).end_object();
@@ -176,7 +190,7 @@ class Engine {
 
   // Nobody knows whether the action ran.
   void update_without_observation(JsonWriter& json, int action, double ran_probability) {
-    json.begin_object().member("probability", 1.0).member("is_impossible", false);
+    json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
     become(json.key("summary"), belief_.mixed_with(belief_.predicted(checked(action), random_), ran_probability));
     json.end_object();
   }
@@ -238,9 +252,13 @@ class Engine {
   }
 
   void step_world(JsonWriter& json, int action) {
+    RecordedNumbers recorded{world_random_};
+    const ReportingTo reporting{world_random_, recorded};
     const Step step = Model::step(hidden_, checked(action), world_random_);
     json.begin_object().member("reward", step.reward);
-    json.member("response", response_text(action, step.observation)).member("ending", ending_text(hidden_)).end_object();
+    json.member("response", response_text(action, step.observation)).member("ending", ending_text(hidden_));
+    write_numbers(json.key("numbers"), recorded.numbers());
+    json.end_object();
   }
 
   // The hidden state as text for people.
@@ -301,20 +319,21 @@ class Engine {
     std::uint32_t piece = 0;
   };
 
-  std::pair<Belief<Model>, double> corrected_posterior(int action, Observation observation, std::string_view locals,
-                                                       Uncorrected& uncorrected) {
+  template <class Numbers>
+  std::pair<Belief<Model>, double> corrected_posterior(int action, Observation observation, Numbers& numbers,
+                                                       std::string_view locals, Uncorrected& uncorrected) {
     try {
       Model::read_locals(action, locals);
       Corrected::made = observation;
-      const auto [posterior, probability] =
-          belief_.template as<Corrected>().posterior(action, observation, random_);
-      return {posterior.template as<Model>(), probability};
+      const auto [posterior, log_probability] =
+          belief_.template as<Corrected>().posterior(action, observation, numbers, random_);
+      return {posterior.template as<Model>(), log_probability};
     } catch (const ModelFault& fault) {
       uncorrected = {fault.code, fault.text, blame::piece()};
     } catch (const std::exception& error) {
       uncorrected = {"AOS215", error.what(), blame::piece()};
     }
-    return belief_.posterior(action, observation, random_);
+    return belief_.posterior(action, observation, numbers, random_);
   }
 
   // Takes over a belief and tells it. Nothing changes where it cannot be told.
@@ -361,6 +380,15 @@ class Engine {
     }
     if (response == default_observation_text) return default_observation;
     return text_observation(response);
+  }
+
+  // Each number as its name's number, its index and its value.
+  static void write_numbers(JsonWriter& json, const ObservedNumbers& numbers) {
+    json.begin_array();
+    for (const auto& [key, value] : numbers) {
+      json.begin_array().value(name_of_number(key)).value(index_of_number(key)).value(value).end_array();
+    }
+    json.end_array();
   }
 
   void write_predicted(JsonWriter& json, int action) {

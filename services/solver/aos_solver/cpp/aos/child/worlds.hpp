@@ -12,6 +12,7 @@
 
 #include "aos/base/base64.hpp"
 #include "aos/base/json.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 
@@ -48,17 +49,25 @@ class Worlds {
   std::size_t count() const { return worlds_.size(); }
 
   // One action for each world; a negative one starts the world anew. Arrays have an entry for each world and are told in
-  // base64; endings are of `Ending`.
+  // base64; endings are of `Ending`. Of the numbers that were observed there are the worlds, the keys and the values.
   void step(JsonWriter& json, const std::vector<std::int32_t>& actions) {
     rewards_.clear();
     observations_.clear();
     endings_.clear();
     texts_.clear();
-    for (std::size_t number = 0; number < worlds_.size(); ++number) advance(worlds_[number], actions[number]);
+    number_worlds_.clear();
+    number_keys_.clear();
+    number_values_.clear();
+    for (std::size_t number = 0; number < worlds_.size(); ++number) advance(number, actions[number]);
     json.begin_object().member("endings", to_base64(endings_)).member("rewards", to_base64(rewards_));
     json.member("observations", to_base64(observations_)).key("texts").begin_array();
     for (const std::string& text : texts_) json.value(text);
-    json.end_array().end_object();
+    json.end_array();
+    if (!number_keys_.empty()) {
+      json.member("number_worlds", to_base64(number_worlds_)).member("number_keys", to_base64(number_keys_));
+      json.member("number_values", to_base64(number_values_));
+    }
+    json.end_object();
   }
 
  private:
@@ -78,12 +87,20 @@ class Worlds {
     Model::initial(world.state, world.random);
   }
 
-  void advance(World& world, int action) {
+  void advance(std::size_t number, int action) {
+    World& world = worlds_[number];
     Step step;
     if (action < 0) {
       start(world);
     } else {
+      RecordedNumbers recorded{world.random};
+      const ReportingTo reporting{world.random, recorded};
       step = Model::step(world.state, action, world.random);
+      for (const auto& [key, value] : recorded.numbers()) {
+        number_worlds_.push_back(static_cast<std::int32_t>(number));
+        number_keys_.push_back(key);
+        number_values_.push_back(value);
+      }
     }
     rewards_.push_back(step.reward);
     endings_.push_back(static_cast<std::uint8_t>(Model::ending(world.state)));
@@ -104,6 +121,9 @@ class Worlds {
   std::vector<std::int32_t> observations_;
   std::vector<std::uint8_t> endings_;
   std::vector<std::string> texts_;
+  std::vector<std::int32_t> number_worlds_;
+  std::vector<NumberKey> number_keys_;
+  std::vector<double> number_values_;
 };
 
 }  // namespace aos

@@ -1,6 +1,7 @@
 // The compiled model behind the table, as the engine's templates want a model.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -43,6 +44,12 @@ struct ErasedModel {
   static int response_count(int skill) { return compiled_model.skills[skill].response_count; }
   static const char* response_name(int skill, int response) { return compiled_model.skills[skill].responses[response]; }
   static bool has_text_response(int skill) { return compiled_model.skills[skill].has_text_response; }
+  // How many numbers, and arrays of numbers, its steps may report besides a response.
+  static int number_count(int skill) { return compiled_model.skills[skill].number_count; }
+  static bool reports_numbers() {
+    return std::any_of(compiled_model.skills, compiled_model.skills + skill_count,
+                       [](const SkillFacts& skill) { return skill.number_count > 0; });
+  }
   static void write_parameters(int action, JsonWriter& json) {
     compiled_model.skills[skill_of(action)].write_parameters(grounded(action).parameters, json);
   }

@@ -36,6 +36,7 @@ struct SkillFacts {
   const char* const* responses;
   int response_count;
   bool has_text_response;
+  int number_count;  // of names that `__observed` has
   void (*write_parameters)(const void* parameters, JsonWriter& json);
   void (*read_locals)(std::string_view values);
 };
@@ -47,6 +48,7 @@ constexpr SkillFacts facts_of(const char* name) {
       .responses = Skill::response_names.data(),
       .response_count = static_cast<int>(Skill::response_names.size()),
       .has_text_response = Skill::has_text_response,
+      .number_count = Skill::number_count,
       .write_parameters =
           [](const void* parameters, JsonWriter& json) {
             write_json(json, *static_cast<const typename Skill::Parameters*>(parameters));

@@ -17,6 +17,7 @@
 #include "aos/model/grounding.hpp"
 #include "aos/model/model_table.hpp"
 #include "aos/model/reflection.hpp"
+#include "aos/model/reporting.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/text.hpp"

@@ -11,11 +11,14 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "aos/base/distribution_functions.hpp"
 #include "aos/base/draw_sources.hpp"
 #include "aos/base/fault.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/containers.hpp"
 #include "aos/model/grounding.hpp"
+#include "aos/model/reporting.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/text.hpp"
 #include "aos/model/transition.hpp"
@@ -31,6 +34,14 @@ void no_room(std::size_t size, std::size_t room) {
   throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
 }
 void bad_weights(const char* text) { throw ModelFault{"AOS215", text}; }
+void bad_distribution(const char* text) { throw ModelFault{"AOS215", text}; }
+void reported_twice(NumberKey key) {
+  const std::string element = "element " + std::to_string(index_of_number(key));
+  throw ModelFault{"AOS215", "a number of __observed is reported twice in one step (" + element + " if it is an array)"};
+}
+void no_such_element(std::ptrdiff_t index) {
+  throw ModelFault{"AOS215", "__observed has no element " + std::to_string(index)};
+}
 
 void Text::no_character(std::ptrdiff_t index, std::size_t size) {
   throw ModelFault{"AOS215", "character " + std::to_string(index) + " of a text of " + std::to_string(size) + " characters"};

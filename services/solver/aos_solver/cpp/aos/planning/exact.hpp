@@ -36,6 +36,7 @@ class ExactEvaluation {
 
   // The value of every action at a belief with so many decisions to go. Throws NotEnumerable where a limit is met.
   std::vector<double> action_values(const Belief<Model>& belief, int horizon) {
+    if (!space_.lists_observations()) throw NotEnumerable{numbers_are_observed};
     if (!belief.is_exact()) throw NotEnumerable{"the belief is only known by samples"};
     const Weighted root = space_.weights_of(belief);
     std::vector<double> values(space_.actions(), 0.0);

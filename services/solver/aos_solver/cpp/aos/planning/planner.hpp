@@ -135,6 +135,10 @@ class Planner {
   }
 
   PlannerKind suited_kind(const Belief<Model>& belief, Budget budget, int horizon) {
+    if (Model::reports_numbers()) {
+      why_ = numbers_are_observed;
+      return PlannerKind::pomcp;
+    }
     if (!space_.reach(belief)) {
       why_ = space_.obstacle();
       return PlannerKind::pomcp;

@@ -30,6 +30,7 @@ class PointBased {
   // nothing where it can. No budget counts what it takes for the first decision; later it is next to nothing.
   std::string prepare(const Belief<Model>& belief) {
     if (Model::action_count() == 0) return "there are no actions";
+    if (!space_.lists_observations()) return numbers_are_observed;
     if (Model::discount >= 1) return "without a discount there are no bounds to begin with";
     const auto entries = space_.weights_of(belief);
     running_ = belief.probability_of(Ending::running);

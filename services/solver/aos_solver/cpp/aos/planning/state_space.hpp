@@ -16,6 +16,7 @@
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
@@ -43,6 +44,7 @@ class StateSpace {
     rows_.discount = Model::discount;
     rows_.outcomes.first.push_back(0);
     rows_.readings.first.push_back(0);
+    draws_.report_to(&ignored_numbers);
   }
 
   // Lists what can be reached from a belief. Returns whether all of it is listed; `obstacle` tells why it is not.
@@ -79,6 +81,8 @@ class StateSpace {
   // Rewards and outcomes by state and action; without starts.
   const point_based::FlatModel& rows() const { return rows_; }
   const ObservationNumbers<Model>& observations() const { return observations_; }
+  // Whether all that can be observed is in the rows. Numbers that are observed beside a response are not.
+  static bool lists_observations() { return !Model::reports_numbers(); }
   bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
 
   // The running part of a belief, by number, ascending; weights as they are.

@@ -33,6 +33,7 @@ class StepTable {
 
   // Makes a table of a space in which the belief's states are listed. Returns whether the model is small enough.
   bool prepare(const StateSpace<Model>& space, const Belief<Model>& belief) {
+    if (!space.lists_observations()) return false;
     if (space.size() != listed_) list(space);
     if (!is_small_) return false;
     std::vector<typename AliasColumns<std::uint32_t>::Weighted> starts;

@@ -1,0 +1,19 @@
+"""An observation for people: the response, and the numbers that were reported beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+__all__ = ["observation_text"]
+
+
+def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
+    """`scanned (beams = 1.2 3.4, tilt = 0.12)`; a number that is missing in an array is a dash."""
+    told = ", ".join(f"{name} = {_numbers(value)}" for name, value in numbers.items())
+    return f"{response} ({told})" if told else response
+
+
+def _numbers(value: Any) -> str:
+    values = value if isinstance(value, list | tuple) else [value]
+    return " ".join("-" if each is None else f"{each:.4g}" for each in values)

@@ -1,0 +1,36 @@
+"""The numbers of an observation: values of the local variables that the skill's model reports."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import msgspec
+
+__all__ = ["observed_numbers"]
+
+
+def observed_numbers(names: Iterable[str], local_variables: Mapping[str, str]) -> dict[str, Any]:
+    """By name: a number, or a list of numbers with None for those that are missing.
+
+    A local variable that is none of these, as text in `local_variables`, was not observed.
+    """
+    values = {name: _decoded(local_variables.get(name, "null")) for name in names}
+    return {name: value for name, value in values.items() if _is_number(value) or _is_list(value)}
+
+
+def _decoded(text: str) -> Any:
+    """Plain data from JSON; other objects are told by their `repr`, and are no numbers."""
+    try:
+        return msgspec.json.decode(text)
+    except msgspec.DecodeError:
+        return None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, bool | int | float) and math.isfinite(value)
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, list) and all(item is None or _is_number(item) for item in value)

@@ -1,0 +1,175 @@
+// The numbers that a robot observes besides a response, and what becomes of the draws that a model reports them by.
+//
+// Nothing in a model can look at a number that it reports. So a source of draws need not draw it: where successors alone are
+// wanted it is left out, and where a number was given its density weighs the step.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "aos/base/distributions.hpp"
+#include "aos/base/fault.hpp"
+#include "aos/base/random.hpp"
+
+namespace aos {
+
+// A number's name among those of its skill, and its index where the name is one of an array.
+using NumberKey = std::uint32_t;
+inline constexpr int number_index_bits = 16;
+inline constexpr NumberKey number_key(std::uint32_t name, std::uint32_t index) { return name << number_index_bits | index; }
+inline constexpr std::uint32_t name_of_number(NumberKey key) { return key >> number_index_bits; }
+inline constexpr std::uint32_t index_of_number(NumberKey key) { return key & ((1u << number_index_bits) - 1); }
+
+struct ObservedNumber {
+  NumberKey key;
+  double value;
+  bool operator==(const ObservedNumber&) const = default;
+};
+
+// In the order of their keys. Which ones there are is part of what was observed.
+class ObservedNumbers {
+ public:
+  void clear() { numbers_.clear(); }
+  bool empty() const { return numbers_.empty(); }
+  std::size_t size() const { return numbers_.size(); }
+  const ObservedNumber& operator[](std::size_t place) const { return numbers_[place]; }
+  auto begin() const { return numbers_.begin(); }
+  auto end() const { return numbers_.end(); }
+  bool operator==(const ObservedNumbers&) const = default;
+
+  // Returns false where there is a number of this key already.
+  bool add(NumberKey key, double value) {
+    const auto place = numbers_.empty() || numbers_.back().key < key ? numbers_.end() : place_of(key);
+    if (place != numbers_.end() && place->key == key) return false;
+    numbers_.insert(place, {key, value});
+    return true;
+  }
+
+  std::uint64_t hash() const {
+    std::uint64_t hash = 0;
+    for (const auto& [key, value] : numbers_) {
+      for (const std::uint64_t part : {std::uint64_t{key}, std::bit_cast<std::uint64_t>(value)}) {
+        hash = std::rotl((hash ^ part) * 0x9e3779b97f4a7c15u, 29);
+      }
+    }
+    return hash;
+  }
+
+ private:
+  std::vector<ObservedNumber>::iterator place_of(NumberKey key) {
+    return std::lower_bound(numbers_.begin(), numbers_.end(), key,
+                            [](const ObservedNumber& number, NumberKey sought) { return number.key < sought; });
+  }
+  std::vector<ObservedNumber> numbers_;
+};
+
+[[noreturn, gnu::cold]] void reported_twice(NumberKey key);
+
+// Draws what a step reports.
+class RecordedNumbers final : public NumberSink {
+ public:
+  explicit RecordedNumbers(Sampler& random) : random_(random) {}
+  void begin() override { numbers_.clear(); }
+  void take(NumberKey key, const Distribution& distribution) override {
+    if (!numbers_.add(key, distribution.draw(random_))) reported_twice(key);
+  }
+  const ObservedNumbers& numbers() const { return numbers_; }
+
+ private:
+  Sampler& random_;
+  ObservedNumbers numbers_;
+};
+
+// Weighs each step by the density of the numbers that were observed. A step that reports others than these has weight 0.
+//
+// Densities of many numbers can be out of the range of a double. They are relative to a scale: where `rescale` returns
+// true, all steps have to be weighed again.
+class WeighedNumbers final : public NumberSink {
+ public:
+  // With `by_value` false it counts only which numbers a step reports, and not their values.
+  explicit WeighedNumbers(const ObservedNumbers& observed, bool by_value = true)
+      : observed_(observed), by_value_(by_value), is_taken_(observed.size(), false) {}
+
+  void begin() override {
+    std::fill(is_taken_.begin(), is_taken_.end(), false);
+    taken_ = 0;
+    has_others_ = false;
+    log_density_ = 0;
+  }
+  void take(NumberKey key, const Distribution& distribution) override {
+    std::size_t place = taken_;  // where it is if they are reported in the order of their keys
+    if (place >= observed_.size() || observed_[place].key != key) place = find(key);
+    if (place == observed_.size()) {
+      has_others_ = true;
+      return;
+    }
+    if (is_taken_[place]) reported_twice(key);
+    is_taken_[place] = true;
+    ++taken_;
+    if (by_value_) log_density_ += distribution.log_density(observed_[place].value);
+  }
+  // Of the step since `begin`.
+  double weight() override {
+    if (has_others_ || taken_ < observed_.size()) return 0;
+    highest_ = std::max(highest_, log_density_);
+    return std::exp(log_density_ - log_scale_);
+  }
+
+  bool weighs() const override { return observed_.size() > 0 && by_value_; }
+
+  double log_scale() const { return log_scale_; }
+  bool rescale() {
+    if (!std::isfinite(highest_) || std::abs(highest_ - log_scale_) < widest_range) return false;
+    log_scale_ = highest_;
+    return true;
+  }
+
+ private:
+  static constexpr double widest_range = 300;  // of an exponent that leaves room for sums and small probabilities
+
+  std::size_t find(NumberKey key) const {
+    std::size_t place = 0;
+    while (place < observed_.size() && observed_[place].key != key) ++place;
+    return place;
+  }
+
+  const ObservedNumbers& observed_;
+  bool by_value_;
+  std::vector<bool> is_taken_;
+  std::size_t taken_ = 0;
+  bool has_others_ = false;
+  double log_density_ = 0;
+  double highest_ = -std::numeric_limits<double>::infinity();
+  double log_scale_ = 0;
+};
+
+// For who wants successors, and what is observed without the numbers.
+class IgnoredNumbers final : public NumberSink {
+ public:
+  void take(NumberKey, const Distribution&) override {}
+  double log_scale() const { return 0; }
+  bool rescale() { return false; }
+};
+inline IgnoredNumbers ignored_numbers;
+
+// As long as this is there, what the source's steps report goes to a sink.
+template <class Source>
+class ReportingTo {
+ public:
+  ReportingTo(Source& source, NumberSink& sink) : source_(source), before_(source.report_to(&sink)) {}
+  ReportingTo(const ReportingTo&) = delete;
+  ReportingTo& operator=(const ReportingTo&) = delete;
+  ~ReportingTo() { source_.report_to(before_); }
+
+ private:
+  Source& source_;
+  NumberSink* before_;
+};
+
+}  // namespace aos

@@ -1,0 +1,43 @@
+// `__observed` of model code: what a distribution is given to is reported by the source of draws.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "aos/base/distributions.hpp"
+#include "aos/base/observed_numbers.hpp"
+
+namespace aos {
+
+[[noreturn, gnu::cold]] void no_such_element(std::ptrdiff_t index);
+
+// One number; or the element of an array.
+template <class Source>
+class ReportedNumber {
+ public:
+  ReportedNumber(Source& source, NumberKey key) : source_(source), key_(key) {}
+  void operator=(const Distribution& distribution) { source_.report(key_, distribution); }
+
+ private:
+  Source& source_;
+  NumberKey key_;
+};
+
+// An array of numbers.
+template <class Source>
+class ReportedNumbers {
+ public:
+  ReportedNumbers(Source& source, NumberKey first) : source_(source), first_(first) {}
+  ReportedNumber<Source> operator[](std::ptrdiff_t index) {
+    if (index < 0 || index >= std::ptrdiff_t{1} << number_index_bits) no_such_element(index);
+    return {source_, first_ + static_cast<NumberKey>(index)};
+  }
+  void push_back(const Distribution& distribution) { (*this)[count_++] = distribution; }
+
+ private:
+  Source& source_;
+  NumberKey first_;
+  std::ptrdiff_t count_ = 0;
+};
+
+}  // namespace aos

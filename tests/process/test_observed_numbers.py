@@ -1,0 +1,273 @@
+"""Observations that are numbers: beliefs against posteriors worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+from aos_protocol.errors import ModelError
+from aos_solver.child.engine import Engine
+from aos_solver.endings import MissionLimits
+from aos_solver.search import Search
+from aos_solver.simulation import simulate_mission
+
+ENVIRONMENT = """project: gauge
+horizon: 5
+discount: 0.9
+
+state_variable: int level
+
+state_variable: double place
+
+initial_belief:
+{belief}
+
+reward_code:
+__reward = 0;
+"""
+
+THREE_LEVELS = "state.level = AOSUtils::SampleDiscrete(vector<double>{0.5, 0.3, 0.2});"
+PRIOR = (0.5, 0.3, 0.2)
+
+
+def mapping(*locals_: str, responses: tuple[str, ...] = ("read",)) -> str:
+    """A mapping with these responses and local variables, each as `type name`."""
+    rules = [f"response: {name}\nresponse_rule: code == '{name}'" for name in responses]
+    variables = []
+    for kind, name in (local.split() for local in ("string code", *locals_)):
+        variables.append(
+            f"local_variable: {name}\ntype: {kind}\nfrom_ros_service_response: true\n"
+            f"code:\n{name} = __input.{name}\n"
+        )
+    activation = "module_activation: skill\npath: /look\n"
+    return "\n".join(["project: gauge", *rules, activation, *variables])
+
+
+def documents(dynamic_model: str, am: str, belief: str = THREE_LEVELS) -> dict[str, str]:
+    return {
+        "gauge.ef": ENVIRONMENT.format(belief=belief),
+        "look.sd": f"project: gauge\n\ndynamic_model:\n{dynamic_model}",
+        "look.am": am,
+    }
+
+
+def normal(value: float, mean: float, deviation: float) -> float:
+    return math.exp(-0.5 * ((value - mean) / deviation) ** 2) / (deviation * math.sqrt(2 * math.pi))
+
+
+def posterior(prior: Mapping[int, float], likelihood: Mapping[int, float]) -> tuple[dict[int, float], float]:
+    """Bayes' rule, and the density of what was observed."""
+    joint = {level: probability * likelihood[level] for level, probability in prior.items()}
+    density = sum(joint.values())
+    return {level: weight / density for level, weight in joint.items()}, density
+
+
+async def levels(engine: Engine) -> dict[int, float]:
+    """The engine's belief over the levels."""
+    summary = await engine.summary()
+    (values,) = (each.values for each in summary.marginals if each.variable == "level")
+    return {int(level): probability for level, probability in values.items()}
+
+
+async def test_a_sequence_of_normal_readings_gives_the_posterior_of_bayes_rule(cache_dir: Path) -> None:
+    """The noise depends on the state, so that both the mean and the deviation tell."""
+    files = documents(
+        "__moduleResponse = read;\n"
+        "__observed.depth = AOS.SampleNormal(2.0 * state.level, 1.0 + 0.5 * state.level);\n",
+        mapping("float depth"),
+    )
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        belief = dict(enumerate(PRIOR))
+        for depth in (1.3, -0.4, 2.9, 3.3):
+            likelihood = {level: normal(depth, 2.0 * level, 1.0 + 0.5 * level) for level in belief}
+            belief, density = posterior(belief, likelihood)
+            update = await engine.update("look", "read", numbers={"depth": depth})
+            assert update.summary.is_exact
+            assert update.probability == pytest.approx(density, rel=1e-9)
+            assert update.surprise == pytest.approx(-math.log(density), rel=1e-9)
+            assert await levels(engine) == pytest.approx(belief, abs=1e-9)
+
+
+EVERY_DRAW = """
+enum Shade { Dark, Dim, Bright };
+if (AOS.Bernoulli(0.1 * state.level)) {
+    __moduleResponse = blind;
+} else {
+    __moduleResponse = read;
+    __observed.warmth = AOS.SampleUniform(state.level - 1.0, 2.0 * state.level + 1.0);
+    __observed.shade = AOS.SampleDiscrete(Shade, {1.0, 1.0 + state.level, 2.0});
+    __observed.kind = AOSUtils::SampleDiscrete(vector<double>{0.2, 0.1 * state.level});
+    if (AOS.Bernoulli(0.5)) __observed.beeps = AOS.Bernoulli(0.3 + 0.2 * state.level);
+}
+"""
+
+
+@pytest.mark.parametrize(("kind", "beeps"), [(0, True), (1, False), (-1, None)])
+async def test_several_numbers_and_a_response_count_together(
+    kind: int, beeps: bool | None, cache_dir: Path
+) -> None:
+    """Discrete draws by their probability; also whether a number is reported tells something."""
+    files = documents(
+        EVERY_DRAW,
+        mapping("double warmth", "int shade", "int kind", "bool beeps", responses=("read", "blind")),
+    )
+    likelihood = {}
+    for level in range(3):
+        seen = 1 - 0.1 * level
+        warmth = 1 / (level + 2) if level - 1 <= 0.7 <= 2 * level + 1 else 0.0
+        shade = (1 + level) / (4 + level)
+        kinds = {0: 0.2, 1: 0.1 * level, -1: 0.8 - 0.1 * level}
+        beep = {True: 0.3 + 0.2 * level, False: 0.7 - 0.2 * level, None: 1.0}
+        likelihood[level] = seen * warmth * shade * kinds[kind] * 0.5 * beep[beeps]
+    expected, density = posterior(dict(enumerate(PRIOR)), likelihood)
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        numbers = {"warmth": 0.7, "shade": 1, "kind": kind, "beeps": beeps}
+        update = await engine.update("look", "read", numbers=numbers)
+        assert update.probability == pytest.approx(density, rel=1e-9)
+        assert await levels(engine) == pytest.approx({k: v for k, v in expected.items() if v}, abs=1e-9)
+        (prediction,) = [each.probability for each in (await engine.predict(0)).predicted[:1]]
+        assert prediction == pytest.approx(sum(p * (1 - 0.1 * level) for level, p in expected.items()))
+
+
+async def test_arrays_count_by_element_whatever_the_order_of_their_reports(cache_dir: Path) -> None:
+    files = documents(
+        "__moduleResponse = read;\n"
+        "for (int i = 3; i >= 0; i--) __observed.beams[i] = AOS.SampleNormal(state.level * i, 1.5);\n"
+        "for (int i = 0; i < 1 + state.level; i++) __observed.hits.push_back(AOS.Bernoulli(0.4));\n",
+        mapping("float[] beams", "bool[] hits"),
+    )
+    beams = [0.4, 1.7, 1.2, 4.4]
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        update = await engine.update("look", "read", numbers={"beams": beams, "hits": [True, False]})
+        # Only at level 1 there are two hits.
+        density = math.prod(normal(beam, i, 1.5) for i, beam in enumerate(beams)) * 0.4 * 0.6 * PRIOR[1]
+        assert update.probability == pytest.approx(density, rel=1e-9)
+        assert await levels(engine) == pytest.approx({1: 1.0})
+
+
+async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(cache_dir: Path) -> None:
+    """Their density is far below what a double can hold."""
+    files = documents(
+        "__moduleResponse = read;\n"
+        "for (int i = 0; i < 100; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 0.5);\n",
+        mapping("float[] beams"),
+    )
+    beams = [8.0 + 0.01 * i for i in range(100)]
+    logs = [
+        sum(-0.5 * ((beam - level) / 0.5) ** 2 - math.log(0.5 * math.sqrt(2 * math.pi)) for beam in beams)
+        + math.log(PRIOR[level])
+        for level in range(3)
+    ]
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        update = await engine.update("look", "read", numbers={"beams": beams})
+        total = max(logs) + math.log(sum(math.exp(each - max(logs)) for each in logs))
+        assert total < -7000
+        assert update.log_probability == pytest.approx(total, rel=1e-9)
+        assert await levels(engine) == pytest.approx({2: 1.0})
+
+
+async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Path) -> None:
+    """Both the state and what is reported are continuous, so particles are weighed by the density."""
+    files = documents(
+        "state__.place = state.place + AOS.SampleNormal(0.3, 0.4);\n"
+        "__moduleResponse = read;\n"
+        "__observed.sight = AOS.SampleNormal(state__.place, 0.5);\n",
+        mapping("double sight"),
+        belief="state.place = AOS.SampleNormal(0, 1);",
+    )
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        mean, variance = 0.0, 1.0
+        expected = told = 0.0
+        for sight in (0.1, 0.9, 0.5, 1.4, 2.0, 1.6):
+            mean, variance = mean + 0.3, variance + 0.16
+            expected += math.log(normal(sight, mean, math.sqrt(variance + 0.25)))
+            gain = variance / (variance + 0.25)
+            mean, variance = mean + gain * (sight - mean), (1 - gain) * variance
+            update = await engine.update("look", "read", numbers={"sight": sight})
+            told += update.log_probability
+        assert not update.summary.is_exact
+        assert told == pytest.approx(expected, abs=0.15)
+        belief = await engine.export_belief()
+        assert belief.states > 1000
+
+
+async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cache_dir: Path) -> None:
+    files = documents(
+        "if (state.level == 2) {\n    __moduleResponse = blind;\n    return;\n}\n"
+        "__moduleResponse = read;\n"
+        "__observed.depth = AOS.SampleUniform(state.level, state.level + 0.5);\n",
+        mapping("float depth", responses=("read", "blind")),
+    )
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        missing = await engine.update("look", "read", {"depth": "null", "code": '"read"'}, {})
+        assert not missing.is_impossible
+        assert missing.remark == (
+            "the numbers of look do not count (depth = null): the model reports others with the response read"
+        )
+        assert missing.probability == pytest.approx(0.8)
+        assert await levels(engine) == pytest.approx({0: 5 / 8, 1: 3 / 8})
+        impossible = await engine.update("look", "read", numbers={"depth": 0.7})
+        assert (impossible.is_impossible, impossible.remark) == (True, "")
+        await engine.reset_belief()
+        needless = await engine.update("look", "blind", numbers={"depth": 0.7})
+        assert "depth = 0.7" in needless.remark
+        assert await levels(engine) == pytest.approx({2: 1.0})
+
+
+async def test_simulated_worlds_give_numbers_that_their_belief_learns_from(cache_dir: Path) -> None:
+    files = documents(
+        "__moduleResponse = read;\n__observed.depth = AOS.SampleNormal(3.0 * state.level, 1.0);\n"
+        "__observed.beams.push_back(AOS.SampleUniform(0, 1));\n",
+        mapping("float depth", "float[] beams"),
+    )
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        limits = MissionLimits(goal_probability=0.9, step_limit=12)
+        run = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
+        again = await simulate_mission(engine, Search(simulations=100, seed=4), limits)
+        assert run == again
+        assert [sorted(numbers) for numbers in run.numbers] == [["beams", "depth"]] * 12
+        assert max((await levels(engine)).values()) > 0.999
+
+
+@pytest.mark.parametrize(
+    ("model", "why", "line"),
+    [
+        ("__observed.depth = AOS.SampleNormal(0, state.level);", "the deviation of a reported number", 6),
+        (
+            "__observed.depth = AOS.SampleNormal(0, 1);\nif (state.level == 1) "
+            "__observed.depth = AOS.SampleNormal(0, 1);",
+            "reported twice",
+            7,
+        ),
+        ("__observed.beams[state.level - 1] = AOS.Bernoulli(0.5);", "no element -1", 6),
+    ],
+)
+async def test_a_report_without_a_density_is_a_fault_at_its_statement(
+    model: str, why: str, line: int, cache_dir: Path
+) -> None:
+    files = documents(f"__moduleResponse = read;\n\n{model}\n", mapping("float depth", "bool[] beams"))
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        with pytest.raises(ModelError, match=why) as raised:
+            await engine.update("look", "read", numbers={"depth": 0.5, "beams": [True]})
+    assert raised.value.code == "AOS215"
+    (diagnostic,) = raised.value.diagnostics
+    assert (diagnostic.span.file, diagnostic.span.line) == ("look.sd", line)
+
+
+async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path) -> None:
+    files = documents(
+        "__moduleResponse = read;\n__observed.depth = AOS.SampleNormal(2.0 * state.level, 1.0);\n",
+        mapping("float depth"),
+    )
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        with pytest.raises(ModelError, match="what is observed are numbers") as raised:
+            await engine.exact()
+        assert raised.value.code == "AOS220"
+        with pytest.raises(ModelError, match="what is observed are numbers"):
+            await engine.explore(is_new=True, time_s=1)
+        plan = await engine.plan(seed=1, simulations=200, planner="auto")
+        assert plan.planner in ("pomcp", "despot")

@@ -1,0 +1,124 @@
+"""Numbers beside a response in the documents: how they are read, emitted, and taken from local variables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from scripted_models import bundle_project, json_text, lowered, mapping_text, text_project
+
+from aos_middleware.emit import emit_mapping
+from aos_middleware.observed_numbers import observed_numbers
+from aos_runtime.observed import misuses_of, reported_numbers, reports_in
+from aos_runtime.snippets import read_cpp
+from aos_solver.child.observed_numbers import numbers_by_name, numbers_field
+from aos_solver.emission.program import Observed
+
+DYNAMIC = """if (state.wet) __observed.depth = AOS.SampleNormal(2, 0.5);
+else __observed.depth = AOSUtils::SampleUniform(0, 1);
+for (int i = 0; i < 3; i++) { __observed.echoes[i] = AOS.SampleDiscrete(tRoom, {0.5, 0.5}); }
+__observed.echoes.push_back( AOSUtils::SampleDiscrete(vector<double>{1.0}) );
+switch (1) { case 1: __observed.loud = AOS.Bernoulli(0.2); }
+"""
+ENVIRONMENT = {
+    "GlobalVariableTypes": [{"TypeName": "tRoom", "Type": "enum", "EnumValues": ["eHall", "eLab"]}],
+    "GlobalVariablesDeclaration": [{"Name": "wet", "Type": "bool", "Default": "false"}],
+    "EnvironmentGeneral": {"Horizon": 5, "Discount": 0.9},
+}
+LOCALS = "".join(
+    f"local_variable: {name}\ntype: {kind}\nfrom_ros_service_response: true\n"
+    f"code:\n{name} = __input.{name}\n\n"
+    for name, kind in (("depth", "double"), ("echoes", "int[]"), ("loud", "bool"))
+)
+
+
+def test_reports_are_found_wherever_a_statement_may_stand() -> None:
+    cpp = read_cpp(DYNAMIC)
+    assert misuses_of(cpp) == ()
+    assert [(report.name, report.is_array, report.draw.name[1]) for report in reports_in(cpp)] == [
+        ("depth", False, "SampleNormal"),
+        ("depth", False, "SampleUniform"),
+        ("echoes", True, "SampleDiscrete"),
+        ("echoes", True, "SampleDiscrete"),
+        ("loud", False, "Bernoulli"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("code", "column"),
+    [
+        ("double x = __observed.depth;", 12),
+        ("f(__observed.depth);", 3),
+        ("double& x = __observed.depth;", 13),
+        ("__observed.depth++;", 1),
+        ("__observed.echoes.clear();", 1),
+        ("__observed->depth = AOS.Bernoulli(0.5);", 1),
+        ("__observed.depth = 3;", 20),
+        ("__observed.depth = max(0.0, AOS.SampleNormal(0, 1));", 20),
+        ("__observed.depth = other.SampleNormal(0, 1);", 20),
+        ("if (__observed.loud = AOS.Bernoulli(0.5)) return;", 5),
+        ("__observed.echoes.push_back(2 * AOS.SampleUniform(0, 1));", 29),
+    ],
+)
+def test_whatever_else_is_done_with_them_is_a_misuse(code: str, column: int) -> None:
+    (misuse,) = misuses_of(read_cpp(code))
+    assert misuse.extent.column == column
+    assert reports_in(read_cpp(code)) == ()
+
+
+@pytest.mark.parametrize("dialect", ["sdl", "json"])
+def test_a_reported_draw_is_emitted_as_its_distribution(dialect: str) -> None:
+    skill = {"DynamicModel": {"NextStateAssignments": [{"AssignmentCode": DYNAMIC.split("\n")}]}}
+    model = (
+        {"look.sd": f"project: test\n\ndynamic_model:\n{DYNAMIC}"}
+        if dialect == "sdl"
+        else {"look.json": json_text(skill, "PLP", "look")}
+    )
+    mapping = {"look.am": f"{mapping_text('seen')}\n{LOCALS}"}
+    project = text_project(
+        {"test.json": json_text(ENVIRONMENT, "Environment", "environment"), **model, **mapping}
+    )
+    assert [number.name for number in reported_numbers(project.skills[0].model)] == [
+        "depth", "echoes", "loud",
+    ]  # fmt: skip
+    emitted, _ = lowered(project)
+    for line in (
+        "if (state.wet) __observed.depth = aos::Normal(2, 0.5);",
+        "else __observed.depth = aos::Uniform(0, 1);",
+        "__observed.echoes[i] = aos::Discrete(aos::normalised, {0.5, 0.5});",
+        "__observed.echoes.push_back( aos::Discrete(vector<double>{1.0}) );",
+        "case 1: __observed.loud = aos::Bernoulli(0.2);",
+        "aos::ReportedNumber<Source> depth;",
+        "aos::ReportedNumbers<Source> echoes;",
+    ):
+        assert line in emitted.cpp
+    assert emitted.observed == {
+        "look": (Observed("depth", False), Observed("echoes", True), Observed("loud", False))
+    }
+    assert emit_mapping(project.skills[0]).observed == ("depth", "echoes", "loud")
+
+
+def test_a_model_that_reports_none_has_no_code_for_it(bundles: Path) -> None:
+    emitted, _ = lowered(bundle_project(bundles / "bench" / "tiger"))
+    assert "bserved" not in emitted.cpp.replace("__observed", "")
+    assert emitted.observed == {}
+
+
+def test_numbers_are_taken_from_local_variables_that_hold_some() -> None:
+    texts = {
+        "depth": "1.5", "level": "3", "loud": "true", "echoes": "[1.0, null, 2]", "none": "null",
+        "words": '"deep"', "odd": "<object object at 0x1>", "mixed": '[1, "a"]', "nested": "[[1]]",
+    }  # fmt: skip
+    assert observed_numbers([*texts, "unknown"], texts) == {
+        "depth": 1.5, "level": 3, "loud": True, "echoes": [1.0, None, 2],
+    }  # fmt: skip
+
+
+def test_numbers_go_to_an_engine_and_come_back_by_name() -> None:
+    observed = (Observed("depth", False), Observed("echoes", True), Observed("loud", False))
+    numbers = {"depth": 0.1, "echoes": [1, None, 2.5], "loud": None}
+    assert numbers_field(observed, numbers) == "0 0 0.1 1 0 1.0 1 2 2.5"
+    assert numbers_by_name(observed, [(0, 0, 0.1), (1, 0, 1.0), (1, 2, 2.5)]) == {
+        "depth": 0.1,
+        "echoes": [1.0, None, 2.5],
+    }
