@@ -115,8 +115,10 @@ class Regrets:
             self.longest[name] = max(self.longest[name], entry["longest"])
             self.used[name][entry["used"]] += 1
             if name != "look-ahead":
-                self.worst[name].append((entry["regret"] - reference, problem.name))
-                is_bad |= entry["regret"] - reference > WORST_TARGET or bool(entry["fault"])
+                # A model in which look-ahead itself goes wrong makes up for no other.
+                excess = max(entry["regret"] - reference, 0.0)
+                self.worst[name].append((excess, problem.name))
+                is_bad |= excess > WORST_TARGET or bool(entry["fault"])
         return is_bad
 
     def told(self, problem: Problem, answer: dict[str, Any]) -> str:
@@ -172,4 +174,12 @@ class Regrets:
         )
 
     def as_json(self) -> dict[str, Any]:
-        return {**dataclasses.asdict(self), "used": {name: dict(used) for name, used in self.used.items()}}
+        beyond = {name: [excess for excess, _ in found] for name, found in self.worst.items()}
+        return {
+            "regrets": self.regrets,
+            "beyond_look_ahead": {
+                name: {"mean": fmean(excesses), "worst": max(excesses)} for name, excesses in beyond.items()
+            },
+            "rejected": self.rejected,
+            "crashes": self.crashes,
+        }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <optional>
 #include <regex>
 #include <string>
@@ -28,7 +29,7 @@ namespace exam {
 struct ClaimOptions {
   std::uint64_t seed = 1;
   std::uint64_t simulations = 2000;  // of a search
-  double truth_seconds = 0.5;        // for each bracket
+  double truth_seconds = 1;          // for the brackets of a problem
   int steps = 4;                     // of the walk along which beliefs are looked at
 };
 
@@ -121,16 +122,17 @@ class Claims {
 
   void check_exact_values(const Belief& belief, const Mass& exact, double running) {
     aos::ExactEvaluation<TableModel> evaluation{3000, 0.05};
-    for (int decisions : {1, 3, problem_.horizon}) {
+    for (const int decisions : {1, 3, problem_.horizon}) {
       std::vector<double> values;
       try {
         values = evaluation.action_values(belief, decisions);
       } catch (const aos::NotEnumerable&) {
         return;
       }
-      Truth truth{flat_, decisions};
-      for (std::size_t action = 0; action < values.size(); ++action) {
-        truth.narrow_action(exact, action, decisions, 1e-7 * largest_, options_.truth_seconds / 10);
+      Truth& truth = with_end_.try_emplace(decisions, flat_, decisions).first->second;
+      for (std::size_t i = 0; i < std::min(values.size(), most_actions); ++i) {
+        const std::size_t action = values.size() <= most_actions ? i : choosing_.bits() % values.size();
+        within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4); });
         const Bracket bracket = truth.action_value(exact, action, decisions);
         check_within("exact value of action " + std::to_string(action), values[action],
                      {running * bracket.lower, running * bracket.upper}, 1e-7 * largest_);
@@ -161,7 +163,7 @@ class Claims {
   }
 
   void check_bounds(double lower, double upper, const Mass& exact, const std::string& why) {
-    without_end_->narrow(exact, 0, 1e-7 * largest_, options_.truth_seconds);
+    within_allowance([&](double seconds) { without_end_->narrow(exact, 0, 1e-7 * largest_, seconds / 2); });
     const Bracket bracket = without_end_->value(exact, 0);
     widest_ = std::max(widest_, bracket.gap() / largest_);
     const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
@@ -178,15 +180,24 @@ class Claims {
 
   // Of point-based search: what each action is worth at least.
   void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running) {
-    for (std::size_t action = 0; action < estimates.size(); ++action) {
+    for (std::size_t i = 0; i < std::min(estimates.size(), most_actions); ++i) {
+      const std::size_t action = estimates.size() <= most_actions ? i : choosing_.bits() % estimates.size();
       if (estimates[action].n == 0) continue;
-      without_end_->narrow_action(exact, action, 0, 1e-6 * largest_, options_.truth_seconds / 10);
+      within_allowance([&](double seconds) { without_end_->narrow_action(exact, action, 0, 1e-6 * largest_, seconds / 4); });
       const double upper = running * without_end_->action_value(exact, action, 0).upper;
       ++claims_;
       if (estimates[action].q > upper + 1e-8 * (largest_ + std::abs(upper))) {
         fail("lower value of action " + std::to_string(action), number(estimates[action].q), -INFINITY, upper);
       }
     }
+  }
+
+  // What narrows a bracket takes a part of the time that is left for the problem; brackets hold at any time.
+  template <class Narrow>
+  void within_allowance(Narrow&& narrow) {
+    const double before = processor_seconds();
+    if (allowance_ > 0) narrow(allowance_);
+    allowance_ -= processor_seconds() - before;
   }
 
   void check_states(std::size_t claimed, bool with_observations, const Mass& exact, const std::string& why) {
@@ -275,12 +286,17 @@ class Claims {
     return json.text();
   }
 
+  static constexpr std::size_t most_actions = 6;  // that are looked at where there are many
+
   const Problem& problem_;
   ClaimOptions options_;
   Flat flat_;
   aos::Sampler random_;
+  aos::Sampler choosing_{1};  // what is looked at where not all can be
   double largest_ = 0;
+  double allowance_ = options_.truth_seconds;
   std::optional<Truth> without_end_;
+  std::map<int, Truth> with_end_;  // by decisions
   std::unique_ptr<aos::point_based::OnlineSarsop> numbers_;
   int claims_ = 0;
   double widest_ = 0;

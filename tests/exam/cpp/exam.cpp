@@ -25,7 +25,7 @@ std::string report_of(const std::string& what, const exam::Problem& problem, con
     exam::ClaimOptions claims;
     claims.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
     claims.simulations = static_cast<std::uint64_t>(number_of(options, "simulations", 2000));
-    claims.truth_seconds = number_of(options, "truth", 0.5);
+    claims.truth_seconds = number_of(options, "truth", 1);
     claims.steps = static_cast<int>(number_of(options, "steps", 4));
     return exam::Claims{problem, claims}.report();
   }

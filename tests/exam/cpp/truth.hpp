@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <ctime>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -291,9 +292,13 @@ class Truth {
     for (std::size_t left = 1; left < layers_.size(); ++left) {
       Layer& bounds = layers_[left];
       for (std::size_t action = 0; action < flat_.actions(); ++action) {
-        blind[action] = once_more(action, blind[action]);
+        const std::vector<double> later = blind[action];
+        bounds.informed.push_back(nothing);
+        each_running([&](std::size_t state) {
+          blind[action][state] = once_more(state, action, later);
+          bounds.informed[action][state] = informed_once_more(state, action, layers_[left - 1].informed);
+        });
         bounds.alphas.push_back(blind[action]);
-        bounds.informed.push_back(informed_once_more(action, layers_[left - 1].informed));
       }
       bounds.corners = best_of(bounds.informed);
     }
@@ -310,64 +315,68 @@ class Truth {
       highest[state] = largest;
       lowest[state] = -largest;
     }
-    // Each pass keeps a bound a bound, so that they may end at any time.
-    for (int pass = 0; pass < 20'000; ++pass) {
-      std::vector<double> next = best_once_more(highest);
-      const bool is_settled = distance(next, highest) <= rounding_;
-      highest.swap(next);
-      if (is_settled) break;
-    }
+    // Each change keeps a bound a bound, so that passes may end at any time.
+    repeat(0.2, [&] {
+      double change = 0;
+      each_running([&](std::size_t state) {
+        double best = -std::numeric_limits<double>::infinity();
+        for (std::size_t action = 0; action < flat_.actions(); ++action) {
+          best = std::max(best, once_more(state, action, highest));
+        }
+        change = std::max(change, highest[state] - best);
+        highest[state] = std::min(highest[state], best);
+      });
+      return change;
+    });
     for (std::size_t action = 0; action < flat_.actions(); ++action) {
       std::vector<double> values = lowest;
-      for (int pass = 0; pass < 20'000; ++pass) {
-        std::vector<double> next = once_more(action, values);
-        const bool is_settled = distance(next, values) <= rounding_;
-        values.swap(next);
-        if (is_settled) break;
-      }
+      repeat(0.2 / static_cast<double>(flat_.actions()), [&] {
+        double change = 0;
+        each_running([&](std::size_t state) {
+          const double value = once_more(state, action, values);
+          change = std::max(change, value - values[state]);
+          values[state] = std::max(values[state], value);
+        });
+        return change;
+      });
       bounds.alphas.push_back(std::move(values));
     }
     bounds.informed.assign(flat_.actions(), highest);
-    for (int pass = 0; pass < 200; ++pass) {
-      std::vector<std::vector<double>> next;
-      for (std::size_t action = 0; action < flat_.actions(); ++action) {
-        next.push_back(informed_once_more(action, bounds.informed));
-        for (std::size_t state = 0; state < flat_.states(); ++state) {
-          next[action][state] = std::min(next[action][state], bounds.informed[action][state]);
-        }
-      }
+    repeat(0.2, [&] {
       double change = 0;
-      for (std::size_t action = 0; action < flat_.actions(); ++action) {
-        change = std::max(change, distance(next[action], bounds.informed[action]));
-      }
-      bounds.informed.swap(next);
-      if (change <= 1e-9 * largest) break;
-    }
+      each_running([&](std::size_t state) {
+        for (std::size_t action = 0; action < flat_.actions(); ++action) {
+          const double value = informed_once_more(state, action, bounds.informed);
+          change = std::max(change, bounds.informed[action][state] - value);
+          bounds.informed[action][state] = std::min(bounds.informed[action][state], value);
+        }
+      });
+      return change;
+    });
     bounds.corners = best_of(bounds.informed);
   }
 
-  static double distance(const std::vector<double>& one, const std::vector<double>& other) {
-    double largest = 0;
-    for (std::size_t i = 0; i < one.size(); ++i) largest = std::max(largest, std::abs(one[i] - other[i]));
-    return largest;
+  // Passes until nothing changes any more, or for so long.
+  template <class Pass>
+  void repeat(double seconds, Pass&& pass) const {
+    const double latest = processor_seconds() + seconds;
+    while (pass() > rounding_ && processor_seconds() < latest) {
+    }
+  }
+  template <class Use>
+  void each_running(Use&& use) const {
+    for (std::size_t state = 0; state < flat_.states(); ++state) {
+      if (flat_.problem().is_running(state)) use(state);
+    }
   }
 
   // The action, and then what `later` says.
-  std::vector<double> once_more(std::size_t action, const std::vector<double>& later) const {
-    std::vector<double> values(flat_.states(), 0.0);
-    for (std::size_t state = 0; state < flat_.states(); ++state) {
-      if (!flat_.problem().is_running(state)) continue;
-      values[state] = flat_.reward(state, action);
-      for (const Branch& branch : flat_.branches(state, action)) {
-        values[state] += flat_.discount() * branch.probability * later[branch.next];
-      }
+  double once_more(std::size_t state, std::size_t action, const std::vector<double>& later) const {
+    double value = flat_.reward(state, action);
+    for (const Branch& branch : flat_.branches(state, action)) {
+      value += flat_.discount() * branch.probability * later[branch.next];
     }
-    return values;
-  }
-  std::vector<double> best_once_more(const std::vector<double>& later) const {
-    std::vector<std::vector<double>> values;
-    for (std::size_t action = 0; action < flat_.actions(); ++action) values.push_back(once_more(action, later));
-    return best_of(values);
+    return value;
   }
   static std::vector<double> best_of(const std::vector<std::vector<double>>& values) {
     std::vector<double> best = values.front();
@@ -377,26 +386,22 @@ class Truth {
     return best;
   }
   // The state is seen now, and from the next step on only by observations.
-  std::vector<double> informed_once_more(std::size_t action, const std::vector<std::vector<double>>& later) const {
-    std::vector<double> values(flat_.states(), 0.0);
-    for (std::size_t state = 0; state < flat_.states(); ++state) {
-      if (!flat_.problem().is_running(state)) continue;
-      values[state] = flat_.reward(state, action);
-      const auto& branches = flat_.branches(state, action);
-      for (std::size_t first = 0; first < branches.size();) {
-        std::size_t last = first;
-        while (last < branches.size() && branches[last].observation == branches[first].observation) ++last;
-        double best = -std::numeric_limits<double>::infinity();
-        for (const auto& next : later) {
-          double sum = 0;
-          for (std::size_t i = first; i < last; ++i) sum += branches[i].probability * next[branches[i].next];
-          best = std::max(best, sum);
-        }
-        values[state] += flat_.discount() * best;
-        first = last;
+  double informed_once_more(std::size_t state, std::size_t action, const std::vector<std::vector<double>>& later) const {
+    double value = flat_.reward(state, action);
+    const auto& branches = flat_.branches(state, action);
+    for (std::size_t first = 0; first < branches.size();) {
+      std::size_t last = first;
+      while (last < branches.size() && branches[last].observation == branches[first].observation) ++last;
+      double best = -std::numeric_limits<double>::infinity();
+      for (const auto& next : later) {
+        double sum = 0;
+        for (std::size_t i = first; i < last; ++i) sum += branches[i].probability * next[branches[i].next];
+        best = std::max(best, sum);
       }
+      value += flat_.discount() * best;
+      first = last;
     }
-    return values;
+    return value;
   }
 
   const Flat& flat_;
