@@ -6,10 +6,17 @@ from __future__ import annotations
 
 import dataclasses
 import random
+from collections.abc import Callable, Sequence
 
 from .problem import Outcome, State, World
 
 __all__ = ["disguised"]
+
+Odds = Sequence[tuple[float, int]]
+"""Values with their probabilities."""
+
+Change = Callable[[int, int], Odds]
+"""What a value becomes by an action."""
 
 
 def disguised(random: random.Random, world: World) -> World:
@@ -45,32 +52,32 @@ def _in_other_units(random: random.Random, world: World) -> World:
 def _with_clock(random: random.Random, world: World) -> World:
     """Phases that go round and matter to nobody."""
     phases = random.randint(2, 5)
-    return _beside(world, "phase", [(1.0, 0)], lambda value, action: [(1.0, (value + 1) % phases)])
+    return _beside(random, world, "phase", [(1.0, 0)], lambda value, action: [(1.0, (value + 1) % phases)])
 
 
 def _with_dice(random: random.Random, world: World) -> World:
     """A number that is thrown at every step."""
     sides = random.randint(2, 3)
     thrown = [(1 / sides, value) for value in range(sides)]
-    return _beside(world, "dice", thrown, lambda value, action: thrown)
+    return _beside(random, world, "dice", thrown, lambda value, action: thrown)
 
 
 def _with_diary(random: random.Random, world: World) -> World:
     """What the robot did last, or whether it ever did something."""
     if random.random() < 0.5:
-        return _beside(world, "last", [(1.0, -1)], lambda value, action: [(1.0, action)])
-    return _beside(world, "ever", [(1.0, 0)], lambda value, action: [(1.0, max(value, int(action == 0)))])
+        return _beside(random, world, "last", [(1.0, -1)], lambda value, action: [(1.0, action)])
+    return _beside(random, world, "ever", [(1.0, 0)], lambda value, action: [(1.0, max(value, int(action == 0)))])
 
 
 def _with_label(random: random.Random, world: World) -> World:
     """A hidden number that never changes and that nobody reads."""
     values = random.randint(2, 4)
     odds = [(1 / values, value) for value in range(values)]
-    return _beside(world, "label", odds, lambda value, action: [(1.0, value)])
+    return _beside(random, world, "label", odds, lambda value, action: [(1.0, value)])
 
 
-def _beside(world, name, starts, change):  # type: ignore[no-untyped-def]
-    """A world and a variable that changes by itself."""
+def _beside(random: random.Random, world: World, name: str, starts: Odds, change: Change) -> World:
+    """A world and a variable that changes by itself; the engine may be told that it does not matter."""
 
     def step(state: State, action: int) -> list[Outcome]:
         return [
@@ -86,4 +93,5 @@ def _beside(world, name, starts, change):  # type: ignore[no-untyped-def]
         variables=(*world.variables, name),
         starts=[(odds * more, (*state, value)) for odds, state in world.starts for more, value in starts],
         step=step,
+        irrelevant=[len(world.variables)] if random.random() < 0.5 else (),
     )

@@ -43,6 +43,8 @@ class World:
     actions: Sequence[str]
     starts: Sequence[tuple[float, State]]
     step: Callable[[State, int], Iterable[Outcome]]
+    irrelevant: Sequence[int] = ()
+    """Variables that do not matter, and of which the engine is told so."""
 
 
 class TooLarge(Exception):
@@ -68,6 +70,7 @@ class Problem:
             f"discount {world.discount!r} horizon {world.horizon} actions {len(world.actions)}",
             f"variables {len(world.variables)} states {len(self.states)}",
             f"sensings {len(self.sensings)} starts {len(self.starts)}",
+            " ".join(map(str, ("irrelevant", len(world.irrelevant), *world.irrelevant))),
         ]
         words += [" ".join(map(str, (*state, ending))) for state, ending in self.states]
         words += [_row((seen, repr(odds)) for seen, odds in sensing) for sensing in self.sensings]

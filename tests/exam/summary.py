@@ -50,7 +50,7 @@ class Bounds:
         lines = [
             f"{problem.name} ({answer['states']} states), {finding['where']}: {_kind(finding)}: {finding['said']}; "
             f"it is between {_number(finding['lower'])} and {_number(finding['upper'])}"
-            for finding in answer["false"][:3]
+            for finding in sorted(answer["false"], key=_is_rounding)[:3]
         ]
         more = len(answer["false"]) - len(lines)
         return "\n".join([*lines, f"  and {more} more"] if more > 0 else lines)
@@ -75,9 +75,12 @@ class Bounds:
 
 
 def _kind(finding: dict[str, Any]) -> str:
-    claim = "exact value" if finding["claim"].startswith("exact value") else finding["claim"]
-    claim = "lower value" if claim.startswith("lower value") else claim
+    claim = finding["claim"].partition(" of action")[0]
     return f"{claim} by {finding['who']}" if finding["who"] else claim
+
+
+def _is_rounding(finding: dict[str, Any]) -> bool:
+    return finding["claim"] in ("bounds as printed", "bounds cross by rounding")
 
 
 def _number(value: float | None) -> str:

@@ -14,8 +14,8 @@
 namespace exam {
 
 // The running states that can be reached from a belief, by the coarsest partition whose states earn the same, lead to the
-// same parts, and, where observations count, by the same observations. Whoever takes fewer apart, changes the model.
-inline std::size_t told_apart(const Flat& flat, const Mass& from, bool with_observations) {
+// same parts by the same observations. Whoever takes fewer apart, changes the model.
+inline std::size_t told_apart(const Flat& flat, const Mass& from) {
   std::vector<char> is_reached(flat.states(), 0);
   std::vector<std::uint32_t> found;
   const auto reach = [&](std::uint32_t state) {
@@ -37,7 +37,7 @@ inline std::size_t told_apart(const Flat& flat, const Mass& from, bool with_obse
       for (std::size_t action = 0; action < flat.actions(); ++action) {
         std::map<std::pair<int, std::uint32_t>, double> leads_to;
         for (const Branch& branch : flat.branches(state, action)) {
-          leads_to[{with_observations ? branch.observation : 0, part[branch.next]}] += branch.probability;
+          leads_to[{branch.observation, part[branch.next]}] += branch.probability;
         }
         signature.push_back(std::llround(1e6 * flat.reward(state, action)));
         for (const auto& [key, probability] : leads_to) {

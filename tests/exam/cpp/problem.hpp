@@ -4,7 +4,8 @@
 //
 // The text is a sequence of words, in this order:
 //   problem NAME
-//   discount D  horizon H  actions A  variables K  states S  sensings N  starts B
+//   discount D  horizon H  actions A  variables K  states S  sensings N  starts B  irrelevant I
+//   each of the I variables of which it is said that they do not matter
 //   of each state its K variables and its ending (0 running, 1 goal, 2 failure, 3 over)
 //   of each sensing the number of its readings, and of each its observation and its probability
 //   of each start its state and its probability
@@ -46,6 +47,7 @@ struct Problem {
   int horizon = 0;
   std::size_t actions = 0;
   std::size_t variables = 0;
+  std::vector<std::size_t> irrelevant;  // variables that do not matter, and of which the engine is told so
   std::vector<int> values;   // of the variables, state by state
   std::vector<int> endings;  // of the states; 0 runs
   std::vector<std::vector<Reading>> sensings;
@@ -98,6 +100,8 @@ inline std::optional<Problem> read_problem(std::istream& in) {
   const auto states = words.named<std::size_t>("states");
   problem.sensings.resize(words.named<std::size_t>("sensings"));
   problem.starts.resize(words.named<std::size_t>("starts"));
+  problem.irrelevant.resize(words.named<std::size_t>("irrelevant"));
+  for (std::size_t& variable : problem.irrelevant) variable = words.next<std::size_t>();
   for (std::size_t state = 0; state < states; ++state) {
     for (std::size_t i = 0; i < problem.variables; ++i) problem.values.push_back(words.next<int>());
     problem.endings.push_back(words.next<int>());

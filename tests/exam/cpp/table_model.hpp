@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,7 +55,12 @@ struct TableModel {
     for (std::size_t sensing = 0; sensing < problem.sensings.size(); ++sensing) {
       for (const Reading& reading : problem.sensings[sensing]) {
         weights_[problem.rows.size() + sensing].push_back(reading.probability);
+        while (reading.observation >= response_count(0)) responses_.push_back("o" + std::to_string(responses_.size()));
       }
+    }
+    irrelevant_.clear();
+    for (const std::size_t variable : problem.irrelevant) {
+      irrelevant_.push_back({offsetof(State, variables) + 2 * variable, sizeof(std::int16_t)});
     }
     start_weights_.clear();
     for (const Start& start : problem.starts) start_weights_.push_back(start.probability);
@@ -70,7 +76,7 @@ struct TableModel {
     }
   }
 
-  // Of a state of the problem; the engine tries others, too, of which a model need not make sense.
+  // Of a state of the problem; there are no others.
   static std::uint32_t number_of(const State& state) {
     const std::size_t number = slots_[slot_of(state)];
     if (number == none) throw aos::ModelFault{"AOS215", "a state that the exam's model does not have"};
@@ -79,6 +85,9 @@ struct TableModel {
 
   static void prepare() {}
   static int action_count() { return static_cast<int>(problem_->actions); }
+  static int skill_of(int) { return 0; }
+  static int response_count(int) { return static_cast<int>(responses_.size()); }
+  static const char* response_name(int, int response) { return responses_[static_cast<std::size_t>(response)].c_str(); }
   static aos::Ending ending(const State& state) { return state.ending; }
   static std::uint64_t hash(const State& state) {
     std::uint64_t words[sizeof state / 8];
@@ -87,6 +96,7 @@ struct TableModel {
     for (const std::uint64_t word : words) hash = aos::mixed(hash, word);
     return hash;
   }
+  static std::span<const aos::ByteRange> irrelevant() { return irrelevant_; }
   static std::size_t state_bytes() { return sizeof(State); }
   static std::string state_text(const State& state) { return std::to_string(number_of(state)); }
 
@@ -158,6 +168,8 @@ struct TableModel {
   }
 
   inline static const Problem* problem_ = nullptr;
+  inline static std::vector<aos::ByteRange> irrelevant_;
+  inline static std::vector<std::string> responses_;
   inline static std::vector<State> states_;
   inline static std::vector<std::size_t> slots_;
   inline static std::vector<std::vector<double>> weights_;  // of the rows, then of the sensings
