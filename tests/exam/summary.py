@@ -71,7 +71,8 @@ class Bounds:
         return not self.false and not self.crashes
 
     def as_json(self) -> dict[str, Any]:
-        return dataclasses.asdict(self)
+        counts = {"models": self.models, "claims": self.claims, "false": self.false, "planners": self.planners}
+        return {**counts, "false_models": self.false_models, "crashes": self.crashes}
 
 
 def _kind(finding: dict[str, Any]) -> str:

@@ -158,7 +158,7 @@ class Claims {
     static const std::regex listed{"([0-9]+) states can be listed"};
     std::smatch found;
     if (std::regex_search(why, found, worth) && without_end_) {
-      check_bounds(std::stod(found[1]), std::stod(found[2]), exact, why);
+      check_bounds(std::stod(found[1]), std::stod(found[2]), exact, running, why);
       if (planner.name() == std::string{"sarsop"}) check_lower_values(planner.estimates(belief), exact, running);
     }
     if (std::regex_search(why, found, listed)) check_states(std::stoul(found[1]), exact, why);
@@ -170,9 +170,11 @@ class Claims {
     who_.clear();
   }
 
-  void check_bounds(double lower, double upper, const Mass& exact, const std::string& why) {
+  // Of a belief of which `running` has not ended; the rest is worth nothing.
+  void check_bounds(double lower, double upper, const Mass& exact, double running, const std::string& why) {
     within_allowance([&](double seconds) { without_end_->narrow(exact, 0, 1e-7 * largest_, seconds / 2); });
-    const Bracket bracket = without_end_->value(exact, 0);
+    Bracket bracket = without_end_->value(exact, 0);
+    bracket = {running * bracket.lower, running * bracket.upper};
     widest_ = std::max(widest_, bracket.gap() / largest_);
     const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
     ++claims_;
@@ -261,7 +263,7 @@ class Claims {
     if (numbers_->move_to({exact.begin(), exact.end()})) {
       numbers_->improve(options_.simulations, [] { return false; });
       const auto [lower, upper] = numbers_->bounds();
-      check_bounds(lower, upper, exact, "between " + number(lower) + " and " + number(upper));
+      check_bounds(lower, upper, exact, 1, "between " + number(lower) + " and " + number(upper));
     }
     who_.clear();
   }
