@@ -1,0 +1,319 @@
+// What the engine claims of a model, held against the truth: beliefs, exact values, states that matter, bounds.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <regex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aos/base/json.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/planning/exact.hpp"
+#include "aos/planning/planner.hpp"
+#include "bisimulation.hpp"
+#include "flat.hpp"
+#include "point_based/online.hpp"
+#include "problem.hpp"
+#include "table_model.hpp"
+#include "truth.hpp"
+
+namespace exam {
+
+struct ClaimOptions {
+  std::uint64_t seed = 1;
+  std::uint64_t simulations = 2000;  // of a search
+  double truth_seconds = 1;          // for the brackets of a problem
+  int steps = 4;                     // of the walk along which beliefs are looked at
+};
+
+class Claims {
+ public:
+  using Belief = aos::Belief<TableModel>;
+  using Planner = aos::Planner<TableModel>;
+
+  Claims(const Problem& problem, ClaimOptions options)
+      : problem_(problem), options_(options), flat_(problem), random_(options.seed) {
+    TableModel::take(problem);
+    largest_ = std::max(flat_.largest_reward(), 1e-9);
+  }
+
+  // The report of one problem as a JSON object.
+  std::string report() {
+    const auto [start, running] = flat_.start();
+    Belief belief = Belief::initial(random_);
+    Mass exact = start;
+    double known_running = running;
+    if (problem_.discount < 1) without_end_.emplace(flat_, 0);
+    Planner automatic;
+    Planner point_based;
+    start_numbers(start);
+    for (int step = 0; step <= options_.steps && !exact.empty(); ++step) {
+      where_ = "step " + std::to_string(step);
+      check_belief(belief, exact, known_running);
+      check_exact_values(belief, exact, known_running);
+      check_planner(aos::PlannerKind::automatic, automatic, belief, exact, known_running);
+      if (problem_.discount < 1) check_planner(aos::PlannerKind::sarsop, point_based, belief, exact, known_running);
+      check_numbers(exact);
+      if (step == options_.steps) break;
+      const int action = random_.below(TableModel::action_count());
+      std::vector<Reached> reached = flat_.reached(exact, static_cast<std::size_t>(action));
+      if (reached.empty()) break;
+      const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(reached.size())));
+      const int seen = reached[chosen].observation;
+      const auto [posterior, probability] = belief.posterior(action, seen, random_);
+      const double ended = ended_and_seen(belief, exact, action, seen);
+      check("posterior", posterior.particles().empty() ? 0 : probability, known_running * reached[chosen].probability + ended,
+            1e-9 + belief.error_bound());
+      if (posterior.particles().empty()) break;
+      known_running = known_running * reached[chosen].probability / (known_running * reached[chosen].probability + ended);
+      belief = posterior;
+      exact = reached[chosen].belief;
+      automatic.move_to(action, seen);
+      point_based.move_to(action, seen);
+    }
+    return text();
+  }
+
+ private:
+  // Claims --------------------------------------------------------------------------------------------------------------
+
+  // The belief that the mission has ended keeps its observations to itself: how likely `seen` is with an ending.
+  double ended_and_seen(const Belief& belief, const Mass& exact, int action, int seen) const {
+    double ended = 0;
+    for (const auto& [state, weight] : belief.particles()) {
+      if (state.ending != aos::Ending::running && seen == aos::default_observation) ended += weight;
+    }
+    const double running = belief.probability_of(aos::Ending::running);
+    for (const auto& [state, weight] : exact) {
+      for (const Outcome& outcome : problem_.row(state, static_cast<std::size_t>(action))) {
+        if (problem_.is_running(outcome.next)) continue;
+        for (const Reading& reading : problem_.sensings[outcome.sensing]) {
+          if (reading.observation == seen) ended += running * weight * outcome.probability * reading.probability;
+        }
+      }
+    }
+    return ended;
+  }
+
+  void check_belief(const Belief& belief, const Mass& exact, double running) {
+    std::map<std::uint32_t, double> difference;
+    double ended = 0;
+    for (const auto& [state, weight] : belief.particles()) {
+      if (state.ending == aos::Ending::running) {
+        difference[TableModel::number_of(state)] += weight;
+      } else {
+        ended += weight;
+      }
+    }
+    for (const auto& [state, weight] : exact) difference[state] -= running * weight;
+    double distance = std::abs(ended - (1 - running));
+    for (const auto& entry : difference) distance += std::abs(entry.second);
+    ++claims_;
+    const double claimed = belief.error_bound();
+    if (distance / 2 > claimed + 1e-9) fail("belief", "total variation within " + number(claimed), distance / 2, distance / 2);
+  }
+
+  void check_exact_values(const Belief& belief, const Mass& exact, double running) {
+    aos::StateSpace<TableModel> space;
+    if (!space.reach(belief)) return;
+    for (const int decisions : {1, 3, problem_.horizon}) {
+      aos::ExactEvaluation<TableModel> evaluation{space, {.beliefs = 3000, .outcomes = 1'000'000}};
+      try {
+        check_action_values("exact value of action ", evaluation.action_values(belief, decisions), exact, running, decisions);
+      } catch (const aos::NotEnumerable&) {
+        return;
+      }
+    }
+  }
+
+  void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact, double running,
+                           int decisions) {
+    Truth& truth = with_end_.try_emplace(decisions, flat_, decisions).first->second;
+    for (std::size_t i = 0; i < std::min(values.size(), most_actions); ++i) {
+      const std::size_t action = values.size() <= most_actions ? i : choosing_.bits() % values.size();
+      within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4); });
+      const Bracket bracket = truth.action_value(exact, action, decisions);
+      check_within(claim + std::to_string(action), values[action], {running * bracket.lower, running * bracket.upper},
+                   1e-8 * (largest_ + std::abs(bracket.upper)));
+    }
+  }
+
+  void check_planner(aos::PlannerKind kind, Planner& planner, const Belief& belief, const Mass& exact, double running) {
+    aos::Sampler random{options_.seed + 17};
+    aos::Budget budget;
+    budget.simulations = options_.simulations;
+    planner.search(kind, belief, budget, problem_.horizon, random);
+    const std::string asked = kind == aos::PlannerKind::automatic ? "auto" : "sarsop";
+    who_ = asked + " (" + planner.name() + ")";
+    planners_[planner.name()] += 1;
+    const std::string& why = planner.why();
+    static const std::regex worth{"worth between (-?[0-9.e+-]+) and (-?[0-9.e+-]+)"};
+    static const std::regex listed{"([0-9]+) states can be listed"};
+    std::smatch found;
+    if (std::regex_search(why, found, worth) && without_end_) {
+      check_bounds(std::stod(found[1]), std::stod(found[2]), exact, running, why);
+      if (planner.name() == std::string{"sarsop"}) check_lower_values(planner.estimates(belief), exact, running);
+    }
+    if (std::regex_search(why, found, listed)) check_states(std::stoul(found[1]), exact, why);
+    if (planner.name() == std::string{"exact"}) {
+      std::vector<double> values;
+      for (const aos::ActionEstimate& estimate : planner.estimates(belief)) values.push_back(estimate.q);
+      check_action_values("value of action ", values, exact, running, problem_.horizon);
+    }
+    who_.clear();
+  }
+
+  // Of a belief of which `running` has not ended; the rest is worth nothing.
+  void check_bounds(double lower, double upper, const Mass& exact, double running, const std::string& why) {
+    within_allowance([&](double seconds) { without_end_->narrow(exact, 0, 1e-7 * largest_, seconds / 2); });
+    Bracket bracket = without_end_->value(exact, 0);
+    bracket = {running * bracket.lower, running * bracket.upper};
+    widest_ = std::max(widest_, bracket.gap() / largest_);
+    const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
+    ++claims_;
+    if (lower > upper) {
+      fail(lower > upper + rounding ? "bounds cross" : "bounds cross by rounding", why, bracket.lower, bracket.upper);
+    } else if (lower > bracket.upper + rounding || upper < bracket.lower - rounding) {
+      // Four digits that are rounded to the nearest number are another mistake than a wrong bound.
+      const double digits = 6e-4 * std::max(std::abs(lower), std::abs(upper));
+      const bool is_printing = lower <= bracket.upper + digits && upper >= bracket.lower - digits;
+      fail(is_printing ? "bounds as printed" : "bounds", why, bracket.lower, bracket.upper);
+    }
+  }
+
+  // Of point-based search: what each action is worth at least.
+  void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running) {
+    for (std::size_t i = 0; i < std::min(estimates.size(), most_actions); ++i) {
+      const std::size_t action = estimates.size() <= most_actions ? i : choosing_.bits() % estimates.size();
+      if (estimates[action].n == 0) continue;
+      within_allowance([&](double seconds) { without_end_->narrow_action(exact, action, 0, 1e-6 * largest_, seconds / 4); });
+      const double upper = running * without_end_->action_value(exact, action, 0).upper;
+      ++claims_;
+      if (estimates[action].q > upper + 1e-8 * (largest_ + std::abs(upper))) {
+        fail("lower value of action " + std::to_string(action), number(estimates[action].q), -INFINITY, upper);
+      }
+    }
+  }
+
+  // What narrows a bracket takes a part of the time that is left for the problem; brackets hold at any time.
+  template <class Narrow>
+  void within_allowance(Narrow&& narrow) {
+    const double before = processor_seconds();
+    if (allowance_ > 0) narrow(allowance_);
+    allowance_ -= processor_seconds() - before;
+  }
+
+  void check_states(std::size_t claimed, const Mass& exact, const std::string& why) {
+    const std::size_t classes = told_apart(flat_, exact);
+    ++claims_;
+    if (claimed < classes) fail("states that matter", why, static_cast<double>(classes), static_cast<double>(flat_.states()));
+  }
+
+  // Point-based search on the tables themselves, without the engine's way to them.
+  void start_numbers(const Mass& start) {
+    if (problem_.discount >= 1) return;
+    aos::point_based::FlatModel model;
+    model.states = flat_.states();
+    model.actions = flat_.actions();
+    model.discount = flat_.discount();
+    model.outcomes.first.push_back(0);
+    model.readings.first.push_back(0);
+    std::map<int, std::uint32_t> observations;
+    for (std::size_t state = 0; state < flat_.states(); ++state) {
+      for (std::size_t action = 0; action < flat_.actions(); ++action) {
+        if (!problem_.is_running(state)) {
+          model.rewards.push_back(0);
+          model.outcomes.first.push_back(model.outcomes.elements.size());
+          continue;
+        }
+        model.rewards.push_back(flat_.reward(state, action));
+        std::map<std::uint32_t, std::map<std::uint32_t, double>> by_next;
+        for (const Branch& branch : flat_.branches(state, action)) {
+          const auto seen = observations.try_emplace(branch.observation, static_cast<std::uint32_t>(observations.size()));
+          by_next[branch.next][seen.first->second] += branch.probability;
+        }
+        for (const auto& [next, seen] : by_next) {
+          double total = 0;
+          for (const auto& entry : seen) total += entry.second;
+          const auto sensing = static_cast<std::uint32_t>(model.readings.first.size() - 1);
+          for (const auto& [observation, probability] : seen) {
+            model.readings.elements.push_back({observation, probability / total});
+          }
+          model.readings.first.push_back(model.readings.elements.size());
+          model.outcomes.elements.push_back({next, sensing, total});
+        }
+        model.outcomes.first.push_back(model.outcomes.elements.size());
+      }
+    }
+    model.observations = observations.size();
+    model.starts.push_back({1, {start.begin(), start.end()}});
+    numbers_ = std::make_unique<aos::point_based::OnlineSarsop>(std::move(model));
+  }
+
+  void check_numbers(const Mass& exact) {
+    if (!numbers_) return;
+    who_ = "point-based search on the tables";
+    if (numbers_->move_to({exact.begin(), exact.end()})) {
+      numbers_->improve(options_.simulations, [] { return false; });
+      const auto [lower, upper] = numbers_->bounds();
+      check_bounds(lower, upper, exact, 1, "between " + number(lower) + " and " + number(upper));
+    }
+    who_.clear();
+  }
+
+  // Findings ------------------------------------------------------------------------------------------------------------
+
+  void check(const std::string& claim, double claimed, double truth, double within) {
+    ++claims_;
+    if (!(std::abs(claimed - truth) <= within)) fail(claim, number(claimed), truth, truth);
+  }
+  void check_within(const std::string& claim, double claimed, Bracket truth, double rounding) {
+    ++claims_;
+    if (claimed < truth.lower - rounding || claimed > truth.upper + rounding) {
+      fail(claim, number(claimed), truth.lower, truth.upper);
+    }
+  }
+
+  void fail(const std::string& claim, const std::string& said, double lower, double upper) {
+    findings_.begin_object().member("claim", claim).member("who", who_).member("where", where_).member("said", said);
+    findings_.member("lower", lower).member("upper", upper).end_object();
+  }
+  static std::string number(double value) { return aos::number_text(value); }
+
+  std::string text() {
+    aos::JsonWriter json;
+    json.begin_object().member("problem", problem_.name).member("states", problem_.states()).member("claims", claims_);
+    json.member("widest_bracket", widest_).key("planners").begin_object();
+    for (const auto& [name, count] : planners_) json.member(name, count);
+    json.end_object().key("false").raw("[" + findings_.text() + "]").end_object();
+    return json.text();
+  }
+
+  static constexpr std::size_t most_actions = 6;  // that are looked at where there are many
+
+  const Problem& problem_;
+  ClaimOptions options_;
+  Flat flat_;
+  aos::Sampler random_;
+  aos::Sampler choosing_{1};  // what is looked at where not all can be
+  double largest_ = 0;
+  double allowance_ = options_.truth_seconds;
+  std::optional<Truth> without_end_;
+  std::map<int, Truth> with_end_;  // by decisions
+  std::unique_ptr<aos::point_based::OnlineSarsop> numbers_;
+  int claims_ = 0;
+  double widest_ = 0;
+  std::map<std::string, int> planners_;
+  std::string where_;
+  std::string who_;
+  aos::JsonWriter findings_;
+};
+
+}  // namespace exam

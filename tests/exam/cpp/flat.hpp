@@ -1,0 +1,136 @@
+// A problem as plain sums: what an action is expected to earn in a state, and the ways in which the mission goes on.
+// The truth is worked out from this; it shares nothing with the engine but the tables.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "problem.hpp"
+
+namespace exam {
+
+// Sorted by state; the probabilities sum to 1.
+using Mass = std::vector<std::pair<std::uint32_t, double>>;
+
+struct Branch {
+  int observation;
+  std::uint32_t next;
+  double probability;
+};
+
+// An observation after an action at a belief: how likely it is while the mission goes on, and the belief after it.
+struct Reached {
+  int observation;
+  double probability;
+  Mass belief;
+};
+
+class Flat {
+ public:
+  explicit Flat(const Problem& problem) : problem_(problem), rewards_(problem.rows.size()), branches_(problem.rows.size()) {
+    for (std::size_t row = 0; row < problem.rows.size(); ++row) {
+      std::map<std::pair<int, std::uint32_t>, double> merged;
+      for (const Outcome& outcome : problem.rows[row]) {
+        rewards_[row] += outcome.probability * outcome.reward;
+        if (!problem.is_running(outcome.next)) continue;
+        for (const Reading& reading : problem.sensings[outcome.sensing]) {
+          const double probability = outcome.probability * reading.probability;
+          if (probability > 0) merged[{reading.observation, outcome.next}] += probability;
+        }
+      }
+      for (const auto& [key, probability] : merged) branches_[row].push_back({key.first, key.second, probability});
+    }
+  }
+
+  const Problem& problem() const { return problem_; }
+  std::size_t states() const { return problem_.states(); }
+  std::size_t actions() const { return problem_.actions; }
+  double discount() const { return problem_.discount; }
+  double reward(std::size_t state, std::size_t action) const { return rewards_[state * actions() + action]; }
+  // Sorted by observation.
+  const std::vector<Branch>& branches(std::size_t state, std::size_t action) const {
+    return branches_[state * actions() + action];
+  }
+
+  double expected_reward(const Mass& belief, std::size_t action) const {
+    double sum = 0;
+    for (const auto& [state, weight] : belief) sum += weight * reward(state, action);
+    return sum;
+  }
+  // By observation; beliefs are of the part that goes on.
+  std::vector<Reached> reached(const Mass& belief, std::size_t action) const {
+    std::map<int, std::map<std::uint32_t, double>> parts;
+    for (const auto& [state, weight] : belief) {
+      for (const Branch& branch : branches(state, action)) {
+        parts[branch.observation][branch.next] += weight * branch.probability;
+      }
+    }
+    std::vector<Reached> result;
+    for (const auto& [observation, part] : parts) {
+      Reached reached{observation, 0, {part.begin(), part.end()}};
+      for (const auto& entry : part) reached.probability += entry.second;
+      if (reached.probability <= 0) continue;
+      for (auto& entry : reached.belief) entry.second /= reached.probability;
+      result.push_back(std::move(reached));
+    }
+    return result;
+  }
+
+  // The running part of the start, and how likely it is.
+  std::pair<Mass, double> start() const {
+    std::map<std::uint32_t, double> sum;
+    double running = 0;
+    for (const Start& start : problem_.starts) {
+      if (!problem_.is_running(start.state) || start.probability <= 0) continue;
+      sum[start.state] += start.probability;
+      running += start.probability;
+    }
+    Mass belief{sum.begin(), sum.end()};
+    for (auto& entry : belief) entry.second /= running;
+    return {belief, running};
+  }
+
+  double largest_reward() const {
+    double largest = 0;
+    for (const double reward : rewards_) largest = std::max(largest, std::abs(reward));
+    return largest;
+  }
+
+ private:
+  const Problem& problem_;
+  std::vector<double> rewards_;
+  std::vector<std::vector<Branch>> branches_;
+};
+
+// What so many decisions at random are worth, by state.
+inline std::vector<double> random_values(const Flat& flat, int decisions) {
+  std::vector<double> values(flat.states(), 0.0);
+  for (; decisions > 0; --decisions) {
+    std::vector<double> before(values.size(), 0.0);
+    before.swap(values);
+    for (std::size_t state = 0; state < flat.states(); ++state) {
+      if (!flat.problem().is_running(state)) continue;
+      for (std::size_t action = 0; action < flat.actions(); ++action) {
+        double value = flat.reward(state, action);
+        for (const Branch& branch : flat.branches(state, action)) {
+          value += flat.discount() * branch.probability * before[branch.next];
+        }
+        values[state] += value / static_cast<double>(flat.actions());
+      }
+    }
+  }
+  return values;
+}
+
+inline double expected(const Mass& belief, const std::vector<double>& values) {
+  double sum = 0;
+  for (const auto& [state, weight] : belief) sum += weight * values[state];
+  return sum;
+}
+
+}  // namespace exam

@@ -1,0 +1,235 @@
+// What a planner loses in missions against the optimum, and beside it what exact look-ahead loses that plans for a whole
+// horizon anew at every step.
+//
+// The return of a mission is estimated without most of its luck: with any function V of beliefs,
+//   V(b0) + sum of discount^t (r(b_t, a_t) + discount * E V(b_t+1) - V(b_t))
+// has the expectation of the return, and where V is nearly the optimum its spread is nearly that of the regret. Here V is
+// the lower bound of the truth. All planners meet the same worlds: what is drawn depends on the seed, the mission and the
+// step only.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aos/base/clock.hpp"
+#include "aos/base/json.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/planning/planner.hpp"
+#include "flat.hpp"
+#include "problem.hpp"
+#include "table_model.hpp"
+#include "truth.hpp"
+
+namespace exam {
+
+struct RegretOptions {
+  std::uint64_t seed = 1;
+  std::vector<std::string> planners;  // "look-ahead" is exact look-ahead
+  double seconds = 0.1;               // of processor time for a decision; 0: without this limit
+  std::uint64_t simulations = 0;      // 0: without this limit
+  int missions = 4;
+  int steps = 0;  // of a mission; 0: the horizon
+  double truth_seconds = 5;
+};
+
+class Regret {
+ public:
+  using Belief = aos::Belief<TableModel>;
+  using Planner = aos::Planner<TableModel>;
+
+  Regret(const Problem& problem, RegretOptions options)
+      : problem_(problem), options_(std::move(options)), flat_(problem),
+        steps_(options_.steps > 0 ? options_.steps : problem.horizon),
+        truth_(flat_, std::max(steps_, problem.horizon)) {
+    TableModel::take(problem);
+    aos::PlanningClock::counts_processor_time = true;
+  }
+
+  std::string report() {
+    aos::JsonWriter json;
+    json.begin_object().member("problem", problem_.name).member("states", problem_.states());
+    json.member("actions", problem_.actions).member("steps", steps_);
+    const auto [start, running] = flat_.start();
+    const double random = expected(start, random_values(flat_, steps_));
+    const double scale = std::max(flat_.largest_reward(), 1e-9);
+    truth_.narrow(start, steps_, 1e-4 * scale, 0.2 * options_.truth_seconds);
+    double range = truth_.value(start, steps_).lower - random;
+    if (range > 0) truth_.narrow(start, steps_, 2e-3 * range, 0.8 * options_.truth_seconds);
+    const Bracket optimum = truth_.value(start, steps_);
+    range = optimum.middle() - random;
+    json.member("optimum", optimum.middle()).member("gap", optimum.gap()).member("random", random);
+    const char* obstacle = "";
+    if (!(range > 1e-3 * scale)) {
+      obstacle = "hardly anything is to be gained";
+    } else if (optimum.gap() > 0.01 * range) {
+      obstacle = "the optimum is not known well enough";
+    }
+    json.member("obstacle", obstacle);
+    if (*obstacle == 0) {
+      json.key("planners").begin_array();
+      for (const std::string& name : options_.planners) play_all(json, name, start, optimum.middle(), range);
+      json.end_array();
+    }
+    return json.end_object().text();
+  }
+
+ private:
+  struct Decision {
+    int action;
+    std::string name;
+    std::string why;
+  };
+  struct Played {
+    double value = 0;
+    std::string actions;
+  };
+
+  void play_all(aos::JsonWriter& json, const std::string& name, const Mass& start, double optimum, double range) {
+    std::vector<double> regrets;
+    Played worst;
+    double highest = -INFINITY;
+    double seconds = 0;
+    double longest = 0;
+    int decisions = 0;
+    Decision first{};
+    std::optional<Planner> planner;
+    if (name != "look-ahead") planner.emplace();
+    std::string fault;
+    for (int mission = 0; mission < options_.missions && fault.empty(); ++mission) {
+      if (planner) planner->start_over();
+      const auto decide = [&](const Mass& exact, const Belief& belief, int step) {
+        const double before = processor_seconds();
+        const Decision decision = planner ? searched(*planner, name, belief, mission, step)
+                                          : Decision{looked_ahead(exact, step), "look-ahead", ""};
+        const double spent = processor_seconds() - before;
+        seconds += spent;
+        longest = std::max(longest, spent);
+        if (++decisions == 1) first = decision;
+        return decision.action;
+      };
+      const Played played = play(start, mission, planner ? &*planner : nullptr, decide, fault);
+      regrets.push_back((optimum - played.value) / range);
+      if (regrets.back() > highest) {
+        highest = regrets.back();
+        worst = played;
+      }
+    }
+    double mean = 0;
+    double squares = 0;
+    for (const double regret : regrets) mean += regret / static_cast<double>(regrets.size());
+    for (const double regret : regrets) squares += (regret - mean) * (regret - mean);
+    const double count = static_cast<double>(regrets.size());
+    json.begin_object().member("planner", name).member("regret", mean);
+    json.member("standard_error", count > 1 ? std::sqrt(squares / (count - 1) / count) : 0.0);
+    json.member("used", first.name).member("why", first.why).member("decisions", decisions);
+    json.member("seconds", seconds / std::max(decisions, 1)).member("longest", longest);
+    json.member("worst_actions", worst.actions).member("fault", fault).end_object();
+  }
+
+  template <class Decide>
+  Played play(const Mass& start, int mission, Planner* planner, Decide&& decide, std::string& fault) {
+    aos::Sampler world{mixed(options_.seed, static_cast<std::uint64_t>(mission), 0)};
+    aos::Sampler updates{mixed(options_.seed, static_cast<std::uint64_t>(mission), 1)};
+    Belief belief = Belief::initial(updates);
+    Mass exact = start;
+    std::uint32_t hidden = drawn(exact, world.uniform());
+    double value = truth_.value(exact, steps_).lower;
+    Played played{value, ""};
+    double discount = 1;
+    for (int step = 0; step < steps_; ++step) {
+      const int action = decide(exact, belief, step);
+      played.actions += (step > 0 ? " " : "") + std::to_string(action);
+      const auto a = static_cast<std::size_t>(action);
+      const std::vector<Reached> all_reached = flat_.reached(exact, a);
+      std::vector<double> values;
+      double later = 0;
+      for (const Reached& reached : all_reached) {
+        values.push_back(truth_.value(reached.belief, steps_ - step - 1).lower);
+        later += reached.probability * values.back();
+      }
+      played.value += discount * (flat_.expected_reward(exact, a) + flat_.discount() * later - value);
+      discount *= flat_.discount();
+      // One number for where the world goes, one for what is seen of it, whatever was decided.
+      const double outcome_drawn = world.uniform();
+      const double seen_drawn = world.uniform();
+      const Outcome& outcome = drawn_from(problem_.row(hidden, a), outcome_drawn);
+      const int seen = drawn_from(problem_.sensings[outcome.sensing], seen_drawn).observation;
+      hidden = outcome.next;
+      if (!problem_.is_running(hidden)) break;
+      const auto found = std::find_if(all_reached.begin(), all_reached.end(),
+                                      [&](const Reached& reached) { return reached.observation == seen; });
+      exact = found->belief;
+      value = values[static_cast<std::size_t>(found - all_reached.begin())];
+      if (planner == nullptr) continue;
+      auto posterior = belief.posterior(action, seen, updates).first;
+      if (posterior.particles().empty()) {
+        fault = "the belief holds impossible what has happened";
+        break;
+      }
+      belief = std::move(posterior);
+      planner->move_to(action, seen);
+    }
+    return played;
+  }
+
+  Decision searched(Planner& planner, const std::string& name, const Belief& belief, int mission, int step) {
+    aos::Sampler random{mixed(options_.seed, static_cast<std::uint64_t>(mission), 2 + static_cast<std::uint64_t>(step))};
+    aos::Budget budget;
+    budget.seconds = options_.seconds;
+    budget.simulations = options_.simulations;
+    planner.search(*aos::planner_kind(name), belief, budget, problem_.horizon, random);
+    return {planner.choice(planner.estimates(belief)), planner.name(), planner.why()};
+  }
+
+  // The best action with a whole horizon to go; of equal ones the best in what is left of the mission.
+  int looked_ahead(const Mass& exact, int step) {
+    const double scale = std::max(flat_.largest_reward(), 1e-9);
+    const int horizon = problem_.horizon;
+    truth_.narrow(exact, horizon, 1e-6 * scale, 0.1);
+    int best = 0;
+    Bracket best_value{-INFINITY, -INFINITY};
+    for (int action = 0; action < TableModel::action_count(); ++action) {
+      const auto a = static_cast<std::size_t>(action);
+      const double value = truth_.action_value(exact, a, horizon).lower;
+      const double now = truth_.action_value(exact, a, steps_ - step).lower;
+      const bool is_equal = std::abs(value - best_value.lower) <= 1e-9 * scale;
+      if (is_equal ? now <= best_value.upper : value < best_value.lower) continue;
+      best = action;
+      best_value = {value, now};
+    }
+    return best;
+  }
+
+  static std::uint64_t mixed(std::uint64_t seed, std::uint64_t mission, std::uint64_t use) {
+    return aos::mixed(aos::mixed(seed, mission), use);
+  }
+  static std::uint32_t drawn(const Mass& belief, double uniform) {
+    for (const auto& [state, weight] : belief) {
+      if ((uniform -= weight) < 0) return state;
+    }
+    return belief.back().first;
+  }
+  template <class Weighted>
+  static const Weighted& drawn_from(const std::vector<Weighted>& all, double uniform) {
+    for (const Weighted& one : all) {
+      if ((uniform -= one.probability) < 0) return one;
+    }
+    const auto last = std::find_if(all.rbegin(), all.rend(), [](const Weighted& one) { return one.probability > 0; });
+    return *last;
+  }
+
+  const Problem& problem_;
+  RegretOptions options_;
+  Flat flat_;
+  int steps_;
+  Truth truth_;
+};
+
+}  // namespace exam
