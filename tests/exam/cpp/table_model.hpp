@@ -85,6 +85,7 @@ struct TableModel {
 
   static void prepare() {}
   static int action_count() { return static_cast<int>(problem_->actions); }
+  static bool reports_numbers() { return false; }
   static int skill_of(int) { return 0; }
   static int response_count(int) { return static_cast<int>(responses_.size()); }
   static const char* response_name(int, int response) { return responses_[static_cast<std::size_t>(response)].c_str(); }

@@ -138,7 +138,7 @@ class Engine {
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       json.begin_object().member("action", Model::action_name(action));
-      json.member("q", values[static_cast<std::size_t>(action)]).end_object();
+      json.member("q", values[static_cast<std::size_t>(action)].value).end_object();
     }
     json.end_array().member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
   }

@@ -3,7 +3,8 @@
 //
 // A belief is a sorted list of (state number, weight) without its ended part, which is worth nothing; equal beliefs at
 // equal depth are evaluated once. Below the root, an action is left out where even somebody who sees the state could not
-// do better with it than another action does.
+// do better with it than another action does. Of actions that are worth the same the one that earns sooner is better:
+// otherwise a free exit could be put off for ever.
 #pragma once
 
 #include <algorithm>
@@ -28,6 +29,19 @@ struct ExactLimits {
   std::function<bool()> is_over = [] { return false; };
 };
 
+// What an action or a belief is worth, and how fast that grows with the discount: less so what is earned sooner.
+struct ExactValue {
+  double value = 0;
+  double growth = 0;
+
+  // Whether it is better than another one, or as good and sooner.
+  bool is_better_than(const ExactValue& other) const {
+    constexpr double rounding = 1e-12;
+    const double tie = rounding * (std::abs(value) + std::abs(other.value));
+    return value > other.value + tie || (value >= other.value - tie && growth < other.growth - rounding * std::abs(growth));
+  }
+};
+
 template <class Model>
 class ExactEvaluation {
  public:
@@ -35,11 +49,11 @@ class ExactEvaluation {
   ExactEvaluation(const StateSpace<Model>& space, ExactLimits limits) : space_(space), limits_(std::move(limits)) {}
 
   // The value of every action at a belief with so many decisions to go. Throws NotEnumerable where a limit is met.
-  std::vector<double> action_values(const Belief<Model>& belief, int horizon) {
+  std::vector<ExactValue> action_values(const Belief<Model>& belief, int horizon) {
     if (!space_.lists_observations()) throw NotEnumerable{numbers_are_observed};
     if (!belief.is_exact()) throw NotEnumerable{"the belief is only known by samples"};
     const Weighted root = space_.weights_of(belief);
-    std::vector<double> values(space_.actions(), 0.0);
+    std::vector<ExactValue> values(space_.actions());
     if (horizon <= 0 || root.empty()) return values;
     prepare_seen_values(horizon);
     for (std::size_t action = 0; action < values.size(); ++action) values[action] = action_value(root, action, horizon);
@@ -90,12 +104,12 @@ class ExactEvaluation {
   }
 
   // Weights here need not sum to 1: a part's weight is how likely it is to get there.
-  double action_value(const Weighted& belief, std::size_t action, int horizon) {
-    double value = 0;
+  ExactValue action_value(const Weighted& belief, std::size_t action, int horizon) {
+    ExactValue result;
     std::map<std::uint32_t, std::map<std::uint32_t, double>> posteriors;
     for (const auto& [state, weight] : belief) {
       const std::size_t row = rows().row(state, action);
-      value += weight * rows().rewards[row];
+      result.value += weight * rows().rewards[row];
       if (horizon == 1) continue;
       for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
         const auto* const last = rows().readings.end(outcome->sensing);
@@ -107,36 +121,39 @@ class ExactEvaluation {
     }
     if (limits_.outcomes > 0 && walked_ > limits_.outcomes) throw NotEnumerable{"there are more outcomes than the budget"};
     for (const auto& [observation, states] : posteriors) {
-      value += Model::discount * best_value({states.begin(), states.end()}, horizon - 1);
+      const ExactValue later = best_value({states.begin(), states.end()}, horizon - 1);
+      result.value += Model::discount * later.value;
+      result.growth += later.value + Model::discount * later.growth;
     }
-    return value;
+    return result;
   }
 
-  double best_value(Weighted belief, int horizon) {
+  ExactValue best_value(Weighted belief, int horizon) {
     double total = 0;
     for (const auto& part : belief) total += part.second;
-    if (total <= 0) return 0;
+    if (total <= 0) return {};
     for (auto& part : belief) part.second /= total;
 
     auto& known = values_[static_cast<std::size_t>(horizon)];
     const BeliefKey key = key_of(belief);
-    if (const auto found = known.find(key); found != known.end()) return total * found->second;
+    if (const auto found = known.find(key); found != known.end()) return scaled(found->second, total);
     if (++evaluated_ > limits_.beliefs) throw NotEnumerable{"more beliefs than the budget can be reached"};
     if (evaluated_ % 64 == 0 && limits_.is_over()) throw NotEnumerable{"it takes longer than allowed"};
-    const double best = best_of_actions(belief, horizon);
+    const ExactValue best = best_of_actions(belief, horizon);
     known.emplace(key, best);
-    return total * best;
+    return scaled(best, total);
   }
+  static ExactValue scaled(ExactValue value, double by) { return {by * value.value, by * value.growth}; }
 
   // The action with the highest bound first.
-  double best_of_actions(const Weighted& belief, int horizon) {
+  ExactValue best_of_actions(const Weighted& belief, int horizon) {
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t action = 0; action < space_.actions(); ++action) order.emplace_back(-bound(belief, action, horizon), action);
     std::sort(order.begin(), order.end());
-    double best = -std::numeric_limits<double>::infinity();
-    for (const auto& [negative_bound, action] : order) {
-      if (-negative_bound <= best) break;
-      best = std::max(best, action_value(belief, action, horizon));
+    ExactValue best = action_value(belief, order.front().second, horizon);
+    for (std::size_t next = 1; next < order.size() && -order[next].first > best.value; ++next) {
+      const ExactValue candidate = action_value(belief, order[next].second, horizon);
+      if (candidate.is_better_than(best)) best = candidate;
     }
     return best;
   }
@@ -152,7 +169,7 @@ class ExactEvaluation {
       sum += value;
       magnitude += std::abs(value);
     }
-    constexpr double rounding = 1e-12;
+    const double rounding = 1e-15 * static_cast<double>(100 + belief.size());
     return sum + rounding * magnitude;
   }
 
@@ -172,7 +189,7 @@ class ExactEvaluation {
   std::uint64_t evaluated_ = 0;
   std::uint64_t walked_ = 0;
   std::vector<std::vector<double>> seen_values_;  // by decisions to go and state
-  std::unordered_map<std::size_t, std::unordered_map<BeliefKey, double, KeyHash>> values_;
+  std::unordered_map<std::size_t, std::unordered_map<BeliefKey, ExactValue, KeyHash>> values_;
 };
 
 }  // namespace aos

@@ -1,6 +1,7 @@
 // The exact values of all actions with the horizon's decisions to go, where working them out fits the budget.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -27,8 +28,7 @@ class ExactSearch {
     }
     ExactEvaluation<Model> evaluation{space_, limits_of(budget, horizon)};
     try {
-      estimates_.clear();
-      for (const double value : evaluation.action_values(belief, horizon)) estimates_.push_back({value, 1, 0});
+      values_ = evaluation.action_values(belief, horizon);
       simulations_ = evaluation.outcomes() / static_cast<std::uint64_t>(horizon) + 1;
       failures_ = 0;
       return true;
@@ -39,7 +39,15 @@ class ExactSearch {
   }
 
   std::uint64_t simulations() const { return simulations_; }
-  const std::vector<ActionEstimate>& estimates() const { return estimates_; }
+  std::vector<ActionEstimate> estimates() const {
+    std::vector<ActionEstimate> estimates;
+    for (const ExactValue& value : values_) estimates.push_back({value.value, 1, 0});
+    return estimates;
+  }
+  int best() const {
+    const auto is_worse = [](const ExactValue& left, const ExactValue& right) { return right.is_better_than(left); };
+    return static_cast<int>(std::max_element(values_.begin(), values_.end(), is_worse) - values_.begin());
+  }
   // Another mission begins, whose tries do not depend on those of others.
   void start_over() { put_off_ = failures_ = 0; }
 
@@ -63,7 +71,7 @@ class ExactSearch {
   }
 
   const StateSpace<Model>& space_;
-  std::vector<ActionEstimate> estimates_;
+  std::vector<ExactValue> values_;  // by action
   std::uint64_t simulations_ = 0;
   int put_off_ = 0;  // decisions
   int failures_ = 0;

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/base/rounded_text.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/bounds.hpp"
@@ -26,9 +25,6 @@
 namespace aos {
 
 enum class PlannerKind { pomcp, despot, sarsop, exact, automatic };
-
-// What of a value may come from beyond the horizon, for `automatic` to count without one.
-inline constexpr double negligible_beyond = 0.2;
 
 // Nothing where there is no such planner.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
@@ -50,7 +46,7 @@ class Planner {
       case PlannerKind::despot: return despot().search(belief, budget, horizon, random);
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = point_based_.search(budget);
-        why_ += "; " + bounds_text();
+        why_ += "; " + bounds_text(horizon);
         return simulations;
       }
       default: return pomcp_.search(belief, budget, horizon, random);
@@ -78,6 +74,7 @@ class Planner {
   }
   // What to do: what is worth most, as far as its value can be believed.
   int choice(const std::vector<ActionEstimate>& estimates) const {
+    if (used_ == PlannerKind::exact) return exact_.best();
     std::uint32_t most = 0;
     for (const ActionEstimate& estimate : estimates) most = std::max(most, estimate.n);
     int best = -1;
@@ -127,7 +124,7 @@ class Planner {
       why_ = "SARSOP cannot be used: " + space_.obstacle();
       return PlannerKind::pomcp;
     }
-    if (const std::string obstacle = point_based_.prepare(belief); !obstacle.empty()) {
+    if (const std::string obstacle = point_based_.prepare(belief, horizon); !obstacle.empty()) {
       why_ = "SARSOP cannot be used: " + obstacle;
       return PlannerKind::pomcp;
     }
@@ -148,22 +145,17 @@ class Planner {
       why_ += ", and every observation of " + std::to_string(horizon) + " decisions fits the budget";
       return PlannerKind::exact;
     }
-    if (std::pow(Model::discount, horizon) > negligible_beyond) {
-      why_ += "; SARSOP reckons without the horizon, beyond which rewards still count";
-      return PlannerKind::despot;
-    }
-    if (const std::string obstacle = point_based_.prepare(belief); !obstacle.empty()) {
+    if (const std::string obstacle = point_based_.prepare(belief, horizon); !obstacle.empty()) {
       why_ += "; SARSOP cannot be used: " + obstacle;
       return PlannerKind::despot;
     }
     return PlannerKind::sarsop;
   }
 
-  std::string bounds_text() const {
+  std::string bounds_text(int horizon) const {
     const auto [lower, upper] = point_based_.bounds();
-    char text[96];
-    std::snprintf(text, sizeof text, "without a horizon the belief is worth between %.4g and %.4g", lower, upper);
-    return text;
+    const std::string scope = point_based_.is_endless() ? "without a horizon" : "with " + std::to_string(horizon) + " decisions to go";
+    return scope + " the belief is worth between " + rounded_down(lower) + " and " + rounded_up(upper);
   }
 
   Despot<Model>& despot() {

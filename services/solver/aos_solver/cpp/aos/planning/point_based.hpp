@@ -5,9 +5,11 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,25 +30,24 @@ class PointBased {
 
   // Takes over the model from a space in which the belief's states are listed. Returns why the search cannot be used;
   // nothing where it can. No budget counts what it takes for the first decision; later it is next to nothing.
-  std::string prepare(const Belief<Model>& belief) {
+  std::string prepare(const Belief<Model>& belief, int horizon) {
     if (Model::action_count() == 0) return "there are no actions";
     if (!space_.lists_observations()) return numbers_are_observed;
-    if (Model::discount >= 1) return "without a discount there are no bounds to begin with";
     const auto entries = space_.weights_of(belief);
     running_ = belief.probability_of(Ending::running);
-    if (search_ && states_ == space_.size() && search_->move_to(entries)) return {};
+    const bool is_known = search_ && states_ == space_.size() && horizon_ == horizon;
+    if (is_known && search_->move_to(entries)) return {};
     if (states_ != space_.size()) starts_.clear();
     starts_.push_back({1, entries});
     states_ = space_.size();
-    point_based::FlatModel model = space_.rows();
-    model.starts = starts_;
-    search_ = std::make_unique<point_based::OnlineSarsop>(std::move(model));
-    search_->move_to(entries);
-    return {};
+    horizon_ = horizon;
+    return take_model(entries);
   }
+  // Whether values are of missions without end. So they are where hardly anything comes from beyond the horizon.
+  bool is_endless() const { return is_endless_; }
   // What the running part of the prepared belief is worth at least and at most.
   std::pair<double, double> bounds() const { return search_->bounds(); }
-  // Backed up in all searches so far.
+  // Of all searches so far.
   std::uint64_t known_simulations() const { return known_; }
 
   // Forgets what searches have found out, so that a mission does not depend on those before it.
@@ -55,19 +56,20 @@ class PointBased {
     known_ = 0;
   }
 
-  // Runs trials from the prepared belief, and returns how many states were backed up: these are its simulations.
+  // Runs trials from the prepared belief, and returns how many simulations they were.
   std::uint64_t search(Budget budget) {
     if (running_ <= 0 || (budget.simulations == 0 && budget.seconds <= 0)) return 0;
-    const std::uint64_t backed_up = search_->improve(budget.simulations, until(budget, [] { return false; }));
-    known_ += backed_up;
-    return backed_up;
+    const std::uint64_t simulations = simulations_of(search_->improve(work_of(budget), until(budget, [] { return false; })));
+    known_ += simulations;
+    return simulations;
   }
 
-  // The same below an action that is carried out.
+  // The same below an action that is carried out. With a horizon that would be of no use: the next belief has all of its
+  // decisions to go again.
   template <class IsOver>
   void think_about(int action, Budget budget, IsOver&& is_over) {
-    if (running_ <= 0 || budget.seconds <= 0) return;
-    known_ += search_->improve_below(static_cast<std::uint32_t>(action), 0, until(budget, is_over));
+    if (running_ <= 0 || budget.seconds <= 0 || !is_endless_) return;
+    known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), 0, until(budget, is_over)));
   }
 
   // What each action is worth at least. `n` is how many trials began with it, and the look at where it leads.
@@ -80,6 +82,33 @@ class PointBased {
   }
 
  private:
+  // What of a value may come from beyond the horizon, for missions without end to stand for those with it.
+  static constexpr double negligible_beyond = 0.2;
+  // A step of a state through a search tree takes as long as so many products of numbers.
+  static constexpr std::uint64_t work_per_step = 100;
+
+  std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
+    point_based::FlatModel model = space_.rows();
+    model.starts = starts_;
+    is_endless_ = std::pow(Model::discount, horizon_) <= negligible_beyond;
+    model.horizon = is_endless_ ? 0 : static_cast<std::size_t>(horizon_);
+    try {
+      search_ = std::make_unique<point_based::OnlineSarsop>(std::move(model));
+    } catch (const std::length_error&) {
+      search_.reset();
+      return "there are too many states for so long a horizon";
+    }
+    search_->move_to(entries);
+    return {};
+  }
+
+  std::uint64_t work_of(Budget budget) const {
+    return budget.simulations * static_cast<std::uint64_t>(horizon_) * work_per_step;
+  }
+  std::uint64_t simulations_of(std::uint64_t work) const {
+    return work / (static_cast<std::uint64_t>(horizon_) * work_per_step) + 1;
+  }
+
   template <class IsOver>
   static point_based::OnlineSarsop::IsOver until(Budget budget, IsOver&& is_over) {
     return [budget, &is_over, start = PlanningClock::now()] {
@@ -92,6 +121,8 @@ class PointBased {
   std::size_t states_ = 0;                   // of the space when the model was taken over
   std::vector<point_based::Start> starts_;  // one where nothing surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;
+  int horizon_ = 1;  // decisions
+  bool is_endless_ = false;
   double running_ = 0;
   std::uint64_t known_ = 0;
 };
