@@ -1,5 +1,5 @@
 // Whether the point-based solver's bounds hold, on random models, and how near its plans come to the best.
-// Usage: point_based_truth FIRST_SEED MODELS SECONDS. A model gets so many seconds of processor time in all.
+// Usage: point_based_truth FIRST_SEED MODELS WORK. Each decision gets so much work (`OnlineSarsop::improve`).
 //
 // A line of JSON for every claim that does not hold, and one at the end.
 #include <algorithm>
@@ -37,12 +37,15 @@ struct Tally {
   double gaps = 0;
   double worst_gap = 0;
   std::uint64_t worst_seed = 0;
+  std::uint64_t decisions = 0;
+  double decision_s = 0;  // of processor time
+  double longest_decision_s = 0;
 };
 
 class Trial {
  public:
-  Trial(std::uint64_t seed, double seconds, Tally& tally)
-      : seed_(seed), seconds_(seconds), tally_(tally), generator_(seed), problem_(generator_.problem()),
+  Trial(std::uint64_t seed, std::uint64_t work, Tally& tally)
+      : seed_(seed), work_(work), tally_(tally), generator_(seed), problem_(generator_.problem()),
         reference_(problem_.model) {}
 
   // Decides some times, as a mission does, and judges what is claimed of each belief.
@@ -62,7 +65,8 @@ class Trial {
       solver.improve(1, [] { return false; });
       judge(solver);
       const double begun = cpu_seconds();
-      solver.improve(0, [&] { return cpu_seconds() - begun > seconds_ / 3; });
+      solver.improve(work_, [] { return false; });
+      count_decision(cpu_seconds() - begun);
       judge(solver);
       if (step_ == 0) judge_plan(solver, belief);
       belief = next_of(belief);
@@ -77,6 +81,12 @@ class Trial {
       best.upper = std::max(best.upper, value.upper);
     }
     return best;
+  }
+
+  void count_decision(double seconds) {
+    ++tally_.decisions;
+    tally_.decision_s += seconds;
+    tally_.longest_decision_s = std::max(tally_.longest_decision_s, seconds);
   }
 
   void judge(OnlineSarsop& solver) {
@@ -140,7 +150,7 @@ class Trial {
   }
 
   std::uint64_t seed_;
-  double seconds_;
+  std::uint64_t work_;
   Tally& tally_;
   Generator generator_;
   Problem problem_;
@@ -149,11 +159,11 @@ class Trial {
   int step_ = 0;
 };
 
-int run(std::uint64_t first_seed, std::uint64_t models, double seconds) {
+int run(std::uint64_t first_seed, std::uint64_t models, std::uint64_t work) {
   Tally tally;
   for (std::uint64_t seed = first_seed; seed < first_seed + models; ++seed) {
     try {
-      Trial{seed, seconds, tally}.run();
+      Trial{seed, work, tally}.run();
     } catch (const std::exception& error) {
       ++tally.false_claims;
       std::printf("{\"false\": \"%s\", \"seed\": %llu}\n", error.what(), static_cast<unsigned long long>(seed));
@@ -161,11 +171,14 @@ int run(std::uint64_t first_seed, std::uint64_t models, double seconds) {
   }
   const double judged = std::max<double>(1, static_cast<double>(tally.judged));
   std::printf("{\"models\": %llu, \"claims\": %llu, \"false_claims\": %llu, \"judged\": %llu, \"mean_regret\": %.6g, "
-              "\"worst_regret\": %.6g, \"worst_seed\": %llu, \"mean_gap\": %.6g, \"worst_gap\": %.6g, \"cpu_s\": %.3f}\n",
+              "\"worst_regret\": %.6g, \"worst_seed\": %llu, \"mean_gap\": %.6g, \"worst_gap\": %.6g, "
+              "\"mean_decision_s\": %.6f, \"longest_decision_s\": %.6f, \"cpu_s\": %.3f}\n",
               static_cast<unsigned long long>(models), static_cast<unsigned long long>(tally.claims),
               static_cast<unsigned long long>(tally.false_claims), static_cast<unsigned long long>(tally.judged),
               tally.regrets / judged, tally.worst_regret, static_cast<unsigned long long>(tally.worst_seed),
-              tally.gaps / judged, tally.worst_gap, cpu_seconds());
+              tally.gaps / judged, tally.worst_gap,
+              tally.decision_s / std::max<double>(1, static_cast<double>(tally.decisions)), tally.longest_decision_s,
+              cpu_seconds());
   return tally.false_claims == 0 ? 0 : 1;
 }
 
@@ -174,8 +187,9 @@ int run(std::uint64_t first_seed, std::uint64_t models, double seconds) {
 
 int main(int argc, char** argv) {
   if (argc != 4) {
-    std::fprintf(stderr, "usage: %s FIRST_SEED MODELS SECONDS\n", argv[0]);
+    std::fprintf(stderr, "usage: %s FIRST_SEED MODELS WORK\n", argv[0]);
     return 2;
   }
-  return truth::run(std::strtoull(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10), std::atof(argv[3]));
+  return truth::run(std::strtoull(argv[1], nullptr, 10), std::strtoull(argv[2], nullptr, 10),
+                    std::strtoull(argv[3], nullptr, 10));
 }

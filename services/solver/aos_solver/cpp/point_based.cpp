@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "point_based/haste.hpp"
+#include "point_based/outlook.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/sarsop.hpp"
 
@@ -19,7 +19,7 @@ constexpr std::size_t max_bytes = std::size_t{512} << 20;
 }  // namespace
 
 struct OnlineSarsop::Solver {
-  explicit Solver(FlatModel flat) : model(std::move(flat)), haste(model), regions(model), sarsop(model, regions) {}
+  explicit Solver(FlatModel flat) : model(std::move(flat)), outlook(model), regions(model), sarsop(model, regions) {}
 
   // All states that are worth anything in one region.
   bool is_in_one_region(const std::vector<std::pair<std::uint32_t, double>>& belief) const {
@@ -39,6 +39,9 @@ struct OnlineSarsop::Solver {
   }
   bool is_closed() const { return sarsop.upper() - sarsop.lower() <= precision(); }
 
+  double above() const { return outlook.above(sarsop.least()); }
+  double below() const { return outlook.below(sarsop.most()); }
+
   // `trial` returns whether there is more to find out.
   template <class Trial>
   std::uint64_t repeat(std::uint64_t max_work, const IsOver& is_over, Trial&& trial) {
@@ -48,7 +51,7 @@ struct OnlineSarsop::Solver {
   }
 
   FlatModel model;
-  Haste haste;
+  Outlook outlook;
   Regions regions;
   Sarsop sarsop;
 };
@@ -78,15 +81,15 @@ std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, std::uint64_t ma
 std::vector<ActionBounds> OnlineSarsop::action_bounds() {
   std::vector<ActionBounds> bounds = solver_->sarsop.action_bounds();
   for (ActionBounds& action : bounds) {
-    action.lower -= solver_->haste.below();
-    action.upper += solver_->haste.above();
+    action.lower -= solver_->below();
+    action.upper += solver_->above();
   }
   return bounds;
 }
 
 std::pair<double, double> OnlineSarsop::bounds() {
   const Sarsop& sarsop = solver_->sarsop;
-  return checked(sarsop.lower() - solver_->haste.below(), sarsop.upper() + solver_->haste.above());
+  return checked(sarsop.lower() - solver_->below(), sarsop.upper() + solver_->above());
 }
 
 }  // namespace aos::point_based

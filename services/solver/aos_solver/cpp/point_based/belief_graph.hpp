@@ -128,6 +128,10 @@ class BeliefGraph {
     largest_value_ = std::max(largest_value_, vector.size);
     lower_[region].add(std::move(vector));
   }
+  // No state is worth more, or 0.
+  double most() const { return std::max(0.0, *std::max_element(informed_.back().begin(), informed_.back().end())); }
+  // Some policy gives no less, wherever it begins; or 0.
+  double least() const { return least_; }
   // No alpha vector has one that is further from 0.
   double largest_value() const { return largest_value_; }
 
@@ -205,6 +209,7 @@ class BeliefGraph {
   }
 
   void refresh_lower(Node& node) {
+    ++work_;
     const LowerBound& bound = lower_[node.region];
     if (bound[node.vector].is_gone()) node.seen_vectors = 0;
     if (node.seen_vectors == bound.size()) return;
@@ -314,20 +319,19 @@ class BeliefGraph {
   void add_tails(const std::vector<ActionValues>& blind) {
     double power = 1;
     for (const ActionValues& values : blind) {
-      double best = -std::numeric_limits<double>::infinity();
+      least_ = -std::numeric_limits<double>::infinity();
       for (std::size_t action = 0; action < model_.actions; ++action) {
         double least = 0;
         for (std::size_t state = 0; state < model_.states; ++state) {
           least = std::min(least, values[model_.row(state, action)]);
         }
-        best = std::max(best, least);
+        least_ = std::max(least_, least);
       }
-      tails_.push_back(is_endless() ? 0 : best);
-      if (best < 0) is_free_ = false;
+      tails_.push_back(is_endless() ? 0 : least_);
+      if (tails_.back() < 0) is_free_ = false;
       powers_.push_back(power);
       power *= model_.discount * (1 + 2 * ulp);
     }
-    if (is_endless()) is_free_ = true;
   }
 
   void add_blind(const Region& region, const std::vector<ActionValues>& blind) {
@@ -472,6 +476,7 @@ class BeliefGraph {
   std::vector<double> powers_;          // of the discount
   bool is_free_ = true;
   double largest_value_ = 0;
+  double least_ = 0;
   std::vector<LowerBound> lower_;                   // by region
   std::vector<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
   std::deque<Node> nodes_;

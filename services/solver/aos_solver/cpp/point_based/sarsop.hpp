@@ -43,6 +43,10 @@ class Sarsop {
   // What a policy is sure to give from the start, and what none can give more than; discounted.
   double lower() const { return over_roots(&Node::lower, -1); }
   double upper() const { return over_roots(&Node::upper, 1); }
+  // No state is worth more, or 0.
+  double most() const { return graph_.most(); }
+  // Some policy gives no less, wherever it begins; or 0.
+  double least() const { return graph_.least(); }
   // Bounds that are so near, beside the values themselves, are as near as numbers tell.
   double noise() const { return graph_.noise(); }
   // Numbers that were multiplied so far.

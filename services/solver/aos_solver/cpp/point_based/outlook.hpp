@@ -1,8 +1,12 @@
+// How far a search looks ahead, and with which discount; and what that changes in values.
+//
 // Without a discount it makes no difference when something is earned, and a free exit could be put off for ever. So
-// the search has a discount next to 1, which tells sooner from later, and what that changes is added to its bounds.
+// the search has a discount next to 1, which tells sooner from later.
+// Where a discount leaves next to nothing of what comes after a long horizon, the search has none: what it finds out
+// then serves every belief, however many decisions are left, and bounds are as wide as what comes after may be worth.
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "point_based/flat_model.hpp"
@@ -10,11 +14,17 @@
 
 namespace aos::point_based {
 
-class Haste {
+class Outlook {
  public:
-  // Sets the model's discount to the one to search with.
-  explicit Haste(FlatModel& model) {
+  // Sets the model's horizon and discount to those to search with.
+  explicit Outlook(FlatModel& model) {
     if (model.horizon == 0) return;
+    left_behind_ = std::pow(model.discount, static_cast<double>(model.horizon)) * (1 + 1e-9);
+    if (left_behind_ <= next_to_nothing_) {
+      model.horizon = 0;
+      return;
+    }
+    left_behind_ = 0;
     const double loss = loss_of_all_ / static_cast<double>(model.horizon);
     if (model.discount <= 1 - loss) return;
     const double share = 1 - (1 - loss) / model.discount + ulp;
@@ -22,11 +32,13 @@ class Haste {
     model.discount = 1 - loss;
   }
 
-  // Values with the discount of the model are less than so much above and below those with the other.
-  double above() const { return above_; }
-  double below() const { return below_; }
+  // By so much values as asked for may be above and below those of the search, where no state is worth more than `most`
+  // and some policy never gives less than `least` (at most 0).
+  double above(double least) const { return above_ - left_behind_ * least; }
+  double below(double most) const { return below_ + left_behind_ * most; }
 
  private:
+  static constexpr double next_to_nothing_ = 0.01;
   static constexpr double loss_of_all_ = 1e-7;  // by which the last reward counts less
 
   // A reward after t decisions loses at most `share` of itself t times. Summed over t these are values of what is left of
@@ -65,6 +77,7 @@ class Haste {
 
   double above_ = 0;
   double below_ = 0;
+  double left_behind_ = 0;  // by the discount, of what comes after the horizon
 };
 
 }  // namespace aos::point_based

@@ -1,0 +1,31 @@
+"""The point-based solver's bounds against exact values, on random models."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from bounds_truth import truth_program
+
+
+def checked(cache_dir: Path, first_seed: int, models: int, work: int) -> tuple[list[Any], Any]:
+    """The claims that do not hold, and what was counted."""
+    command = [truth_program(cache_dir), str(first_seed), str(models), str(work)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
+    *false, counted = map(json.loads, done.stdout.splitlines())
+    return false, counted
+
+
+def test_no_bound_excludes_the_exact_value(cache_dir: Path) -> None:
+    false, counted = checked(cache_dir, first_seed=1, models=120, work=300_000)
+    assert not false
+    assert counted["claims"] > 5000
+
+
+def test_plans_for_small_models_come_near_the_best(cache_dir: Path) -> None:
+    false, counted = checked(cache_dir, first_seed=70_000, models=40, work=5_000_000)
+    assert not false
+    assert counted["judged"] >= 20
+    assert counted["mean_regret"] < 0.005
