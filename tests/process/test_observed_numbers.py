@@ -338,7 +338,7 @@ def value_of_listening() -> float:
 
 
 async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path) -> None:
-    """It listens as long as that is worth it, and earns about what can be earned: a door at once earns -45."""
+    """It listens as long as that is worth it. A door that is opened at once earns -45 on average."""
     files = {
         "doors.ef": DOORS,
         "listen.sd": LISTEN,
