@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any
 
 import msgspec
+import pytest
 import pytest_asyncio
 from models import built_text, engine_of
 from scripted_models import text_project
@@ -58,6 +60,11 @@ state_variable: int items
 
 state_variable: bool is_tidy
 
+state_variable: bool is_damp
+
+initial_belief:
+state.is_damp = AOS.Bernoulli(0.5);
+
 reward_code:
 if (state.items > 3 && state.is_tidy) {
     __reward = 10;
@@ -79,6 +86,7 @@ parameter: Shelf shelf
 dynamic_model:
 state__.items = state.items + (AOS.Bernoulli(0.5) ? 4 : 1);
 __moduleResponse = counted;
+__observed.weight_kg = AOS.SampleNormal(state.is_damp ? 2 : 1, 0.5);
 __reward = -1;
 state_given_observation:
 state___.is_tidy = state__.is_tidy || order > 0.5;
@@ -111,6 +119,12 @@ from_ros_service_response: true
 code:
 order = __input.order
 
+local_variable: weight_kg
+type: float
+from_ros_service_response: true
+code:
+weight_kg = __input.weight
+
 local_variable: seen_x
 from_ros_service_response: true
 code:
@@ -119,11 +133,11 @@ seen_x = __input.x
 }
 
 RUNS: tuple[dict[str, Any], ...] = (
-    {"items": 2, "order": 0.1, "x": 1.25},
-    {"items": 2, "order": None, "x": 1.5},
-    {"items": 7, "order": 0.9, "x": 1.75},
+    {"items": 2, "order": 0.1, "x": 1.25, "weight": 1.9},
+    {"items": 2, "order": None, "x": 1.5, "weight": "?"},
+    {"items": 7, "order": 0.9, "x": 1.75, "weight": 1.6},
 )
-"""What the robot finds, run by run; the second time it cannot tell the order."""
+"""What the robot finds, run by run; the second time it cannot tell the order, nor the weight."""
 
 
 class Robot:
@@ -232,7 +246,7 @@ async def test_the_belief_follows_what_the_robot_finds_until_the_goal(
     assert values(second.belief, "items") == {"6": 0.5, "3": 0.5}
     assert second.remark.endswith("do not correct the belief: order has no value")
     assert (first.remark, third.remark) == ("", "")
-    assert third.belief.goal_probability == 1.0
+    assert third.belief.goal_probability == pytest.approx(1.0)
 
 
 async def test_a_low_level_value_that_came_with_a_response_is_given_to_the_next_call(
@@ -247,3 +261,19 @@ async def test_the_journal_holds_what_corrected_the_belief(robot: Robot, stock: 
     first = robot.outcomes[0]
     assert (first.local_variables["items"], first.local_variables["order"]) == ("2", "0.1")
     assert first.assigned == {"left.place": {"x": 1.25}}
+
+
+async def test_a_number_beside_the_response_weighs_the_belief(robot: Robot, stock: BuiltModel) -> None:
+    await mission(stock, robot)
+    assert [outcome.numbers for outcome in robot.outcomes] == [{"weight_kg": 1.9}, {}, {"weight_kg": 1.6}]
+    first, second, third = (values(record.belief, "is_damp").get("true", 0.0) for record in robot.records)
+    odds = math.exp((0.9**2 - 0.1**2) / (2 * 0.25))
+    assert first == second == pytest.approx(odds / (1 + odds))
+    odds *= math.exp((0.6**2 - 0.4**2) / (2 * 0.25))
+    assert third == pytest.approx(odds / (1 + odds))
+    assert robot.records[1].remark.startswith(
+        'the numbers of count(shelf=left) do not count (weight_kg = "?"): '
+        "the model reports others with the response counted"
+    )
+    density = (math.exp(-2 * 0.9**2) + math.exp(-2 * 0.1**2)) / 2 / (0.5 * math.sqrt(2 * math.pi))
+    assert robot.records[0].surprise == pytest.approx(-math.log(density))

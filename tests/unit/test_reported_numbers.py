@@ -12,6 +12,7 @@ from aos_middleware.observed_numbers import observed_numbers
 from aos_runtime.observed import misuses_of, reported_numbers, reports_in
 from aos_runtime.snippets import read_cpp
 from aos_solver.child.observed_numbers import numbers_by_name, numbers_field
+from aos_solver.emission.lower_relevance import irrelevant_variables
 from aos_solver.emission.program import Observed
 
 DYNAMIC = """if (state.wet) __observed.depth = AOS.SampleNormal(2, 0.5);
@@ -96,6 +97,29 @@ def test_a_reported_draw_is_emitted_as_its_distribution(dialect: str) -> None:
         "look": (Observed("depth", False), Observed("echoes", True), Observed("loud", False))
     }
     assert emit_mapping(project.skills[0]).observed == ("depth", "echoes", "loud")
+
+
+def test_a_variable_matters_that_only_a_number_depends_on() -> None:
+    environment = dict(ENVIRONMENT)
+    environment["GlobalVariablesDeclaration"] = [
+        {"Name": name, "Type": "int", "Default": "0"} for name in ("depth_cm", "walls", "pushed", "spare")
+    ]
+    dynamic = """state__.spare = state.depth_cm;
+    double middle = state.depth_cm / 100.0;
+    __observed.depth = AOS.SampleNormal(middle, 0.5);
+    for (int i = 0; i < state.walls; i++) __observed.echoes[i] = AOS.Bernoulli(0.5);
+    if (state.pushed > 0) __observed.echoes.push_back(AOS.Bernoulli(0.5));
+    __observed.loud = AOS.Bernoulli(0.5);
+    state__.depth_cm += 1; state__.walls += 1; state__.pushed += 1;
+    """
+    project = text_project(
+        {
+            "test.json": json_text(environment, "Environment", "environment"),
+            "look.sd": f"project: test\n\ndynamic_model:\n{dynamic}",
+            "look.am": f"{mapping_text('seen')}\n{LOCALS}",
+        }
+    )
+    assert irrelevant_variables(project) == {"spare"}
 
 
 def test_a_model_that_reports_none_has_no_code_for_it(bundles: Path) -> None:

@@ -5,6 +5,7 @@
 // wrong with it shows when it is used, as a ModelFault.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <initializer_list>
 #include <iterator>
@@ -18,6 +19,8 @@ class Distribution {
  public:
   virtual double draw(Sampler& random) const = 0;
   virtual double log_density(double value) const = 0;
+  // The distance at which two draws from it begin to tell something apart.
+  virtual double spread() const = 0;
 
  protected:
   ~Distribution() = default;
@@ -29,6 +32,7 @@ class Normal final : public Distribution {
   Normal(double mean, double deviation) : mean_(mean), deviation_(deviation) {}
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
+  double spread() const override { return deviation_; }
 
  private:
   void check() const;
@@ -42,6 +46,7 @@ class Uniform final : public Distribution {
   Uniform(double low, double high) : low_(low), high_(high) {}
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
+  double spread() const override { return 0.3 * std::abs(high_ - low_); }
 
  private:
   void check() const;
@@ -49,12 +54,15 @@ class Uniform final : public Distribution {
   double high_;
 };
 
+inline constexpr double discrete_spread = 0.25;
+
 // 0 or 1.
 class Bernoulli final : public Distribution {
  public:
   explicit Bernoulli(double probability) : probability_(probability) {}
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
+  double spread() const override { return discrete_spread; }
 
  private:
   double probability_;
@@ -89,6 +97,7 @@ class Discrete final : public Distribution {
 
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
+  double spread() const override { return discrete_spread; }
 
  private:
   const double* first_ = nullptr;

@@ -11,9 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/observation_cells.hpp"
 #include "aos/planning/search_tree.hpp"
 
 namespace aos {
@@ -92,8 +94,10 @@ class TreeSearch {
     return true;
   }
 
-  // Keeps what is known below the action and observation; nothing where that was never simulated.
+  // Keeps what is known below the action and observation; nothing where that was never simulated, or where numbers were
+  // observed, whose cell says less than they do.
   void move_to(int action, Observation observation) {
+    if (reports_numbers_) return forget();
     const HistoryNode& root = tree_.history(0);
     const std::uint32_t kept =
         root.first_action == no_node
@@ -108,6 +112,7 @@ class TreeSearch {
 
   void forget() {
     tree_.clear();
+    cells_.clear();
     forget_spread();
   }
 
@@ -145,8 +150,9 @@ class TreeSearch {
     double value = state.value(left);
     double later = 0;
     double change = 0;  // of n * v of the history that the last action led to
+    ObservationCells::Drawn drawn{random};
     while (true) {
-      const Step step = state.step(static_cast<int>(a), random);
+      const Step step = step_of(state, static_cast<int>(a), random, drawn);
       const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
       value = goes_on ? state.value(left) : 0;
@@ -154,9 +160,10 @@ class TreeSearch {
       if (!goes_on) break;
 
       const std::uint32_t action = tree_.history(history).first_action + a;
-      std::uint32_t child = tree_.find_child(action, step.observation);
+      const Observation seen = reports_numbers_ ? cells_.cell(action, step.observation, drawn) : step.observation;
+      std::uint32_t child = tree_.find_child(action, seen);
       const bool is_new = child == no_node;
-      if (is_new) child = tree_.add_child(action, step.observation);
+      if (is_new) child = tree_.add_child(action, seen);
       if (is_new || !give_actions(child, state, random)) {
         later = state.leaf(left, random);
         change = child == no_node ? later : add_return(tree_.history(child), later);
@@ -170,6 +177,15 @@ class TreeSearch {
       change = back_up(visits_[i], change, later);
     }
     return later;
+  }
+
+  // What the step reports is drawn, too.
+  template <class SimulatedState>
+  Step step_of(SimulatedState& state, int action, Sampler& random, ObservationCells::Drawn& drawn) const {
+    if (!reports_numbers_) return state.step(action, random);
+    drawn.clear();
+    const ReportingTo reporting{random, drawn};
+    return state.step(action, random);
   }
 
   // Returns false where there is no room for them. Where play-outs value new histories, actions that these would take from
@@ -259,6 +275,8 @@ class TreeSearch {
 
   SearchTree tree_;
   SearchTree spare_;
+  bool reports_numbers_ = Model::reports_numbers();
+  ObservationCells cells_;
   int horizon_ = 0;
   std::vector<Visit> visits_;
   std::vector<double> odds_;

@@ -1,0 +1,106 @@
+// Observed numbers in a search tree. No two simulations observe the same ones, so a tree that branched on each would look
+// ahead by one decision only. Here the numbers after an action and a response fall into cells, each around one observation
+// that was drawn there: what is drawn belongs to the nearest, in units of the distributions' spreads. There are the more
+// cells the more visits (progressive widening: Couetoux and others, 2011).
+//
+// All states of a simulation that reach a cell could have brought an observation of it, so its history has a proper belief,
+// that of somebody who is told the cell and not the numbers. What he can earn the robot can, too.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <unordered_map>
+#include <vector>
+
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+inline constexpr double cells_of_one_visit = 4;
+inline constexpr double widening = 0.05;  // the exponent of the visits
+inline constexpr std::size_t max_cells = 4'000'000;
+
+class ObservationCells {
+ public:
+  // Draws what a step reports.
+  class Drawn final : public NumberSink {
+   public:
+    explicit Drawn(Sampler& random) : random_(random) {}
+    void take(NumberKey key, const Distribution& distribution) override {
+      keys.push_back(key);
+      values.push_back(distribution.draw(random_));
+      spreads.push_back(distribution.spread());
+    }
+    void clear() {
+      keys.clear();
+      values.clear();
+      spreads.clear();
+    }
+
+    std::vector<NumberKey> keys;
+    std::vector<double> values;
+    std::vector<double> spreads;
+
+   private:
+    Sampler& random_;
+  };
+
+  void clear() {
+    places_.clear();
+    cells_ = 0;
+  }
+
+  // What stands for a response and its numbers among the observations after an action, which is given by its node.
+  Observation cell(std::uint32_t action, Observation response, const Drawn& drawn) {
+    if (drawn.keys.empty()) return response;
+    Place& place = places_[mixed(mixed(0, action), static_cast<std::uint64_t>(response))];
+    ++place.visits;
+    const Cell* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Cell& cell : place.cells) {
+      const double distance = squared_distance(cell, drawn, least);
+      if (distance >= least) continue;
+      least = distance;
+      nearest = &cell;
+    }
+    const double wanted = cells_of_one_visit * std::pow(static_cast<double>(place.visits), widening);
+    const bool is_new = nearest == nullptr || (static_cast<double>(place.cells.size()) < wanted && cells_ < max_cells);
+    if (!is_new) return nearest->name;
+    ++cells_;
+    const auto name = mixed(static_cast<std::uint64_t>(response), place.cells.size() + 1);
+    place.cells.push_back({static_cast<Observation>(name), drawn.keys, drawn.values});
+    return place.cells.back().name;
+  }
+
+ private:
+  struct Cell {
+    Observation name;
+    std::vector<NumberKey> keys;
+    std::vector<double> values;
+  };
+  struct Place {
+    std::uint64_t visits = 0;
+    std::vector<Cell> cells;
+  };
+
+  // Infinite where other numbers were reported; at least `limit` where it is not below.
+  static double squared_distance(const Cell& cell, const Drawn& drawn, double limit) {
+    if (cell.keys != drawn.keys) return std::numeric_limits<double>::infinity();
+    double sum = 0;
+    for (std::size_t i = 0; i < cell.values.size() && sum < limit; ++i) {
+      const double distance = (cell.values[i] - drawn.values[i]) / drawn.spreads[i];
+      sum += distance * distance;
+    }
+    return sum;
+  }
+
+  std::unordered_map<std::uint64_t, Place> places_;
+  std::size_t cells_ = 0;
+};
+
+}  // namespace aos
