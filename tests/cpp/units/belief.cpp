@@ -23,10 +23,10 @@ TEST("The posterior is Bayes' rule, and comes with the probability of what was o
   TableModel::take(tiger);
   aos::Sampler random{1};
   const Belief initial = Belief::initial(random);
-  const auto [once, first] = initial.posterior(0, 0, random);
+  const auto [once, first] = exam::posterior_of(initial, 0, 0, random);
   EXPECT_NEAR(first, 0.5, 1e-12);
   EXPECT_NEAR(weight_of(once, 0), 0.85, 1e-12);
-  const auto [twice, second] = once.posterior(0, 0, random);
+  const auto [twice, second] = exam::posterior_of(once, 0, 0, random);
   EXPECT_NEAR(second, 0.85 * 0.85 + 0.15 * 0.15, 1e-12);
   EXPECT_NEAR(weight_of(twice, 0), 0.85 * 0.85 / (0.85 * 0.85 + 0.15 * 0.15), 1e-12);
   EXPECT(twice.is_exact());
@@ -36,7 +36,7 @@ TEST("What cannot be observed leaves an empty belief, and has probability 0") {
   const Problem tiger = units::tiger();
   TableModel::take(tiger);
   aos::Sampler random{1};
-  const auto [posterior, probability] = Belief::initial(random).posterior(0, 5, random);
+  const auto [posterior, probability] = exam::posterior_of(Belief::initial(random), 0, 5, random);
   EXPECT(posterior.particles().empty());
   EXPECT_EQUAL(probability, 0.0);
 }
@@ -85,7 +85,7 @@ TEST("A mixture has the weights of both beliefs in their shares") {
   TableModel::take(tiger);
   aos::Sampler random{1};
   const Belief initial = Belief::initial(random);
-  const Belief sure = initial.posterior(0, 1, random).first;
+  const Belief sure = exam::posterior_of(initial, 0, 1, random).first;
   EXPECT_NEAR(weight_of(initial.mixed_with(sure, 0.4), 1), 0.6 * 0.5 + 0.4 * 0.85, 1e-12);
 }
 

@@ -168,7 +168,7 @@ class Regret {
       exact = found->belief;
       value = values[static_cast<std::size_t>(found - all_reached.begin())];
       if (planner == nullptr) continue;
-      auto posterior = belief.posterior(action, seen, updates).first;
+      auto posterior = posterior_of(belief, action, seen, updates).first;
       if (posterior.particles().empty()) {
         fault = "the belief holds impossible what has happened";
         break;
