@@ -67,9 +67,9 @@ class Claims {
       if (reached.empty()) break;
       const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(reached.size())));
       const int seen = reached[chosen].observation;
-      const auto [posterior, probability] = belief.posterior(action, seen, aos::ignored_numbers, random_);
+      const auto [posterior, probability] = posterior_of(belief, action, seen, random_);
       const double ended = ended_and_seen(belief, exact, action, seen);
-      check("posterior", std::exp(probability), known_running * reached[chosen].probability + ended,
+      check("posterior", probability, known_running * reached[chosen].probability + ended,
             1e-9 + belief.error_bound());
       if (posterior.particles().empty()) break;
       known_running = known_running * reached[chosen].probability / (known_running * reached[chosen].probability + ended);

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -107,7 +107,7 @@ class Regret {
       const auto decide = [&](const Mass& exact, const Belief& belief, int step) {
         const double before = processor_seconds();
         const Decision decision = planner ? searched(*planner, name, belief, mission, step)
-                                          : Decision{looked_ahead(exact, step), "look-ahead", ""};
+                                          : Decision{looked_ahead(exact), "look-ahead", ""};
         const double spent = processor_seconds() - before;
         seconds += spent;
         longest = std::max(longest, spent);
@@ -168,7 +168,7 @@ class Regret {
       exact = found->belief;
       value = values[static_cast<std::size_t>(found - all_reached.begin())];
       if (planner == nullptr) continue;
-      auto posterior = belief.posterior(action, seen, aos::ignored_numbers, updates).first;
+      auto posterior = posterior_of(belief, action, seen, updates).first;
       if (posterior.particles().empty()) {
         fault = "the belief holds impossible what has happened";
         break;
@@ -188,23 +188,24 @@ class Regret {
     return {planner.choice(planner.estimates(belief)), planner.name(), planner.why()};
   }
 
-  // The best action with a whole horizon to go; of equal ones the best in what is left of the mission.
-  int looked_ahead(const Mass& exact, int step) {
+  // The best action with a whole horizon to go. Of equal ones, the one that is better with fewer decisions to go, so that
+  // nothing is put off for ever where nothing is lost by waiting.
+  int looked_ahead(const Mass& exact) {
     const double scale = std::max(flat_.largest_reward(), 1e-9);
-    const int horizon = problem_.horizon;
-    truth_.narrow(exact, horizon, 1e-6 * scale, 0.1);
-    int best = 0;
-    Bracket best_value{-INFINITY, -INFINITY};
-    for (int action = 0; action < TableModel::action_count(); ++action) {
-      const auto a = static_cast<std::size_t>(action);
-      const double value = truth_.action_value(exact, a, horizon).lower;
-      const double now = truth_.action_value(exact, a, steps_ - step).lower;
-      const bool is_equal = std::abs(value - best_value.lower) <= 1e-9 * scale;
-      if (is_equal ? now <= best_value.upper : value < best_value.lower) continue;
-      best = action;
-      best_value = {value, now};
+    truth_.narrow(exact, problem_.horizon, 1e-6 * scale, 0.1);
+    std::vector<std::size_t> equal(flat_.actions());
+    std::iota(equal.begin(), equal.end(), std::size_t{0});
+    for (int left = problem_.horizon; left > 0 && equal.size() > 1; --left) {
+      std::vector<double> values;
+      for (const std::size_t action : equal) values.push_back(truth_.action_value(exact, action, left).lower);
+      const double best = *std::max_element(values.begin(), values.end());
+      std::vector<std::size_t> kept;
+      for (std::size_t i = 0; i < equal.size(); ++i) {
+        if (values[i] >= best - 1e-9 * scale) kept.push_back(equal[i]);
+      }
+      equal.swap(kept);
     }
-    return best;
+    return static_cast<int>(equal.front());
   }
 
   static std::uint64_t mixed(std::uint64_t seed, std::uint64_t mission, std::uint64_t use) {

@@ -2,6 +2,7 @@
 // models run through the engine's own headers without being compiled.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -12,7 +13,9 @@
 #include <vector>
 
 #include "aos/base/fault.hpp"
+#include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/rollout.hpp"
 #include "aos/model/step.hpp"
@@ -87,6 +90,8 @@ struct TableModel {
   static int action_count() { return static_cast<int>(problem_->actions); }
   static bool reports_numbers() { return false; }
   static int skill_of(int) { return 0; }
+  static int number_count(int) { return 0; }
+  static bool reports_numbers() { return false; }
   static int response_count(int) { return static_cast<int>(responses_.size()); }
   static const char* response_name(int, int response) { return responses_[static_cast<std::size_t>(response)].c_str(); }
   static aos::Ending ending(const State& state) { return state.ending; }
@@ -176,5 +181,13 @@ struct TableModel {
   inline static std::vector<std::vector<double>> weights_;  // of the rows, then of the sensings
   inline static std::vector<double> start_weights_;
 };
+
+// The belief after a response, and the probability of that; an empty belief where it is impossible.
+inline std::pair<aos::Belief<TableModel>, double> posterior_of(const aos::Belief<TableModel>& belief, int action,
+                                                               aos::Observation seen, aos::Sampler& random) {
+  auto [posterior, log_probability] = belief.posterior(action, seen, aos::ignored_numbers, random);
+  const double probability = posterior.particles().empty() ? 0 : std::exp(log_probability);
+  return {std::move(posterior), probability};
+}
 
 }  // namespace exam

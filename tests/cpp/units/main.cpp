@@ -1,0 +1,29 @@
+// Runs every test and tells of each, as a line of JSON, what it expected in vain.
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "aos/base/fault.hpp"
+#include "aos/base/json.hpp"
+#include "aos/model/support.hpp"
+#include "check.hpp"
+
+int main() {
+  bool has_failed = false;
+  for (const units::Test& test : units::all_tests()) {
+    units::failures().clear();
+    try {
+      test.run();
+    } catch (const std::exception& error) {
+      units::failures().push_back(std::string{"it ended with "} + error.what());
+    } catch (const aos::ModelFault& fault) {
+      units::failures().push_back("it ended with a fault: " + fault.text);
+    }
+    aos::JsonWriter json;
+    json.begin_object().member("test", test.sentence).key("failures").begin_array();
+    for (const std::string& text : units::failures()) json.value(text);
+    std::puts(json.end_array().end_object().text().c_str());
+    has_failed = has_failed || !units::failures().empty();
+  }
+  return has_failed ? 1 : 0;
+}

@@ -1,0 +1,155 @@
+// Point-based search on tables: regions, bounds and trials, number_table.hpp, alias.hpp.
+#include <map>
+
+#include "aos/base/alias.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/planning/state_space.hpp"
+#include "check.hpp"
+#include "point_based/number_table.hpp"
+#include "point_based/online.hpp"
+#include "point_based/regions.hpp"
+#include "worlds.hpp"
+
+namespace {
+
+using units::Problem;
+using units::TableModel;
+namespace point_based = aos::point_based;
+
+// By the engine's own way to numbers. States are numbered as they are found, so those of the start come first.
+point_based::FlatModel flat_model(const Problem& problem) {
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<TableModel>::initial(random);
+  aos::StateSpace<TableModel> space;
+  space.reach(belief);
+  point_based::FlatModel model = space.rows();
+  model.starts.push_back({1, space.weights_of(belief)});
+  return model;
+}
+
+bool never() { return false; }
+
+TEST("The first bounds of a corridor enclose its value, and trials close them") {
+  for (const std::uint32_t cells : {1u, 2u, 8u, 60u}) {
+    const Problem corridor = units::corridor(cells, 0.9);
+    point_based::OnlineSarsop search{flat_model(corridor)};
+    EXPECT(search.move_to({{0, 1.0}}));
+    const double value = 10 * std::pow(0.9, cells - 1);
+    const auto before = search.bounds();
+    EXPECT(before.first <= value + 1e-12 && value - 1e-12 <= before.second);
+    search.improve(5000, never);
+    const auto after = search.bounds();
+    EXPECT(after.first <= value + 1e-12 && value - 1e-12 <= after.second);
+    EXPECT(after.second - after.first <= 2e-3);
+  }
+}
+
+TEST("The bounds of the tiger close on the value that other programs give") {
+  const Problem tiger = units::tiger();
+  point_based::OnlineSarsop search{flat_model(tiger)};
+  EXPECT(search.move_to({{0, 0.5}, {1, 0.5}}));
+  search.improve(200'000, never);
+  const auto [lower, upper] = search.bounds();
+  EXPECT(lower <= 19.3714 && 19.3713 <= upper);
+  EXPECT_NEAR(upper, lower, 0.05);
+}
+
+TEST("Bounds come nearer with every trial, and never cross") {
+  const Problem tiger = units::tiger();
+  point_based::OnlineSarsop search{flat_model(tiger)};
+  search.move_to({{0, 0.5}, {1, 0.5}});
+  auto before = search.bounds();
+  for (int trial = 0; trial < 200; ++trial) {
+    search.improve(1, never);
+    const auto now = search.bounds();
+    EXPECT(now.first >= before.first - 1e-9 && now.second <= before.second + 1e-9);
+    EXPECT(now.first <= now.second + 1e-9);
+    before = now;
+  }
+}
+
+TEST("Each action has bounds of its own, of which the best are those of the belief") {
+  const Problem tiger = units::tiger();
+  point_based::OnlineSarsop search{flat_model(tiger)};
+  search.move_to({{0, 0.5}, {1, 0.5}});
+  search.improve(20'000, never);
+  const auto actions = search.action_bounds();
+  EXPECT_EQUAL(actions.size(), 3u);
+  EXPECT(actions[0].lower > actions[1].upper);
+  EXPECT_NEAR(actions[0].lower, search.bounds().first, 0.05);
+  const double open = -45 + 0.95 * 19.3714;
+  EXPECT(actions[1].lower <= open && open <= actions[1].upper);
+}
+
+TEST("A belief of states that no start leads to is refused") {
+  Problem problem = units::world(4, 1, 0.9);
+  problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
+  problem.starts = {{0, 0.5}, {1, 0.5}};
+  units::row(problem, 0, 0) = {{1.0, 2, 0, 1.0}};
+  units::row(problem, 1, 0) = {{1.0, 3, 1, 2.0}};
+  units::row(problem, 2, 0) = {{1.0, 2, 0, 1.0}};
+  units::row(problem, 3, 0) = {{1.0, 3, 1, 2.0}};
+  point_based::FlatModel model = flat_model(problem);
+  const point_based::Regions regions{model};
+  EXPECT_EQUAL(regions.region_of[0], regions.region_of[1]);
+  point_based::OnlineSarsop search{std::move(model)};
+  EXPECT(search.move_to({{0, 0.5}, {1, 0.5}}));
+  EXPECT(!search.move_to({{0, 0.5}, {2, 0.5}}));
+}
+
+TEST("States that the robot always tells apart are in regions of their own, worthless ones in none") {
+  Problem problem = units::world(3, 2, 0.9);
+  problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};
+  units::row(problem, 0, 0) = {{0.5, 0, 0, 1.0}, {0.5, 1, 1, 1.0}};
+  units::row(problem, 0, 1) = {{1.0, 2, 0, 0.0}};
+  units::row(problem, 1, 0) = {{1.0, 0, 0, 3.0}};
+  const point_based::FlatModel model = flat_model(problem);
+  const point_based::Regions regions{model};
+  EXPECT_EQUAL(regions.all.size(), 2u);
+  int worthless = 0;
+  for (std::uint32_t state = 0; state < 3; ++state) {
+    worthless += regions.is_worthless(state);
+    EXPECT_EQUAL(regions.is_worthless(state), regions.region_of[state] == point_based::nowhere);
+  }
+  EXPECT_EQUAL(worthless, 1);
+}
+
+TEST("Numbers are found by their keys, new keys are told, and clearing forgets them") {
+  point_based::NumberTable table;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    const auto [number, is_new] = table.try_emplace(std::uint64_t{i} * 0x100000001u, i);
+    EXPECT(is_new && number == i);
+  }
+  EXPECT_EQUAL(table.size(), 3000u);
+  for (std::uint32_t i = 0; i < 3000; i += 7) {
+    const auto [number, is_new] = table.try_emplace(std::uint64_t{i} * 0x100000001u, 99999);
+    EXPECT(!is_new && number == i);
+  }
+  table.clear();
+  EXPECT_EQUAL(table.size(), 0u);
+  EXPECT(table.try_emplace(0, 5).second);
+}
+
+TEST("Draws by columns have the weights that the columns were made of") {
+  for (const std::vector<double>& weights : {std::vector<double>{1.0}, {1.0, 3.0}, {0.001, 0.5, 0.2, 7.0, 0.0001}}) {
+    std::vector<aos::AliasColumns<int>::Weighted> outcomes;
+    double total = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      outcomes.push_back({static_cast<int>(i), weights[i]});
+      total += weights[i];
+    }
+    std::vector<aos::AliasColumn<int>> columns;
+    aos::AliasColumns<int>{}.append(outcomes, total, columns);
+    aos::Sampler random{11};
+    std::map<int, int> counts;
+    constexpr int draws = 100'000;
+    for (int i = 0; i < draws; ++i) ++counts[aos::drawn(columns.data(), static_cast<std::uint32_t>(columns.size()), random.bits())];
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      EXPECT_NEAR(counts[static_cast<int>(i)] / double{draws}, weights[i] / total, 0.006);
+    }
+  }
+}
+
+}  // namespace

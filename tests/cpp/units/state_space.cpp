@@ -1,0 +1,193 @@
+// The model as numbers and what is worked out from it: state_space.hpp, step_table.hpp, exact.hpp.
+#include "aos/planning/state_space.hpp"
+
+#include <map>
+
+#include "aos/planning/exact.hpp"
+#include "aos/planning/step_table.hpp"
+#include "check.hpp"
+#include "worlds.hpp"
+
+namespace {
+
+using units::Problem;
+using units::TableModel;
+using Belief = aos::Belief<TableModel>;
+using Space = aos::StateSpace<TableModel>;
+
+Belief initial_belief(const Problem& problem) {
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  return Belief::initial(random);
+}
+
+TEST("All states that can be reached are listed, and no others") {
+  Problem problem = units::corridor(6, 0.9);
+  problem.starts = {{2, 1.0}};
+  units::row(problem, 1, 1) = {{1.0, 1, 0, 0.0}};  // cell 0 cannot be reached
+  const Belief belief = initial_belief(problem);
+  Space space;
+  EXPECT(space.reach(belief));
+  EXPECT(space.is_closed());
+  EXPECT_EQUAL(space.size(), 5u);
+  EXPECT(space.reaches(aos::Ending::goal));
+  EXPECT(!space.reaches(aos::Ending::failure));
+}
+
+TEST("A row has the expected reward and the probabilities of the states after it; an ended one has no number") {
+  Problem problem = units::world(3, 1, 0.9);
+  problem.endings[2] = 2;
+  units::row(problem, 0, 0) = {{0.25, 1, 0, 4.0}, {0.25, 1, 0, 0.0}, {0.5, 2, 0, -6.0}};
+  const Belief belief = initial_belief(problem);
+  Space space;
+  EXPECT(space.reach(belief));
+  EXPECT_EQUAL(space.size(), 2u);
+  const std::uint32_t start = space.find(belief.particles().front().state);
+  const auto& rows = space.rows();
+  EXPECT_NEAR(rows.rewards[rows.row(start, 0)], 0.25 * 4 - 0.5 * 6, 1e-12);
+  const auto* outcome = rows.outcomes.begin(rows.row(start, 0));
+  EXPECT_EQUAL(rows.outcomes.end(rows.row(start, 0)) - outcome, 1);
+  EXPECT_NEAR(outcome->probability, 0.5, 1e-12);
+  EXPECT_EQUAL(space[outcome->next].variables[0], 1);
+}
+
+TEST("Outcomes in the same next state share their readings, which sum to 1") {
+  const Problem tiger = units::tiger();
+  const Belief belief = initial_belief(tiger);
+  Space space;
+  EXPECT(space.reach(belief));
+  const auto& rows = space.rows();
+  for (std::size_t row = 0; row < rows.states * rows.actions; ++row) {
+    double total = 0;
+    for (const auto* outcome = rows.outcomes.begin(row); outcome != rows.outcomes.end(row); ++outcome) {
+      total += outcome->probability;
+      double readings = 0;
+      const auto* reading = rows.readings.begin(outcome->sensing);
+      for (; reading != rows.readings.end(outcome->sensing); ++reading) readings += reading->probability;
+      EXPECT_NEAR(readings, 1.0, 1e-12);
+    }
+    EXPECT_NEAR(total, 1.0, 1e-12);
+  }
+}
+
+TEST("Variables that do not matter tell no states apart, and all others do") {
+  Problem problem = units::world(6, 1, 0.9);
+  for (std::uint32_t state = 0; state < 6; ++state) {
+    problem.values[2 * state] = static_cast<int>(state % 2);
+    problem.values[2 * state + 1] = static_cast<int>(state / 2);
+    units::row(problem, state, 0) = {{1.0, (state + 1) % 6, 0, state % 2 == 0 ? 1.0 : 0.0}};
+  }
+  const Belief all = initial_belief(problem);
+  Space apart;
+  EXPECT(apart.reach(all));
+  EXPECT_EQUAL(apart.size(), 6u);
+  problem.irrelevant = {1};
+  const Belief some = initial_belief(problem);
+  Space together;
+  EXPECT(together.reach(some));
+  EXPECT_EQUAL(together.size(), 2u);
+}
+
+TEST("A limit that is met leaves nothing listed, and is told") {
+  const Problem problem = units::corridor(50, 0.9);
+  const Belief belief = initial_belief(problem);
+  Space space{aos::SpaceLimits{.states = 10}};
+  EXPECT(!space.reach(belief));
+  EXPECT_EQUAL(space.size(), 0u);
+  EXPECT(space.obstacle().find("too many states") != std::string::npos);
+  Space work{aos::SpaceLimits{.work = 20}};
+  EXPECT(!work.reach(belief));
+  EXPECT(!work.obstacle().empty());
+}
+
+TEST("What so many decisions can lead to is listed without the states behind it") {
+  const Problem problem = units::corridor(50, 0.9);
+  const Belief belief = initial_belief(problem);
+  Space space;
+  space.reach_within(belief, 4);
+  EXPECT_EQUAL(space.size(), 5u);
+  EXPECT(!space.is_closed());
+}
+
+TEST("The running part of a belief comes by number, its weights as they are") {
+  Problem problem = units::world(3, 1, 0.9);
+  problem.endings[1] = 1;
+  units::row(problem, 0, 0) = {{0.5, 1, 0, 0}, {0.3, 2, 0, 0}, {0.2, 0, 0, 0}};
+  Belief belief = initial_belief(problem);
+  Space space;
+  EXPECT(space.reach(belief));
+  aos::Sampler random{1};
+  belief = belief.predicted(0, random);
+  EXPECT(space.reach(belief));
+  double total = 0;
+  std::uint32_t least = 0;
+  for (const auto& [number, weight] : space.weights_of(belief)) {
+    EXPECT(number >= least);
+    least = number + 1;
+    total += weight;
+  }
+  EXPECT_NEAR(total, 0.5, 1e-12);
+}
+
+TEST("Steps by the table have the odds of the model, and its expected rewards") {
+  Problem problem = units::world(3, 1, 0.9);
+  problem.endings[2] = 1;
+  problem.sensings.push_back({{0, 0.3}, {1, 0.7}});
+  units::row(problem, 0, 0) = {{0.1, 0, 0, 2.0}, {0.6, 1, 1, -1.0}, {0.3, 2, 0, 5.0}};
+  const Belief belief = initial_belief(problem);
+  Space space;
+  EXPECT(space.reach(belief));
+  aos::StepTable<TableModel> table;
+  EXPECT(table.prepare(space, belief));
+  aos::Sampler random{5};
+  std::map<std::pair<int, aos::Observation>, int> counts;
+  double rewards = 0;
+  constexpr int draws = 100'000;
+  for (int i = 0; i < draws; ++i) {
+    const auto& outcome = table.outcome(table.start(random.bits()), 0, random.bits());
+    const bool is_over = outcome.next == aos::StepTable<TableModel>::ended;
+    ++counts[{is_over ? 2 : space[outcome.next].variables[0], is_over ? -1 : outcome.step.observation}];
+    rewards += outcome.step.reward;
+  }
+  EXPECT_NEAR((counts[{0, -1}] / double{draws}), 0.1, 0.005);
+  EXPECT_NEAR((counts[{1, 0}] / double{draws}), 0.18, 0.006);
+  EXPECT_NEAR((counts[{1, 1}] / double{draws}), 0.42, 0.008);
+  EXPECT_NEAR((counts[{2, -1}] / double{draws}), 0.3, 0.007);
+  EXPECT_NEAR(rewards / draws, 0.1 * 2 - 0.6 + 0.3 * 5, 0.02);
+}
+
+TEST("Exact values are those that can be worked out by hand") {
+  const Problem tiger = units::tiger();
+  const Belief belief = initial_belief(tiger);
+  Space space;
+  EXPECT(space.reach(belief));
+  aos::ExactEvaluation<TableModel> evaluation{space, {.beliefs = 1000}};
+  const auto one = evaluation.action_values(belief, 1);
+  EXPECT_NEAR(one[0], -1.0, 1e-12);
+  EXPECT_NEAR(one[1], -45.0, 1e-12);
+  const auto two = evaluation.action_values(belief, 2);
+  EXPECT_NEAR(two[0], -1 - 0.95, 1e-12);
+  EXPECT_NEAR(two[2], -45 - 0.95, 1e-12);
+  // Listen twice; hear the same (0.745) and open the other door, or listen once more.
+  const double same = 0.85 * 0.85 + 0.15 * 0.15;
+  const double open = (0.85 * 0.85 * 10 - 0.15 * 0.15 * 100) / same;
+  const auto three = evaluation.action_values(belief, 3);
+  EXPECT_NEAR(three[0], -1 - 0.95 + 0.95 * 0.95 * (same * open - (1 - same)), 1e-12);
+}
+
+TEST("Exact values that exceed the budget are refused, and no wrong ones given") {
+  const Problem tiger = units::tiger();
+  const Belief belief = initial_belief(tiger);
+  Space space;
+  EXPECT(space.reach(belief));
+  aos::ExactEvaluation<TableModel> evaluation{space, {.beliefs = 3}};
+  bool is_refused = false;
+  try {
+    evaluation.action_values(belief, 10);
+  } catch (const aos::NotEnumerable&) {
+    is_refused = true;
+  }
+  EXPECT(is_refused);
+}
+
+}  // namespace

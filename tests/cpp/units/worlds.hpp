@@ -1,0 +1,69 @@
+// Small worlds for the tests, as the exam's tables.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "problem.hpp"
+#include "table_model.hpp"
+
+namespace units {
+
+using exam::Problem;
+using exam::TableModel;
+
+// Where a row is not filled, the state stays, nothing is seen and nothing is earned.
+inline Problem world(std::size_t states, std::size_t actions, double discount) {
+  Problem problem;
+  problem.name = "units";
+  problem.discount = discount;
+  problem.horizon = 10;
+  problem.actions = actions;
+  problem.variables = 2;
+  for (std::size_t state = 0; state < states; ++state) {
+    problem.values.push_back(static_cast<int>(state));
+    problem.values.push_back(0);
+  }
+  problem.endings.assign(states, 0);
+  problem.sensings = {{{-1, 1.0}}};
+  problem.starts = {{0, 1.0}};
+  for (std::uint32_t state = 0; state < states; ++state) {
+    for (std::size_t action = 0; action < actions; ++action) problem.rows.push_back({{1.0, state, 0, 0.0}});
+  }
+  return problem;
+}
+
+inline std::vector<exam::Outcome>& row(Problem& problem, std::size_t state, std::size_t action) {
+  return problem.rows[state * problem.actions + action];
+}
+
+// The tiger behind one of two doors (Kaelbling, Littman and Cassandra, 1998): listen, open left, open right. It is heard
+// on the left as 0.
+inline Problem tiger() {
+  Problem problem = world(2, 3, 0.95);
+  problem.starts = {{0, 0.5}, {1, 0.5}};
+  problem.sensings.push_back({{0, 0.85}, {1, 0.15}});
+  problem.sensings.push_back({{0, 0.15}, {1, 0.85}});
+  for (std::uint32_t side = 0; side < 2; ++side) {
+    row(problem, side, 0) = {{1.0, side, side + 1, -1}};
+    for (std::size_t door = 0; door < 2; ++door) {
+      const double reward = door == side ? -100 : 10;
+      row(problem, side, door + 1) = {{0.5, 0, 0, reward}, {0.5, 1, 0, reward}};
+    }
+  }
+  return problem;
+}
+
+// Cells in a row: action 0 leads on, action 1 back, and from the last cell action 0 earns 10 and ends the mission.
+inline Problem corridor(std::uint32_t cells, double discount) {
+  Problem problem = world(cells + 1, 2, discount);
+  for (std::uint32_t cell = 0; cell < cells; ++cell) {
+    row(problem, cell, 0) = {{1.0, cell + 1, 0, cell + 1 == cells ? 10.0 : 0.0}};
+    row(problem, cell, 1) = {{1.0, cell > 0 ? cell - 1 : 0, 0, 0.0}};
+  }
+  problem.endings[cells] = 1;
+  return problem;
+}
+
+}  // namespace units
