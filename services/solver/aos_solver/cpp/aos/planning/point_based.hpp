@@ -5,7 +5,6 @@
 #pragma once
 
 #include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -43,7 +42,7 @@ class PointBased {
     horizon_ = horizon;
     return take_model(entries);
   }
-  // Whether values are of missions without end. So they are where hardly anything comes from beyond the horizon.
+  // Whether values are of missions without end, since there are too many states to tell decisions to go apart.
   bool is_endless() const { return is_endless_; }
   // What the running part of the prepared belief is worth at least and at most.
   std::pair<double, double> bounds() const { return search_->bounds(); }
@@ -64,11 +63,10 @@ class PointBased {
     return simulations;
   }
 
-  // The same below an action that is carried out. With a horizon that would be of no use: the next belief has all of its
-  // decisions to go again.
+  // The same below an action that is carried out.
   template <class IsOver>
   void think_about(int action, Budget budget, IsOver&& is_over) {
-    if (running_ <= 0 || budget.seconds <= 0 || !is_endless_) return;
+    if (running_ <= 0 || budget.seconds <= 0) return;
     known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), 0, until(budget, is_over)));
   }
 
@@ -82,24 +80,25 @@ class PointBased {
   }
 
  private:
-  // What of a value may come from beyond the horizon, for missions without end to stand for those with it.
-  static constexpr double negligible_beyond = 0.2;
   // A step of a state through a search tree takes as long as so many products of numbers.
   static constexpr std::uint64_t work_per_step = 100;
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
-    point_based::FlatModel model = space_.rows();
-    model.starts = starts_;
-    is_endless_ = std::pow(Model::discount, horizon_) <= negligible_beyond;
-    model.horizon = is_endless_ ? 0 : static_cast<std::size_t>(horizon_);
-    try {
-      search_ = std::make_unique<point_based::OnlineSarsop>(std::move(model));
-    } catch (const std::length_error&) {
-      search_.reset();
-      return "there are too many states for so long a horizon";
+    for (const bool is_endless : {false, true}) {
+      if (is_endless && Model::discount >= 1) break;
+      point_based::FlatModel model = space_.rows();
+      model.starts = starts_;
+      model.horizon = is_endless ? 0 : static_cast<std::size_t>(horizon_);
+      try {
+        search_ = std::make_unique<point_based::OnlineSarsop>(std::move(model));
+        search_->move_to(entries);
+        is_endless_ = is_endless;
+        return {};
+      } catch (const std::length_error&) {
+        search_.reset();
+      }
     }
-    search_->move_to(entries);
-    return {};
+    return "there are too many states for so long a horizon";
   }
 
   std::uint64_t work_of(Budget budget) const {
