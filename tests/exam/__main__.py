@@ -42,14 +42,18 @@ def main() -> int:
         command.add_argument("--models", type=int, default=60, metavar="N")
         command.add_argument("--seed", type=int, default=1, help="of the first model, and of the missions")
         command.add_argument("--family", action="append", choices=sorted(FAMILIES), help="may be repeated")
-        command.add_argument("--needles", action="store_true", help="large ones of the families that hide a goal")
+        command.add_argument(
+            "--needles", action="store_true", help="large ones of the families that hide a goal"
+        )
         command.add_argument("--max-states", type=int, default=200, metavar="N")
         command.add_argument("--jobs", type=int, default=1, metavar="N", help="drivers at a time")
         command.add_argument("--truth", type=float, metavar="SECONDS", help="for a bracket of the truth")
         command.add_argument("--simulations", type=int, metavar="N", help="of a search")
         command.add_argument("--steps", type=int, metavar="N")
         command.add_argument("--dump", type=Path, metavar="DIR", help="where false problems are written")
-        command.add_argument("--json", action="store_true", help="a line for each model, and then the summary")
+        command.add_argument(
+            "--json", action="store_true", help="a line for each model, and then the summary"
+        )
         if name == "regret":
             command.add_argument("--planner", action="append", help="auto, pomcp, despot, sarsop, look-ahead")
             command.add_argument("--seconds", type=float, help="of processor time for a decision; 0.1")

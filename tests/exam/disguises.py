@@ -66,7 +66,9 @@ def _with_diary(random: random.Random, world: World) -> World:
     """What the robot did last, or whether it ever did something."""
     if random.random() < 0.5:
         return _beside(random, world, "last", [(1.0, -1)], lambda value, action: [(1.0, action)])
-    return _beside(random, world, "ever", [(1.0, 0)], lambda value, action: [(1.0, max(value, int(action == 0)))])
+    return _beside(
+        random, world, "ever", [(1.0, 0)], lambda value, action: [(1.0, max(value, int(action == 0)))]
+    )
 
 
 def _with_label(random: random.Random, world: World) -> World:

@@ -7,7 +7,19 @@ import random
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
-__all__ = ["FAILURE", "GOAL", "NOTHING_SEEN", "RUNNING", "Outcome", "Problem", "State", "TooLarge", "World", "odds_of", "tabulate"]
+__all__ = [
+    "FAILURE",
+    "GOAL",
+    "NOTHING_SEEN",
+    "RUNNING",
+    "Outcome",
+    "Problem",
+    "State",
+    "TooLarge",
+    "World",
+    "odds_of",
+    "tabulate",
+]
 
 State = tuple[int, ...]
 """The values of a world's variables."""
@@ -121,7 +133,9 @@ def tabulate(name: str, world: World, max_states: int) -> Problem:
                     continue
                 seen = outcome.seen if isinstance(outcome.seen, tuple) else ((outcome.seen, 1.0),)
                 sensing = sensings.setdefault(_normalised(seen), len(sensings))
-                merged[number_of(outcome.next, outcome.ending), sensing, outcome.reward] += outcome.probability
+                merged[number_of(outcome.next, outcome.ending), sensing, outcome.reward] += (
+                    outcome.probability
+                )
             total = sum(merged.values())
             rows[numbers[key], action] = [
                 (odds / total, after, sensing, reward) for (after, sensing, reward), odds in merged.items()

@@ -71,7 +71,12 @@ class Bounds:
         return not self.false and not self.crashes
 
     def as_json(self) -> dict[str, Any]:
-        counts = {"models": self.models, "claims": self.claims, "false": self.false, "planners": self.planners}
+        counts = {
+            "models": self.models,
+            "claims": self.claims,
+            "false": self.false,
+            "planners": self.planners,
+        }
         return {**counts, "false_models": self.false_models, "crashes": self.crashes}
 
 
@@ -92,7 +97,9 @@ def _number(value: float | None) -> str:
 class Regrets:
     """Shares of the range that planners lose, by family and planner."""
 
-    regrets: dict[str, dict[str, list[float]]] = dataclasses.field(default_factory=lambda: defaultdict(lambda: defaultdict(list)))
+    regrets: dict[str, dict[str, list[float]]] = dataclasses.field(
+        default_factory=lambda: defaultdict(lambda: defaultdict(list))
+    )
     worst: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lambda: defaultdict(list))
     errors: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
     seconds: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
@@ -144,7 +151,9 @@ class Regrets:
         )
 
     def line(self) -> str:
-        return ", ".join(f"{name} {100 * fmean(excess for excess, _ in found):.1f} %" for name, found in self.worst.items())
+        return ", ".join(
+            f"{name} {100 * fmean(excess for excess, _ in found):.1f} %" for name, found in self.worst.items()
+        )
 
     def table(self) -> str:
         names = sorted({name for family in self.regrets.values() for name in family})
@@ -157,7 +166,11 @@ class Regrets:
                 everything[name] += found[name]
                 cells += f"{100 * fmean(found[name]):12.1f}{100 * max(found[name]):10.1f}"
             lines.append(f"  {family:12}{len(next(iter(found.values()))):7}{cells}")
-        cells = "".join(f"{100 * fmean(all_):12.1f}{100 * max(all_):10.1f}" for all_ in (everything[n] for n in names) if all_)
+        cells = "".join(
+            f"{100 * fmean(all_):12.1f}{100 * max(all_):10.1f}"
+            for all_ in (everything[n] for n in names)
+            if all_
+        )
         lines.append(f"  {'all':12}{max((len(a) for a in everything.values()), default=0):7}{cells}")
         for name, found_worst in self.worst.items():
             worst, model = max(found_worst)

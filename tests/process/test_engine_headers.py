@@ -19,7 +19,9 @@ UNITS = TESTS / "cpp" / "units"
 TABLES = TESTS / "exam" / "cpp"
 SENTENCES = re.compile(r'^TEST\("(.+)"\)', re.MULTILINE)
 
-sentences = [sentence for path in sorted(UNITS.glob("*.cpp")) for sentence in SENTENCES.findall(path.read_text())]
+sentences = [
+    sentence for path in sorted(UNITS.glob("*.cpp")) for sentence in SENTENCES.findall(path.read_text())
+]
 
 
 @pytest.fixture(scope="module")

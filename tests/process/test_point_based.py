@@ -162,11 +162,13 @@ async def test_thinking_while_acting_goes_on_with_what_the_action_leads_to(tag: 
     assert warm.known_simulations > plan.simulations
 
 
-async def test_without_a_discount_another_planner_decides_and_says_why(cache_dir: Path) -> None:
+async def test_without_a_discount_the_horizon_bounds_what_is_earned(cache_dir: Path) -> None:
     async with engine_of(await built_text(TICKET, cache_dir)) as engine:
         plan = await engine.plan(simulations=500, seed=1, planner="sarsop")
-    assert plan.planner == "pomcp"
-    assert plan.why.startswith("SARSOP cannot be used: without a discount")
+        exact = await engine.exact()
+    assert plan.planner == "sarsop"
+    assert "decisions to go the belief is worth between" in plan.why
+    assert plan.best.q == pytest.approx(max(value.q for value in exact.actions), abs=1e-6)
 
 
 @pytest.mark.parametrize(

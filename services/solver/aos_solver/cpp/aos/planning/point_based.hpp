@@ -5,6 +5,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -34,6 +35,7 @@ class PointBased {
     if (!space_.lists_observations()) return numbers_are_observed;
     const auto entries = space_.weights_of(belief);
     running_ = belief.probability_of(Ending::running);
+    if (entries.empty()) return {};
     const bool is_known = search_ && states_ == space_.size() && horizon_ == horizon;
     if (is_known && search_->move_to(entries)) return {};
     if (states_ != space_.size()) starts_.clear();
@@ -42,10 +44,11 @@ class PointBased {
     horizon_ = horizon;
     return take_model(entries);
   }
-  // Whether values are of missions without end, since there are too many states to tell decisions to go apart.
+  // Whether values are of missions without end: the discount leaves next to nothing of what comes after the horizon, or
+  // there are too many states to tell them apart by the decisions to go.
   bool is_endless() const { return is_endless_; }
   // What the running part of the prepared belief is worth at least and at most.
-  std::pair<double, double> bounds() const { return search_->bounds(); }
+  std::pair<double, double> bounds() const { return running_ > 0 ? search_->bounds() : std::pair{0.0, 0.0}; }
   // Of all searches so far.
   std::uint64_t known_simulations() const { return known_; }
 
@@ -72,6 +75,7 @@ class PointBased {
 
   // What each action is worth at least. `n` is how many trials began with it, and the look at where it leads.
   std::vector<ActionEstimate> estimates() const {
+    if (running_ <= 0) return std::vector<ActionEstimate>(static_cast<std::size_t>(Model::action_count()));
     std::vector<ActionEstimate> result;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
       result.push_back({bounds.lower, bounds.trials + 1, 0});
@@ -80,25 +84,28 @@ class PointBased {
   }
 
  private:
+  static constexpr double next_to_nothing = 0.01;
   // A step of a state through a search tree takes as long as so many products of numbers.
   static constexpr std::uint64_t work_per_step = 100;
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
-    for (const bool is_endless : {false, true}) {
-      if (is_endless && Model::discount >= 1) break;
-      point_based::FlatModel model = space_.rows();
-      model.starts = starts_;
-      model.horizon = is_endless ? 0 : static_cast<std::size_t>(horizon_);
-      try {
-        search_ = std::make_unique<point_based::OnlineSarsop>(std::move(model));
-        search_->move_to(entries);
-        is_endless_ = is_endless;
-        return {};
-      } catch (const std::length_error&) {
-        search_.reset();
-      }
+    is_endless_ = std::pow(Model::discount, horizon_) <= next_to_nothing;
+    try {
+      search_ = search_with(is_endless_ ? 0 : horizon_);
+    } catch (const std::length_error&) {
+      search_.reset();
+      if (Model::discount >= 1) return "there are too many states for so long a horizon without a discount";
+      is_endless_ = true;
+      search_ = search_with(0);
     }
-    return "there are too many states for so long a horizon";
+    search_->move_to(entries);
+    return {};
+  }
+  std::unique_ptr<point_based::OnlineSarsop> search_with(int horizon) const {
+    point_based::FlatModel model = space_.rows();
+    model.starts = starts_;
+    model.horizon = static_cast<std::size_t>(horizon);
+    return std::make_unique<point_based::OnlineSarsop>(std::move(model));
   }
 
   std::uint64_t work_of(Budget budget) const {
