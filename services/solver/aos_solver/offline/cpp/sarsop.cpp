@@ -12,7 +12,7 @@
 #include <exception>
 
 #include "aos/base/json.hpp"
-#include "flat_file.hpp"
+#include "point_based/flat_file.hpp"
 #include "point_based/flat_model.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/sarsop.hpp"
