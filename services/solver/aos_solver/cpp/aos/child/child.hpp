@@ -148,6 +148,9 @@ void guarded(JsonWriter& json, Work&& work) {
   } catch (const BadCommand& bad) {
     blame::at(0);
     write_fault(json, "AOS213", bad.text);
+  } catch (const point_based::CrossedBounds& crossed) {
+    blame::at(0);
+    write_fault(json, "AOS216", crossed.what());
   } catch (const std::exception& error) {
     write_fault(json, "AOS215", error.what());
   } catch (...) {
