@@ -78,6 +78,7 @@ CODES: dict[str, str] = {
     "AOS213": "the engine ended unexpectedly",
     "AOS214": "a reward that is not a number",
     "AOS215": "a model fault: an index, a weight list or a container limit",
+    "AOS216": "bounds that contradict each other; please report it",
     "AOS220": "exact evaluation is not tractable",
     "AOS302": "every state of the belief is terminal",
     "AOS310": "an observation that the model holds impossible",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import hashlib
+import math
 import shutil
 import signal
 import subprocess
@@ -21,8 +22,8 @@ from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import DeployError, PlanningError
-from aos_solver.child.answers import LeftOut
-from aos_solver.offline.enumeration import MOST_STATES, Extent, enumerate_model
+from aos_solver.child.answers import Listed
+from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.graph_writers import c_header, graphviz, write_text
 from aos_solver.offline.policy import Policy, PolicyHeader
@@ -58,7 +59,7 @@ class _Target(msgspec.Struct, frozen=True):
     model: ExplicitModel
     digest: str
     states: tuple[str, ...]
-    left_out: LeftOut = LeftOut()
+    left_out: tuple[str, ...] = ()
 
 
 class Report(msgspec.Struct):
@@ -94,7 +95,7 @@ def solve(
         float | None,
         typer.Option(help="To end the mission is worth so much, at any time"),
     ] = None,
-    states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MOST_STATES,
+    states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MAX_STATES,
     out: Annotated[Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate")] = None,
     export: Annotated[
         list[Path] | None, typer.Option(help="Write the model as .pomdpx or .pomdp; may be repeated")
@@ -154,21 +155,21 @@ def _check_names(exports: list[Path], graph: Path | None) -> None:
         )
 
 
-def _problem(path: Path, most_states: int, discount: float | None) -> _Target:
+def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
     with _progress("states") as progress:
         model = read_problem(
-            path, most_states=most_states, on_progress=lambda known: progress(Extent(known, known))
+            path, most_states=max_states, on_progress=lambda known: progress(Listed(known, known))
         )
     if discount is not None:
         model = msgspec.structs.replace(model, discount=discount)
     return _Target(model, hashlib.sha256(path.read_bytes()).hexdigest(), model.states)
 
 
-async def _enumerated(bundle: Path, most_states: int, discount: float | None) -> _Target:
+async def _enumerated(bundle: Path, max_states: int, discount: float | None) -> _Target:
     async with engine_of_bundle(bundle, seed=1) as engine:
         with _progress("states") as progress:
             found = await enumerate_model(
-                engine, most_states=most_states, discount=discount, on_progress=progress
+                engine, max_states=max_states, discount=discount, on_progress=progress
             )
         return _Target(found.model, engine.model_digest, found.state_texts, found.left_out)
 
@@ -196,7 +197,6 @@ def _policy(target: _Target, solution: Solution, stop_value: float | None) -> Po
         stop_value=stop_value,
         actions=target.model.actions,
         states=target.states,
-        left_out=target.left_out.numbers,
     )
     return Policy(header, solution.vectors)
 
@@ -223,13 +223,13 @@ def _write_graph(drawn: PolicyGraph, graph: Path | None, header: Path | None) ->
 
 
 @contextmanager
-def _progress(what: str) -> Iterator[Callable[[Extent], None]]:
+def _progress(what: str) -> Iterator[Callable[[Listed], None]]:
     """A bar on stderr of how much of what is known is done with; it goes away in the end."""
     extent = TextColumn("{task.completed:,} of {task.total:,}")
     columns = (TextColumn("{task.description}"), BarColumn(), extent)
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=1)
-        yield lambda extent: bar.update(task, completed=extent.explored, total=extent.known)
+        yield lambda found: bar.update(task, completed=found.listed, total=found.known)
 
 
 def _ignore(_: Bounds) -> None:
@@ -245,24 +245,30 @@ def _print_size(target: _Target) -> None:
     typer.echo(f"{'seconds':>9} {'at least':>12} {'at most':>12} {'gap':>10} {'vectors':>9}")
 
 
-def _print_left_out(left_out: LeftOut) -> None:
-    names = [variable.name for variable in left_out.variables]
+def _print_left_out(names: tuple[str, ...]) -> None:
     if names:
         more = f" and {len(names) - _TOLD_NAMES} more" if len(names) > _TOLD_NAMES else ""
         told = f"{', '.join(names[:_TOLD_NAMES])}{more}"
         typer.echo(f"left out, as they change neither what is earned nor what is observed: {told}")
 
 
+def _outwards(bounds: Bounds) -> tuple[float, float]:
+    """Both bounds so that they hold with four decimals as well."""
+    return math.floor(bounds.lower * 10_000) / 10_000, math.ceil(bounds.upper * 10_000) / 10_000
+
+
 def _print_bounds(bounds: Bounds) -> None:
     if not bounds.ending:
-        values = f"{bounds.lower:12.4f} {bounds.upper:12.4f} {bounds.gap:10.4f}"
+        lower, upper = _outwards(bounds)
+        values = f"{lower:12.4f} {upper:12.4f} {bounds.gap:10.4f}"
         typer.echo(f"{bounds.seconds:9.2f} {values} {bounds.vectors:9,}")
 
 
 def _print_end(solution: Solution, drawn: PolicyGraph | None, written: list[str]) -> None:
     bounds = solution.bounds
+    lower, upper = _outwards(bounds)
     typer.echo(
-        f"the policy gives at least {bounds.lower:.4f} from the start, and none more than {bounds.upper:.4f} "
+        f"the policy gives at least {lower:.4f} from the start, and none more than {upper:.4f} "
         f"({_MEANINGS[bounds.ending]}, {bounds.seconds:.2f} s)"
     )
     if drawn is not None:
@@ -277,7 +283,7 @@ def _report(target: _Target, solution: Solution, drawn: PolicyGraph | None, writ
     return Report(
         model=target.model.name,
         size=target.model.size,
-        left_out=tuple(variable.name for variable in target.left_out.variables),
+        left_out=target.left_out,
         discount=target.model.discount,
         lower=bounds.lower,
         upper=bounds.upper,

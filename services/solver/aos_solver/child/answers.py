@@ -14,11 +14,9 @@ __all__ = [
     "EngineDescription",
     "EngineFault",
     "ExactValues",
-    "Explored",
     "ExportedBelief",
     "GroundedAction",
-    "LeftOut",
-    "LeftOutVariable",
+    "Listed",
     "Plan",
     "Prediction",
     "Reach",
@@ -29,6 +27,7 @@ __all__ = [
     "WorldStep",
     "WorldSteps",
     "Worlds",
+    "WrittenListing",
 ]
 
 
@@ -149,37 +148,18 @@ class Reach(msgspec.Struct, frozen=True):
     limit: str
 
 
-class Explored(msgspec.Struct, frozen=True):
-    """What one more piece of an exploration has found; `explored` states are done with.
+class Listed(msgspec.Struct, frozen=True):
+    """How many states are listed with all that their actions lead to, and how many are known."""
 
-    `states` and `observations` are the texts of new ones. For each state done with in this piece and each
-    action there are an expected reward and a count of `outcomes`, which are next state, observation and
-    probability; a next state of -1 has ended.
-    """
+    listed: int
+    known: int
 
-    explored: int
-    states: tuple[str, ...]
+
+class WrittenListing(msgspec.Struct, frozen=True):
+    """The texts of observations, and the names of variables that states are not told apart by."""
+
     observations: tuple[str, ...]
-    rewards: list[float]
-    counts: list[int]
-    outcomes: list[tuple[int, int, float]]
-
-
-class LeftOutVariable(msgspec.Struct, frozen=True):
-    """A variable, or part of one, by its number in the model and its name."""
-
-    number: int
-    name: str
-
-
-class LeftOut(msgspec.Struct, frozen=True):
-    """What states need not be told apart by."""
-
-    variables: tuple[LeftOutVariable, ...] = ()
-
-    @property
-    def numbers(self) -> tuple[int, ...]:
-        return tuple(variable.number for variable in self.variables)
+    left_out: tuple[str, ...]
 
 
 class Prediction(msgspec.Struct, frozen=True):

@@ -12,6 +12,7 @@ import logging
 import re
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Literal, Self, TypeVar
 
 import msgspec
@@ -25,9 +26,8 @@ from aos_solver.child.answers import (
     EngineFault,
     EngineStep,
     ExactValues,
-    Explored,
     ExportedBelief,
-    LeftOut,
+    Listed,
     Plan,
     Prediction,
     Reach,
@@ -37,6 +37,7 @@ from aos_solver.child.answers import (
     WorldState,
     WorldStep,
     WorldSteps,
+    WrittenListing,
 )
 from aos_solver.child.engine_child import EngineChild, EngineStart, ImpossiblePolicy, KilledError
 from aos_solver.child.local_values import UnusableLocals, local_values_line
@@ -62,6 +63,7 @@ _PARAMETER = re.compile(r"(\w+)=(\w+)")
 ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
 """For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
+LISTING_DEADLINE_S = 600.0
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000
 
@@ -179,14 +181,15 @@ class Engine:
         """Which states the actions can lead to from the current belief, looked at for so long at most."""
         return await self._ask(f"reach\t{time_s}", Reach, deadline_s=time_s + ANSWER_DEADLINE_S)
 
-    async def explore(self, *, is_new: bool, time_s: float, left_out: Sequence[int] = ()) -> Explored:
-        """A piece of the model as numbers, from the current belief on; ModelError AOS220 if it has no end."""
-        command = "\t".join(("explore", str(int(is_new)), str(time_s), *map(str, left_out)))
-        return await self._ask(command, Explored, deadline_s=time_s + ANSWER_DEADLINE_S)
+    async def list_states(self, max_states: int = 0) -> Listed:
+        """What one more decision leads to, from the current belief on with `max_states`, else where the last
+        call has ended; ModelError AOS220 where outcomes cannot be counted, or there are too many states."""
+        return await self._ask(f"list\t{max_states}", Listed, deadline_s=LISTING_DEADLINE_S)
 
-    async def propose_left_out(self) -> LeftOut:
-        """What changes neither what is earned nor what is observed, as far as was tried in a second or so."""
-        return await self._ask("propose_left_out", LeftOut, deadline_s=PLANNING_DEADLINE_S)
+    async def write_listing(self, model: Path, states: Path) -> WrittenListing:
+        """Writes what is listed (`cpp/point_based/flat_file.hpp`), and the texts of states, one a line."""
+        command = f"write_listing\t{model}\t{states}"
+        return await self._ask(command, WrittenListing, deadline_s=LISTING_DEADLINE_S)
 
     async def predict(self, index: int) -> Prediction:
         """What may be observed after an action."""
@@ -262,16 +265,15 @@ class Engine:
         command = f"update_without_observation\t{self._index(action)}\t{ran_probability}"
         return await self._change_belief(command, BeliefUpdate)
 
-    async def export_belief(self, left_out: Sequence[int] = ()) -> ExportedBelief:
+    async def export_belief(self, *, is_whole: bool = True) -> ExportedBelief:
         """The whole belief, however many pieces it takes; nobody changes it meanwhile.
 
-        States that differ only in what is left out have the same text.
+        States are told without what does not matter if it need not be whole.
         """
-        omitted = "".join(f"\t{number}" for number in left_out)
-        belief = await self._ask(f"export_belief\t0{omitted}", ExportedBelief)
+        belief = await self._ask(f"export_belief\t0\t{int(is_whole)}", ExportedBelief)
         particles = list(belief.particles)
         while len(particles) < belief.states:
-            piece = await self._ask(f"export_belief\t{len(particles)}{omitted}", ExportedBelief)
+            piece = await self._ask(f"export_belief\t{len(particles)}\t{int(is_whole)}", ExportedBelief)
             particles += piece.particles
         return msgspec.structs.replace(belief, particles=tuple(particles))
 

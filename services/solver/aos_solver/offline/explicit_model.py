@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ExplicitModel", "Floats", "ModelSize", "Ragged", "StartBelief"]
+__all__ = ["ExplicitModel", "FlatModel", "Floats", "ModelSize", "Ragged", "StartBelief", "read_flat"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -88,7 +89,7 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
         return start
 
     def write_flat(self, path: Path) -> None:
-        """The file that the solver reads; `cpp/flat_model.hpp` describes it."""
+        """The file that the solver reads; `cpp/point_based/flat_file.hpp` describes it."""
         starts = Ragged(
             np.cumsum([0, *(len(start.states) for start in self.starts)]),
             np.concatenate([start.states for start in self.starts]),
@@ -114,3 +115,43 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
                 (starts.probabilities, "<f8"),
             ):
                 np.asarray(array).astype(kind).tofile(file)
+
+
+class FlatModel(msgspec.Struct, frozen=True, kw_only=True):
+    """What such a file holds: an `ExplicitModel` without names."""
+
+    discount: float
+    rewards: Floats
+    outcomes: Ragged
+    sensings: Integers
+    readings: Ragged
+    starts: tuple[StartBelief, ...]
+
+
+def read_flat(path: Path) -> FlatModel:
+    """A file that an engine has written."""
+    data = path.read_bytes()
+    place = len(_MARK)
+
+    def take(kind: str, count: int) -> NDArray[Any]:
+        nonlocal place
+        array = np.frombuffer(data, kind, count, place)
+        place += array.nbytes
+        return array.astype(np.float64 if kind == "<f8" else np.int64)
+
+    states, actions, _, outcomes, sensings, readings, starts, entries = map(int, take("<u8", 8))
+    discount = float(take("<f8", 1)[0])
+    rewards = take("<f8", states * actions).reshape(states, actions)
+    first, after = take("<u8", states * actions + 1), take("<u4", outcomes)
+    sensing_of, probabilities = take("<u4", outcomes), take("<f8", outcomes)
+    sensed = Ragged(take("<u8", sensings + 1), take("<u4", readings), take("<f8", readings))
+    weights = take("<f8", starts)
+    beliefs = Ragged(take("<u8", starts + 1), take("<u4", entries), take("<f8", entries))
+    return FlatModel(
+        discount=discount,
+        rewards=rewards,
+        outcomes=Ragged(first, after, probabilities),
+        sensings=sensing_of,
+        readings=sensed,
+        starts=tuple(StartBelief(float(weights[i]), *beliefs.row(i)) for i in range(starts)),
+    )

@@ -24,7 +24,7 @@ from aos_solver.search import Search
 
 __all__ = ["FORMAT", "Policy", "PolicyHeader", "PolicySearch"]
 
-FORMAT = "aos-policy-1"
+FORMAT = "aos-policy-2"
 
 
 class _RegionSize(msgspec.Struct, frozen=True):
@@ -36,9 +36,9 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     """What a policy is about.
 
     `model_digest` is the compiled model's, or the problem file's. `states` are the engine's texts of states,
-    which are not told apart by what is `left_out`, or the problem file's names. From the start the policy
-    gives at least `lower`, and none gives more than `upper`; both discounted. With a `stop_value` the last
-    action is to end the mission, which is worth that.
+    without what does not matter, or the problem file's names. From the start the policy gives at least
+    `lower`, and none gives more than `upper`; both discounted. With a `stop_value` the last action is to end
+    the mission, which is worth that.
     """
 
     format: str = FORMAT
@@ -50,7 +50,6 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     stop_value: float | None = None
     actions: tuple[str, ...]
     states: tuple[str, ...]
-    left_out: tuple[int, ...] = ()
     regions: tuple[_RegionSize, ...] = ()
 
 
@@ -104,7 +103,7 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
             )
 
     def choose(self, belief: ExportedBelief) -> Choice:
-        """The choice at an engine's belief, exported without what the header leaves out.
+        """The choice at an engine's belief, exported without what does not matter.
 
         PlanningError AOS322 if no state of it is known.
         """
@@ -159,7 +158,7 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         """
         begun_s = time.perf_counter()
         self.policy.check_model(engine.model_digest)
-        choice = self.policy.choose(await engine.export_belief(self.policy.header.left_out))
+        choice = self.policy.choose(await engine.export_belief(is_whole=False))
         names = [action.name for action in engine.description.actions]
         best = int(np.argmax(choice.values[: len(names)]))
         prediction = await engine.predict(best)

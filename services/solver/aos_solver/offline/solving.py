@@ -20,6 +20,7 @@ __all__ = ["Bounds", "Solution", "SolvingLimits", "solve"]
 
 _ADDRESS_SPACE_BYTES = 16 << 30
 _LINE_LIMIT_BYTES = 1 << 16
+_CROSSED_STATUS = 3
 
 
 class SolvingLimits(msgspec.Struct, frozen=True, kw_only=True):
@@ -115,7 +116,8 @@ async def _run(
         await child.stop()
     if status != 0 or not history:
         reason = problem or f"it ended with status {status}"
-        raise ModelError(f"the solver failed: {reason}", code="AOS213")
+        code = "AOS216" if status == _CROSSED_STATUS else "AOS213"
+        raise ModelError(f"the solver failed: {reason}", code=code)
     return history
 
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct ActionBounds {
   double lower = 0;
   double upper = 0;
   std::uint32_t trials = 0;
+};
+
+// A lower bound is above an upper one: a mistake in this folder, whatever the model.
+struct CrossedBounds : std::logic_error {
+  using std::logic_error::logic_error;
 };
 
 class OnlineSarsop {
@@ -46,7 +52,7 @@ class OnlineSarsop {
   // Of all actions, of the belief moved to; discounted, of so many decisions as the horizon has.
   // These and `bounds` hold as they stand, rounding included.
   std::vector<ActionBounds> action_bounds();
-  // What the belief moved to is worth at least and at most.
+  // What the belief moved to is worth at least and at most. Throws CrossedBounds.
   std::pair<double, double> bounds();
 
  private:

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,11 +20,6 @@
 #include "point_based/online.hpp"
 
 namespace aos::point_based {
-
-// A mistake in this folder, whatever the model.
-struct CrossedBounds : std::logic_error {
-  using std::logic_error::logic_error;
-};
 
 // Bounds that are told.
 inline std::pair<double, double> checked(double lower, double upper) {

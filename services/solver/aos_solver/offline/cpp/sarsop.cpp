@@ -12,7 +12,7 @@
 #include <exception>
 
 #include "aos/base/json.hpp"
-#include "flat_file.hpp"
+#include "point_based/flat_file.hpp"
 #include "point_based/flat_model.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/sarsop.hpp"
@@ -22,6 +22,8 @@ namespace {
 
 using namespace aos::offline;
 using namespace aos::point_based;
+
+constexpr int crossed_status = 3;
 
 // Of this process, so that a busy machine changes nothing.
 double cpu_seconds() {
@@ -77,6 +79,9 @@ int main(int argc, char** argv) {
     solver.prune();
     write_policy(argv[2], regions, solver);
     report(solver, ending);
+  } catch (const CrossedBounds& crossed) {
+    std::fprintf(stderr, "%s\n", crossed.what());
+    return crossed_status;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

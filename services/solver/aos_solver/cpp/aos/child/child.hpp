@@ -102,10 +102,10 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "count_processor_time") return engine.count_processor_time(json, whole(1) != 0);
   if (command == "exact") return engine.exact(json, whole(1), large(2), real(3));
   if (command == "reach") return engine.reach(json, real(1));
-  if (command == "explore") {
-    return engine.explore(json, whole(1) != 0, real(2), numbers_from<std::size_t>(fields, 3));
+  if (command == "list") return engine.list(json, large(1));
+  if (command == "write_listing") {
+    return engine.write_listing(json, std::string{fields.at(1)}, std::string{fields.at(2)});
   }
-  if (command == "propose_left_out") return engine.propose_left_out(json);
   if (command == "predict") return engine.predict(json, whole(1));
   if (command == "update") {
     const bool has_locals = fields.size() > 4;
@@ -113,9 +113,7 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
     return engine.update(json, whole(1), fields.at(2), observed_numbers_of(fields.at(3)), locals);
   }
   if (command == "update_without_observation") return engine.update_without_observation(json, whole(1), real(2));
-  if (command == "export_belief") {
-    return engine.export_belief(json, large(1), numbers_from<std::size_t>(fields, 2));
-  }
+  if (command == "export_belief") return engine.export_belief(json, large(1), whole(2) != 0);
   if (command == "import_belief") {
     const SavedCounts counts{large(3), large(4)};
     return engine.import_belief(json, real(1), whole(2) != 0, counts, {fields.begin() + 5, fields.end()});
@@ -150,6 +148,9 @@ void guarded(JsonWriter& json, Work&& work) {
   } catch (const BadCommand& bad) {
     blame::at(0);
     write_fault(json, "AOS213", bad.text);
+  } catch (const point_based::CrossedBounds& crossed) {
+    blame::at(0);
+    write_fault(json, "AOS216", crossed.what());
   } catch (const std::exception& error) {
     write_fault(json, "AOS215", error.what());
   } catch (...) {

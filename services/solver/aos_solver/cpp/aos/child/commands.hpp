@@ -22,8 +22,8 @@
 #include "aos/belief/belief.hpp"
 #include "aos/belief/kept_beliefs.hpp"
 #include "aos/child/bad_command.hpp"
-#include "aos/child/exploration.hpp"
 #include "aos/child/left_out.hpp"
+#include "aos/child/listing.hpp"
 #include "aos/child/reachability.hpp"
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/worlds.hpp"
@@ -195,13 +195,16 @@ class Engine {
     json.end_object();
   }
 
-  // What may be left out where the model is explored from the current belief on.
-  void propose_left_out(JsonWriter& json) const { LeftOut<Model>::tell_proposal(json); }
-
-  // The model as numbers from the current belief on: `is_new` begins, each further call goes on for about so long.
-  void explore(JsonWriter& json, bool is_new, double seconds, const std::vector<std::size_t>& left_out) {
-    if (is_new || !exploration_) exploration_.emplace(belief_, LeftOut<Model>{left_out});
-    exploration_->go_on(json, seconds, [](int action, Observation seen) { return response_text(action, seen); });
+  // The model as numbers from the current belief on: without a limit of states a call goes on where the last one ended.
+  void list(JsonWriter& json, std::size_t max_states) {
+    if (max_states > 0) listing_.emplace(belief_, max_states);
+    if (!listing_) throw BadCommand{"nothing is listed"};
+    listing_->go_on(json);
+  }
+  void write_listing(JsonWriter& json, const std::string& model_path, const std::string& states_path) {
+    if (!listing_) throw BadCommand{"nothing is listed"};
+    listing_->write(json, model_path, states_path);
+    listing_.reset();
   }
 
   // How likely each observation is after an action.
@@ -211,9 +214,10 @@ class Engine {
     json.end_object();
   }
 
-  // From the particle of this number on; states have stand-ins for what is left out.
-  void export_belief(JsonWriter& json, std::size_t first, const std::vector<std::size_t>& left_out) const {
-    save_belief(json, belief_, first, LeftOut<Model>{left_out});
+  // From the particle of this number on; states may have stand-ins for what does not matter.
+  void export_belief(JsonWriter& json, std::size_t first, bool is_whole) const {
+    const LeftOut<Model> left_out;
+    save_belief(json, belief_, first, [&](const State& state) { return is_whole ? state : left_out.rest_of(state); });
   }
 
   void import_belief(JsonWriter& json, double error_bound, bool is_drawn, SavedCounts counts,
@@ -420,7 +424,7 @@ class Engine {
   State hidden_;
   Sampler world_random_{0};
   Worlds<Model> worlds_;
-  std::optional<Exploration<Model>> exploration_;
+  std::optional<Listing<Model>> listing_;
 };
 
 }  // namespace aos

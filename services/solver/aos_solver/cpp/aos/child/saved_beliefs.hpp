@@ -10,7 +10,6 @@
 #include "aos/base/json.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/child/left_out.hpp"
 #include "aos/model/state_text.hpp"
 
 namespace aos {
@@ -18,9 +17,10 @@ namespace aos {
 inline constexpr std::size_t most_answer_bytes = std::size_t{16} << 20;  // about
 
 // The particles from number `first` on, as many as fit one answer, each as its weight and its state as text. What is the
-// same in all states, and the states that nothing was observed of, only with the first of them.
-template <class Model>
-void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t first, const LeftOut<Model>& left_out) {
+// same in all states, and the states that nothing was observed of, only with the first of them. `told` gives what is told
+// of a state.
+template <class Model, class Told>
+void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t first, Told&& told) {
   const auto& particles = belief.particles();
   const SavedConstants constants = first == 0 ? Model::save_constants() : SavedConstants{};
   json.begin_object().member("error_bound", belief.error_bound()).member("is_drawn", belief.is_drawn());
@@ -34,7 +34,7 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
   const std::size_t most_bytes = json.text().size() + most_answer_bytes;
   for (std::size_t number = first; number < particles.size() && json.text().size() < most_bytes; ++number) {
     const auto& [state, weight] = particles[number];
-    json.begin_array().value(weight).value(Model::save_state(left_out.rest_of(state))).end_array();
+    json.begin_array().value(weight).value(Model::save_state(told(state))).end_array();
   }
   json.end_array().end_object();
 }

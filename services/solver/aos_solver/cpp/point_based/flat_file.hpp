@@ -1,4 +1,4 @@
-// A POMDP as numbers in a file: what the offline solver reads.
+// A POMDP as numbers in a file: what an engine writes and the offline solver reads.
 //
 // The file: the text "AOSFLAT1", then little-endian and without gaps
 //   u64 states, actions, observations, outcomes, sensings, readings, starts, start entries; f64 discount;
@@ -8,19 +8,18 @@
 //   f64 start_weight[starts]; u64 first_entry[starts + 1]; u32 state[start entries]; f64 probability[start entries].
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "point_based/flat_model.hpp"
 
-namespace aos::offline {
-
-using point_based::FlatModel;
-
+namespace aos::point_based {
 namespace detail {
 
 class FlatFile {
@@ -82,4 +81,45 @@ inline FlatModel read_flat_model(const std::string& path) {
   return model;
 }
 
-}  // namespace aos::offline
+// Of a value for each of the elements in `rows`.
+template <class Number, class Rows, class ValueOf>
+void put_each(std::ofstream& file, const Rows& rows, ValueOf&& value_of) {
+  for (const auto& element : rows) {
+    const Number value = value_of(element);
+    file.write(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+}
+
+// Throws std::runtime_error if the disk refuses.
+inline void write_flat_model(const std::string& path, const FlatModel& model) {
+  std::ofstream file{path, std::ios::binary};
+  const auto put = [&](const auto& numbers) {
+    put_each<typename std::decay_t<decltype(numbers)>::value_type>(file, numbers, [](const auto& number) { return number; });
+  };
+  std::vector<std::uint64_t> first_entry{0};
+  for (const Start& start : model.starts) first_entry.push_back(first_entry.back() + start.belief.size());
+  file.write("AOSFLAT1", 8);
+  put(std::vector<std::uint64_t>{model.states, model.actions, model.observations, model.outcomes.elements.size(),
+                                 model.readings.first.size() - 1, model.readings.elements.size(), model.starts.size(),
+                                 first_entry.back()});
+  put(std::vector<double>{model.discount});
+  put(model.rewards);
+  put(model.outcomes.first);
+  put_each<std::uint32_t>(file, model.outcomes.elements, [](const Outcome& outcome) { return outcome.next; });
+  put_each<std::uint32_t>(file, model.outcomes.elements, [](const Outcome& outcome) { return outcome.sensing; });
+  put_each<double>(file, model.outcomes.elements, [](const Outcome& outcome) { return outcome.probability; });
+  put(model.readings.first);
+  put_each<std::uint32_t>(file, model.readings.elements, [](const Reading& reading) { return reading.observation; });
+  put_each<double>(file, model.readings.elements, [](const Reading& reading) { return reading.probability; });
+  put_each<double>(file, model.starts, [](const Start& start) { return start.weight; });
+  put(first_entry);
+  for (const Start& start : model.starts) {
+    put_each<std::uint32_t>(file, start.belief, [](const auto& entry) { return entry.first; });
+  }
+  for (const Start& start : model.starts) {
+    put_each<double>(file, start.belief, [](const auto& entry) { return entry.second; });
+  }
+  if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+}  // namespace aos::point_based

@@ -1,0 +1,68 @@
+// The whole model as numbers, for a solver in another process: every outcome of every action in every state that can be
+// reached.
+#pragma once
+
+#include <cstddef>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "aos/base/json.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/child/left_out.hpp"
+#include "aos/planning/state_space.hpp"
+#include "point_based/flat_file.hpp"
+
+namespace aos {
+
+template <class Model>
+class Listing {
+ public:
+  // Throws NotEnumerable.
+  Listing(const Belief<Model>& belief, std::size_t max_states) : belief_(belief), space_(limits(max_states)) {
+    if (!space_.lists_observations()) throw NotEnumerable{numbers_are_observed};
+    if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
+    space_.reach_within(belief_, 0);
+  }
+
+  // What one more decision leads to; how many states are listed, of how many. Throws NotEnumerable, or what model code does.
+  void go_on(JsonWriter& json) {
+    space_.reach_within(belief_, 1);
+    json.begin_object().member("listed", space_.rows().states).member("known", space_.size()).end_object();
+  }
+
+  // Writes the model, with the belief as its start, to a file, and the texts of states to another, one a line. Ended
+  // states have no number: where probabilities of a row are missing, the mission is over.
+  void write(JsonWriter& json, const std::string& model_path, const std::string& states_path) const {
+    point_based::FlatModel model = space_.rows();
+    if (auto start = space_.weights_of(belief_); !start.empty()) model.starts.push_back({1, std::move(start)});
+    point_based::write_flat_model(model_path, model);
+    const LeftOut<Model> left_out;
+    std::ofstream states{states_path};
+    for (std::uint32_t number = 0; number < space_.size(); ++number) {
+      states << Model::save_state(left_out.rest_of(space_[number])) << '\n';
+    }
+    if (!states.flush()) throw std::runtime_error("cannot write " + states_path);
+    json.begin_object().key("observations").begin_array();
+    for (std::uint32_t number = 0; number < space_.observations().size(); ++number) {
+      json.value(space_.observations()[number]);
+    }
+    json.end_array();
+    left_out.write_names(json.key("left_out"));
+    json.end_object();
+  }
+
+ private:
+  // What a machine has room for; nobody waits for a decision.
+  static SpaceLimits limits(std::size_t max_states) {
+    constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
+    return {.states = max_states, .bytes = any, .outcomes = any, .work = any};
+  }
+
+  Belief<Model> belief_;
+  StateSpace<Model> space_;
+};
+
+}  // namespace aos
