@@ -52,6 +52,14 @@ def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any
     assert ours["return, pomcp", ""]["unit"] == "2 runs"
 
 
+def test_a_return_is_told_with_and_without_the_documents_rollout_policy(cache_dir: Path) -> None:
+    one_mission = ("--metric", "return", "--runs", "1", "--time", "0.001", "--planner", "pomcp", "--json")
+    done = run_bench(cache_dir, "rocksample-7-8", *one_mission)
+    assert done.returncode == 0, done.stderr
+    metrics = [row["metric"] for row in json.loads(done.stdout)["rows"] if row["name"] == "aos"]
+    assert metrics == ["return, pomcp", "return, pomcp, no rollout policy"]
+
+
 def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path) -> None:
     done = run_bench(cache_dir, "lion")
     assert done.returncode == 2

@@ -29,6 +29,8 @@ __all__ = ["METRICS", "Effort", "Suite"]
 
 METRICS = ("steps", "simulations", "return")
 STEPS_BY_CODE = "steps, by code"
+WITHOUT_POLICIES = ", no rollout policy"
+"""Of a return whose problem has rollout policies, measured without them."""
 
 Step = Callable[[str], None]
 """Told before each piece of work, with its name."""
@@ -66,9 +68,9 @@ class Suite:
 
     @property
     def steps(self) -> int:
-        """How often `on_step` is called at most."""
+        """How often `on_step` is called at most: missions may have to be run without rollout policies, too."""
         planners = len(self._effort.planners)
-        return sum(3 + planners * self._effort.runs_of(problem) for problem in self._problems)
+        return sum(3 + 2 * planners * self._effort.runs_of(problem) for problem in self._problems)
 
     async def run(self) -> Report:
         """Measures everything."""
@@ -101,12 +103,15 @@ class Suite:
                 await self._search_rate(engine, problem, "simulations")
                 async with self._engine(project) as other:
                     await self._two_threads({1: engine, 2: other}, problem)
-        if "simulations" in effort.metrics and (plain := without_policies(project)) is not project:
+        plain = without_policies(project)
+        if "simulations" in effort.metrics and plain is not project:
             async with self._engine(plain) as engine:
                 await self._search_rate(engine, problem, baseline.WITHOUT_KNOWLEDGE)
-        if runs := effort.runs_of(problem):
-            for planner in effort.planners:
-                self._rows.append(await self._returns(problem, planner, project, runs))
+        for planner in effort.planners if effort.runs_of(problem) else ():
+            metric = f"return, {planner}"
+            await self._returns(problem, planner, project, metric)
+            if plain is not project:
+                await self._returns(problem, planner, plain, f"{metric}{WITHOUT_POLICIES}")
 
     async def _sampling_rates(self, engine: Engine, problem: Problem) -> None:
         """Of steps as POMCP makes them; where that is by a table, of those by the code, too."""
@@ -132,10 +137,10 @@ class Suite:
             row = figure(name, problem.name, "simulations, two threads", rates[threads], "1/s")
             self._rows.append(row)
 
-    async def _returns(self, problem: Problem, planner: Planner, project: Project, runs: int) -> Row:
+    async def _returns(self, problem: Problem, planner: Planner, project: Project, metric: str) -> None:
         """Missions with the seeds from `seed` on, dealt out to the jobs."""
-        seed = self._effort.seed
-        label = f"{problem.name}: missions with {planner}"
+        seed, runs = self._effort.seed, self._effort.runs_of(problem)
+        label = f"{problem.name}: {metric}"
 
         async def job(number: int) -> list[float]:
             async with self._engine(project) as engine:
@@ -147,7 +152,7 @@ class Suite:
         async with asyncio.TaskGroup() as tasks:
             jobs = [tasks.create_task(job(number)) for number in range(self._effort.jobs)]
         values = [value for task in jobs for value in task.result()]
-        return figure(OURS, problem.name, f"return, {planner}", values, f"{runs} runs")
+        self._rows.append(figure(OURS, problem.name, metric, values, f"{runs} runs"))
 
     def _measure_peer(self, problem: Problem) -> None:
         if problem.name not in pomdp_py_peer.PROBLEMS or not pomdp_py_peer.is_installed():
