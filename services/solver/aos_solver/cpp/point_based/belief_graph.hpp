@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "point_based/bounds.hpp"
+#include "point_based/certainty_equivalent.hpp"
 #include "point_based/initial_bounds.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/rounding.hpp"
@@ -66,6 +67,7 @@ class BeliefGraph {
     for (const ActionValues& values : informed_) sizes_.push_back(size_of(values));
     add_tails(bounds.blind);
     for (const Region& region : regions.all) add_blind(region, bounds.blind);
+    if (is_endless()) add_certainty_equivalent();
     std::size_t largest = 0;
     for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
     posterior_.assign(largest, 0.0);
@@ -174,7 +176,7 @@ class BeliefGraph {
 
   // Keeps the bounds of the beginning only.
   void start_over() {
-    for (LowerBound& bound : lower_) bound.keep_blind();
+    for (LowerBound& bound : lower_) bound.keep_initial();
     forget_beliefs();
   }
 
@@ -189,7 +191,7 @@ class BeliefGraph {
     }
     for (LowerBound& bound : lower_) {
       bound.close_gaps();
-      for (std::uint32_t number = bound.blind(); number < bound.size(); ++number) {
+      for (std::uint32_t number = bound.initial(); number < bound.size(); ++number) {
         bytes_ += bound[number].values.size() * sizeof(double) + sizeof(AlphaVector);
       }
     }
@@ -222,7 +224,11 @@ class BeliefGraph {
     };
     if (node.seen_vectors == 0) {
       bound.for_blind(node.left, take);
-      node.seen_vectors = bound.blind();
+      // Plans that take an impossible state for granted are hardly the best.
+      if (bound.initial() > bound.blind()) {
+        for (const std::uint32_t state : node.belief.states) take(bound.blind() + state);
+      }
+      node.seen_vectors = bound.initial();
     }
     for (; node.seen_vectors < bound.size(); ++node.seen_vectors) {
       const AlphaVector& vector = bound[node.seen_vectors];
@@ -365,6 +371,16 @@ class BeliefGraph {
       lower.add_blind(std::move(vector));
     }
     lower_.push_back(std::move(lower));
+  }
+
+  void add_certainty_equivalent() {
+    const CertaintyEquivalent plans{model_, regions_, informed_.front(), rounding_};
+    for (std::uint32_t region = 0; region < lower_.size(); ++region) {
+      for (AlphaVector& vector : plans.vectors(region)) {
+        largest_value_ = std::max(largest_value_, vector.size);
+        lower_[region].add_initial(std::move(vector));
+      }
+    }
   }
 
   static bool is_nowhere_above(const std::vector<double>& values, const std::vector<double>& others) {

@@ -55,14 +55,21 @@ inline double expected(const std::vector<double>& values, const Belief& belief) 
   return weighted_sum(belief.probabilities, [&](std::size_t i) { return values[belief.states[i]]; });
 }
 
-// Alpha vectors of a region. Their numbers stay; those that were given up are empty. The first ones always do the same
-// action, and are never given up.
+// Alpha vectors of a region. Their numbers stay; those that were given up are empty. Those of the beginning are never
+// given up; the first of them always do the same action.
 class LowerBound {
  public:
   // Those of an action in the order of their lengths.
   void add_blind(AlphaVector vector) {
     vectors_.push_back(std::move(vector));
     ++blind_;
+    ++initial_;
+    ++kept_;
+  }
+  // After the blind ones, one for each state of the region or none at all.
+  void add_initial(AlphaVector vector) {
+    vectors_.push_back(std::move(vector));
+    ++initial_;
     ++kept_;
   }
   void add(AlphaVector vector) {
@@ -76,15 +83,16 @@ class LowerBound {
   const AlphaVector& operator[](std::uint32_t number) const { return vectors_[number]; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(vectors_.size()); }
   std::uint32_t blind() const { return blind_; }
+  std::uint32_t initial() const { return initial_; }
   std::size_t kept() const { return kept_; }
   // Numbers those that were kept anew.
   void close_gaps() {
     std::erase_if(vectors_, [](const AlphaVector& vector) { return vector.is_gone(); });
   }
   // Keeps the vectors of the beginning only.
-  void keep_blind() {
-    vectors_.erase(vectors_.begin() + blind_, vectors_.end());
-    kept_ = blind_;
+  void keep_initial() {
+    vectors_.erase(vectors_.begin() + initial_, vectors_.end());
+    kept_ = initial_;
   }
   // For every action the longest of its blind vectors that has no more than so many decisions.
   template <class Take>
@@ -99,6 +107,7 @@ class LowerBound {
  private:
   std::deque<AlphaVector> vectors_;  // which stay where they are
   std::uint32_t blind_ = 0;
+  std::uint32_t initial_ = 0;
   std::size_t kept_ = 0;
 };
 

@@ -1,10 +1,11 @@
 // Point-based value iteration near the beliefs that a good policy reaches (SARSOP: Kurniawati, Hsu and Lee, 2008).
 //
 // A trial follows the action with the highest upper bound and the observation that matters most for the gap at the
-// root, until nothing more can be learnt for the root; then both bounds are backed up along the way. Every other trial
-// follows the highest middle of both bounds instead: while upper bounds are far too high the best of them say little
-// about what is worth improving, and the lower bound is what is carried out. Actions whose
-// upper bound is below the belief's lower bound are dropped, and alpha vectors that are best at no remaining belief.
+// root, until nothing more can be learnt for the root; then both bounds are backed up along the way. Upper bounds that are
+// far too high say little about what is worth improving, and the lower bound is what is carried out. So of three trials one
+// follows the highest middle of both bounds, and one the highest lower bound, with a look at all actions. The first trials
+// from a belief do the same action again and again before that: what lies behind a long detour is hardly found by
+// bounds. Actions whose upper bound is below the belief's lower bound are dropped, and alpha vectors that are best at no remaining belief.
 #pragma once
 
 #include <algorithm>
@@ -133,7 +134,7 @@ class Sarsop {
     }
     for (std::uint32_t region = 0; region < regions_.all.size(); ++region) {
       LowerBound& bound = graph_.lower(region);
-      for (std::uint32_t number = bound.blind(); number < bound.size(); ++number) {
+      for (std::uint32_t number = bound.initial(); number < bound.size(); ++number) {
         if (!is_best[region][number] && !bound[number].is_gone()) bound.give_up(number);
       }
     }
@@ -144,15 +145,19 @@ class Sarsop {
     double weight;
     std::uint32_t node;
   };
+  // By which bound a trial goes.
+  enum class Follows { middle, upper, lower };
 
   static constexpr double share_of_gap_ = 0.1;  // of the root's, that a trial tries to come below
   static constexpr std::size_t longest_trial_ = 1000;
+  static constexpr std::size_t longest_detour_ = 30;
 
   void forget_roots() {
     roots_.clear();
     dropped_at_root_.clear();
     trials_.assign(model_.actions, 0);
     idle_ = 0;
+    persisted_ = 0;
   }
 
   void add_start(const Start& start) {
@@ -181,11 +186,16 @@ class Sarsop {
   template <class IsOver>
   bool improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
     has_learnt_ = false;
-    sample(number, precision, is_over);
+    path_.clear();
+    if (persisted_ < model_.actions) {
+      persist(number, persisted_++, is_over);
+    } else {
+      sample(number, precision, is_over);
+    }
     for (auto step = path_.rbegin(); step != path_.rend(); ++step) backup(*step);
     if (vectors_added_ > std::max<std::size_t>(200, vectors() / 4)) prune();
     idle_ = has_learnt_ ? 0 : idle_ + 1;
-    return idle_ < 2;
+    return idle_ < 3 || persisted_ < model_.actions;
   }
 
   // Outwards, by more than rounding can have moved it inwards.
@@ -223,15 +233,37 @@ class Sarsop {
     return branch;
   }
 
+  // The same action for as long as it may be the best and leads on, with the likeliest observation each time.
+  template <class IsOver>
+  void persist(std::uint32_t number, std::uint32_t action, IsOver&& is_over) {
+    while (path_.size() < longest_detour_) {
+      Node& node = graph_[number];
+      graph_.expand(node);
+      const auto branch = std::find_if(node.branches.begin(), node.branches.end(),
+                                       [&](const Branch& candidate) { return candidate.action == action; });
+      if (branch == node.branches.end()) return;
+      path_.push_back(number);
+      if (!branch->is_open) has_learnt_ = true;
+      graph_.open(node, *branch);
+      refresh(*branch);
+      const Successor* likeliest = nullptr;
+      for (const Successor& successor : branch->successors) {
+        if (likeliest == nullptr || successor.probability > likeliest->probability) likeliest = &successor;
+      }
+      if (likeliest == nullptr || likeliest->node == number || is_over()) return;
+      number = likeliest->node;
+    }
+  }
+
   template <class IsOver>
   void sample(std::uint32_t number, double precision, IsOver&& is_over) {
-    const bool follows_upper = sampled_++ % 2 == 1;
-    path_.clear();
+    const auto follows = static_cast<Follows>(sampled_++ % 3);
     const double gap = graph_[number].upper - graph_[number].lower;
     double allowed = std::max(precision, share_of_gap_ * gap);
     double low = graph_[number].lower;
     double high = low + allowed;
-    while (path_.size() < longest_trial_) {
+    const std::size_t longest = path_.size() + longest_trial_;
+    while (path_.size() < longest) {
       Node& node = graph_[number];
       graph_.refresh_lower(node);
       graph_.refresh_upper(node);
@@ -239,7 +271,7 @@ class Sarsop {
       path_.push_back(number);
       graph_.expand(node);
       if (is_over()) return;
-      const Branch* const best = followed_branch(node, follows_upper, is_over);
+      const Branch* const best = followed_branch(node, follows, is_over);
       if (best == nullptr) return;
       double best_lower = -std::numeric_limits<double>::infinity();
       for (const Branch& branch : node.branches) best_lower = std::max(best_lower, branch.lower);
@@ -262,28 +294,35 @@ class Sarsop {
     }
   }
 
-  // With the highest upper bound, or the highest middle of both bounds, among those of which it is known where they lead;
-  // the one with the highest upper bound always is. None if `is_over()` before. Refreshes the bounds of these.
+  // Among the actions of which it is known where they lead; of the one with the highest upper bound it always is. None if
+  // `is_over()` before. Refreshes the bounds of these.
   template <class IsOver>
-  const Branch* followed_branch(Node& node, bool follows_upper, IsOver&& is_over) {
+  const Branch* followed_branch(Node& node, Follows follows, IsOver&& is_over) {
     for (Branch& branch : node.branches) {
+      if (follows == Follows::lower && !branch.is_open && !is_over()) {
+        graph_.open(node, branch);
+        has_learnt_ = true;
+      }
       if (branch.is_open) refresh(branch);
     }
     while (!node.branches.empty()) {
       Branch* highest = &node.branches.front();
-      Branch* likeliest = nullptr;
+      Branch* followed = nullptr;
       for (Branch& branch : node.branches) {
         if (branch.upper > highest->upper) highest = &branch;
-        if (!branch.is_open) continue;
-        if (likeliest == nullptr || branch.lower + branch.upper > likeliest->lower + likeliest->upper) likeliest = &branch;
+        if (branch.is_open && (followed == nullptr || merit(branch, follows) > merit(*followed, follows))) followed = &branch;
       }
-      if (highest->is_open) return follows_upper ? highest : likeliest;
+      if (highest->is_open) return followed;
       graph_.open(node, *highest);
       refresh(*highest);
       has_learnt_ = true;
       if (is_over()) break;
     }
     return nullptr;
+  }
+
+  static double merit(const Branch& branch, Follows follows) {
+    return (follows == Follows::upper ? 0 : branch.lower) + (follows == Follows::lower ? 0 : branch.upper);
   }
 
   void refresh(Branch& branch) {
@@ -441,6 +480,7 @@ class Sarsop {
   std::uint64_t backups_ = 0;
   std::size_t vectors_added_ = 0;
   bool has_learnt_ = false;  // in this trial
+  std::uint32_t persisted_ = 0;  // actions, from the roots of now
   int idle_ = 0;             // trials one after another that have learnt nothing
   std::deque<Branch> dropped_at_root_;
 };

@@ -85,11 +85,12 @@ class PointBased {
 
  private:
   static constexpr double next_to_nothing = 0.01;
+  static constexpr double little = 0.1;
   // A step of a state through a search tree takes as long as so many products of numbers.
   static constexpr std::uint64_t work_per_step = 100;
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
-    is_endless_ = std::pow(Model::discount, horizon_) <= next_to_nothing;
+    is_endless_ = std::pow(Model::discount, horizon_) <= (is_large() ? little : next_to_nothing);
     try {
       search_ = search_with(is_endless_ ? 0 : horizon_);
     } catch (const std::length_error&) {
@@ -100,6 +101,15 @@ class PointBased {
     }
     search_->move_to(entries);
     return {};
+  }
+  // Whether it takes long to look at all observations of all states once for each decision to go.
+  bool is_large() const {
+    constexpr double max_readings = 2e6;
+    double readings = 0;
+    for (const point_based::Outcome& outcome : space_.rows().outcomes.elements) {
+      readings += static_cast<double>(space_.rows().readings.end(outcome.sensing) - space_.rows().readings.begin(outcome.sensing));
+    }
+    return readings * horizon_ > max_readings;
   }
   std::unique_ptr<point_based::OnlineSarsop> search_with(int horizon) const {
     point_based::FlatModel model = space_.rows();

@@ -1,0 +1,185 @@
+// Plans of somebody who takes one state for granted, goes on to the state that is then likeliest by what is observed,
+// and always does what is best for somebody who sees that state (certainty equivalence).
+//
+// For every pair of a state that is taken for granted and one that is true, this is what such a plan gives: alpha vectors
+// to begin with. They are far above those of always doing the same action wherever a belief is nearly certain, so that
+// a search need not look beyond the point where the robot knows enough. For missions without end.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "point_based/bounds.hpp"
+#include "point_based/initial_bounds.hpp"
+#include "point_based/regions.hpp"
+
+namespace aos::point_based {
+
+class CertaintyEquivalent {
+ public:
+  // `informed` are values from above, by which actions are chosen.
+  CertaintyEquivalent(const FlatModel& model, const Regions& regions, const ActionValues& informed, double rounding)
+      : model_(model), regions_(regions), informed_(informed), rounding_(rounding) {
+    if (!is_small()) return;
+    for (const double reward : model.rewards) {
+      lowest_ = std::min(lowest_, reward);
+      scale_ = std::max(scale_, std::abs(reward));
+    }
+    const double worst = lowest_ / (1 - model.discount) * (1 + 1e-9);
+    for (const Region& region : regions_.all) {
+      first_of_.push_back(values_.size());
+      values_.resize(values_.size() + region.states.size() * region.states.size(), worst);
+    }
+    for (std::uint32_t number = 0; number < regions_.all.size(); ++number) add_steps(number);
+    for (int sweep = 0; sweep < max_sweeps_ && renew() > settled_ * scale_; ++sweep) {}
+  }
+
+  // Of a region, one vector for each state that may be taken for granted; none where the model is too large for that.
+  std::vector<AlphaVector> vectors(std::uint32_t region) const {
+    std::vector<AlphaVector> vectors;
+    if (values_.empty()) return vectors;
+    const std::size_t size = regions_.all[region].states.size();
+    for (std::uint32_t taken = 0; taken < size; ++taken) {
+      const auto first = values_.begin() + static_cast<std::ptrdiff_t>(first_of_[region] + taken * size);
+      vectors.emplace_back(best_action(region, taken), 0u, std::vector<double>(first, first + static_cast<std::ptrdiff_t>(size)));
+    }
+    return vectors;
+  }
+
+ private:
+  static constexpr std::size_t max_states_of_region_ = 200;
+  static constexpr std::size_t max_pairs_ = 100'000;
+  static constexpr std::size_t max_landings_ = 20'000'000;  // looked at
+  static constexpr int max_sweeps_ = 300;
+  static constexpr double settled_ = 1e-5;
+
+  // Where a true state may lead, with the pair of states then.
+  struct Step {
+    std::size_t pair;
+    double probability;
+  };
+
+  bool is_small() const {
+    std::size_t pairs = 0;
+    std::size_t looked_at = 0;
+    for (const Region& region : regions_.all) {
+      const std::size_t size = region.states.size();
+      if (size > max_states_of_region_ || (pairs += size * size) > max_pairs_) return false;
+      std::size_t landings = 0;
+      for (const Move& move : region.moves) {
+        std::size_t of_move = 0;
+        for (const Sight& sight : move.sights) of_move += sight.landings.size();
+        landings = std::max(landings, of_move);
+      }
+      if ((looked_at += size * landings) > max_landings_) return false;
+    }
+    return true;
+  }
+
+  std::uint32_t best_action(std::uint32_t region, std::uint32_t local) const {
+    const double* first = informed_.data() + model_.row(regions_.all[region].states[local], 0);
+    return static_cast<std::uint32_t>(std::max_element(first, first + model_.actions) - first);
+  }
+
+  void add_steps(std::uint32_t number) {
+    const Region& region = regions_.all[number];
+    for (std::uint32_t taken = 0; taken < region.states.size(); ++taken) {
+      const Move& move = region.moves[best_action(number, taken)];
+      find_landings(move, taken);
+      for (std::uint32_t truth = 0; truth < region.states.size(); ++truth) {
+        rewards_.push_back(move.rewards[truth]);
+        first_step_.push_back(steps_.size());
+        for (const auto* flow = move.flows.begin(truth); flow != move.flows.end(truth); ++flow) {
+          for (const Step& step : of_target_[flow->target]) add_step(step.pair, flow->probability * step.probability);
+        }
+      }
+    }
+    if (number + 1 == regions_.all.size()) first_step_.push_back(steps_.size());
+  }
+  void add_step(std::size_t pair, double probability) {
+    for (std::size_t i = first_step_.back(); i < steps_.size(); ++i) {
+      if (steps_[i].pair != pair) continue;
+      steps_[i].probability += probability;
+      return;
+    }
+    steps_.push_back({pair, probability});
+  }
+
+  // For every target of a move the pairs of states that follow, where `taken` is taken for granted.
+  void find_landings(const Move& move, std::uint32_t taken) {
+    predicted_.assign(move.targets, 0.0);
+    for (const auto* flow = move.flows.begin(taken); flow != move.flows.end(taken); ++flow) {
+      predicted_[flow->target] += flow->probability;
+    }
+    of_target_.resize(std::max<std::size_t>(of_target_.size(), move.targets));
+    for (std::size_t target = 0; target < move.targets; ++target) of_target_[target].clear();
+    for (const Sight& sight : move.sights) {
+      const std::size_t size = regions_.all[sight.region].states.size();
+      const std::size_t first = first_of_[sight.region] + likeliest(sight) * size;
+      for (const Sight::Landing& landing : sight.landings) {
+        std::vector<Step>& steps = of_target_[landing.target];
+        const std::size_t pair = first + landing.local;
+        const auto known = std::find_if(steps.begin(), steps.end(), [&](const Step& step) { return step.pair == pair; });
+        if (known == steps.end()) {
+          steps.push_back({pair, landing.probability});
+        } else {
+          known->probability += landing.probability;
+        }
+      }
+    }
+  }
+  // The state that an observation leaves likeliest; by the observation alone where what was predicted is ruled out.
+  std::uint32_t likeliest(const Sight& sight) const {
+    double best = -1;
+    std::uint32_t local = 0;
+    for (const Sight::Landing& landing : sight.landings) {
+      const double weight = landing.probability * (predicted_[landing.target] + tiny_);
+      if (weight <= best) continue;
+      best = weight;
+      local = landing.local;
+    }
+    return local;
+  }
+
+  // Values rise from what no plan can give less than to what these plans give; every sum is moved down by what rounding may have added.
+  // Returns the largest change.
+  double renew() {
+    double change = 0;
+    for (std::size_t pair = 0; pair < values_.size(); ++pair) {
+      double later = 0;
+      double size = std::abs(rewards_[pair]);
+      for (std::size_t i = first_step_[pair]; i < first_step_[pair + 1]; ++i) {
+        const double part = steps_[i].probability * values_[steps_[i].pair];
+        later += part;
+        size += std::abs(part);
+      }
+      const double value = rewards_[pair] + model_.discount * later - 4 * rounding_ * size;
+      change = std::max(change, value - values_[pair]);
+      values_[pair] = std::max(values_[pair], value);
+    }
+    return change;
+  }
+
+  static constexpr double tiny_ = 1e-9;
+
+  const FlatModel& model_;
+  const Regions& regions_;
+  const ActionValues& informed_;
+  double rounding_;
+  double lowest_ = 0;
+  double scale_ = 0;
+  std::vector<std::size_t> first_of_;  // pairs of a region
+  std::vector<double> values_;         // by pair
+  std::vector<double> rewards_;
+  std::vector<std::size_t> first_step_;
+  std::vector<Step> steps_;
+  std::vector<double> predicted_;
+  std::vector<std::vector<Step>> of_target_;
+};
+
+}  // namespace aos::point_based
