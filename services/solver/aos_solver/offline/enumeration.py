@@ -59,8 +59,8 @@ async def enumerate_model(
         raise ModelError(
             f"{description.project} cannot be solved before the mission: {error.message}",
             code="AOS220",
-            hint=f"Use draws with a finite number of outcomes, and counters that make no more than {max_states} "
-            "states (--states), or plan online (aos plan, aos-up)",
+            hint="Use draws with a finite number of outcomes and counters with a limit, for no more than "
+            f"{max_states} states (--states), or plan online (aos plan, aos-up)",
         ) from error
     with tempfile.TemporaryDirectory(prefix="aos-listing-") as folder:
         flat, texts = Path(folder) / "model.flat", Path(folder) / "states"

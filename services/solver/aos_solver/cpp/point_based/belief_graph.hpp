@@ -109,7 +109,8 @@ class BeliefGraph {
   void count_work(std::uint64_t work) { work_ += work; }
   // Relative to the sizes of numbers.
   double rounding() const { return rounding_; }
-  // So much in values is a matter of rounding.
+  // So much in a value that was worked out once, and in one that came about over all decisions, is a matter of rounding.
+  double noise_of_one() const { return 4 * rounding_ * sizes_.back(); }
   double noise() const { return 2 * rounding_ * sizes_.back() * lasting_decisions(model_); }
   LowerBound& lower(std::uint32_t region) { return lower_[region]; }
   const LowerBound& lower(std::uint32_t region) const { return lower_[region]; }

@@ -63,21 +63,11 @@ class InitialBounds {
 
  private:
   // Work for one kind of bound; large models get so many sweeps at least.
-  static constexpr double operations_ = 3e7;
+  static constexpr double operations_ = 1e7;
   static constexpr double layer_operations_ = 4e8;
   static constexpr double least_sweeps_ = 30;
-  // Sweeps end when no value changes by more than this share of the largest reward.
-  static constexpr double settled_blind_ = 1e-3;
-  static constexpr double settled_seen_ = 1e-6;
-
-  // Sweeps until nothing changes much or the work is done.
-  template <class Sweep>
-  void repeat(double settled, double operations, double least_sweeps, Sweep&& sweep) const {
-    const double sweeps = std::max(operations_ / (operations + 1), least_sweeps);
-    for (double done = 0; done < sweeps; ++done) {
-      if (sweep() <= settled * scale_) return;
-    }
-  }
+  // It is enough when values are known to this share of the largest reward.
+  static constexpr double settled_ = 1e-6;
 
   void add_layers() {
     const double actions = static_cast<double>(model_.actions);
@@ -115,32 +105,22 @@ class InitialBounds {
   ActionValues endless_blind_values() const {
     ActionValues values(model_.states * model_.actions, 0.0);
     for (std::size_t action = 0; action < model_.actions; ++action) {
-      const std::vector<double> same = endless_blind_values(action);
-      for (const std::uint32_t state : states_) values[model_.row(state, action)] = same[state];
+      Rows<std::uint32_t> rows;
+      double lowest = 0;
+      for (const std::uint32_t state : states_) {
+        rows.first.push_back(rows.elements.size());
+        rows.elements.push_back(static_cast<std::uint32_t>(model_.row(state, action)));
+        lowest = std::min(lowest, model_.rewards[rows.elements.back()]);
+      }
+      rows.first.push_back(rows.elements.size());
+      const std::vector<double> same = settled_values(rows);
+      const double shift = shift_of(same, rows).least;
+      for (const std::uint32_t state : states_) {
+        const double value = same[state] + shift;
+        values[model_.row(state, action)] =
+            std::max(value - 4 * ulp * (std::abs(same[state]) + std::abs(shift)), summed_up(lowest));
+      }
     }
-    return values;
-  }
-
-  // Sweeps rise from the least there can be. Whatever they have come to: where doing the action once more takes no more
-  // than c away, no value is further than c / (1 - discount) too high.
-  std::vector<double> endless_blind_values(std::size_t action) const {
-    std::vector<double> values(model_.states, 0.0);
-    double lowest = 0;
-    for (const std::uint32_t state : states_) lowest = std::min(lowest, model_.rewards[model_.row(state, action)]);
-    for (const std::uint32_t state : states_) values[state] = lowest / (1 - model_.discount);
-    const double operations = static_cast<double>(model_.outcomes.elements.size() / model_.actions);
-    repeat(settled_blind_, operations, least_sweeps_, [&] {
-      return sweep(values, [&](std::size_t number) {
-        const std::uint32_t state = states_[number];
-        return std::max(values[state], lasting_value(state, model_.row(state, action), values));
-      });
-    });
-    double drop = 0;
-    for (const std::uint32_t state : states_) {
-      const Estimate again = value_of(model_.row(state, action), [&](std::uint32_t next) { return values[next]; });
-      drop = std::max(drop, values[state] - again.value + again.error);
-    }
-    for (const std::uint32_t state : states_) values[state] -= summed_up(drop) + 4 * ulp * std::abs(values[state]);
     return values;
   }
 
@@ -158,8 +138,10 @@ class InitialBounds {
     }
     Gathered gathered;
     gathered.slot_of.assign(model_.observations, 0);
-    repeat(settled_seen_, readings_ * static_cast<double>(model_.actions), 1, [&] {
-      double change = 0;
+    const double sweeps = std::max(operations_ / (readings_ * static_cast<double>(model_.actions) + 1), 1.0);
+    double change = std::numeric_limits<double>::infinity();
+    for (double done = 0; done < sweeps && change > settled_ * scale_; ++done) {
+      change = 0;
       for (const std::uint32_t state : states_) {
         for (std::size_t action = 0; action < model_.actions; ++action) {
           const std::size_t row = model_.row(state, action);
@@ -168,44 +150,78 @@ class InitialBounds {
           above[row] = std::min(above[row], tighter);
         }
       }
-      return change;
-    });
+    }
     return above;
   }
 
-  // Sweeps from nothing settle sooner than from the most there can be; where one more decision lifts no value by more
-  // than c, none is further than c / (1 - discount) too low.
+  // Of somebody who always sees the state.
   std::vector<double> endless_seen_values() const {
     const Rows<std::uint32_t> choices = different_rows();
-    std::vector<double> values(model_.states, 0.0);
-    const auto best = [&](std::size_t number, auto&& value) {
-      double best_value = -std::numeric_limits<double>::infinity();
-      const auto* last = choices.end(number);
-      for (const auto* row = choices.begin(number); row != last; ++row) best_value = std::max(best_value, value(*row));
-      return best_value;
-    };
-    const double settled = std::min(settled_seen_, settled_seen_ * 20 * (1 - model_.discount));
-    repeat(settled, static_cast<double>(choices.elements.size()), least_sweeps_, [&] {
-      return sweep(values, [&](std::size_t number) {
-        return best(number, [&](std::size_t row) { return lasting_value(states_[number], row, values); });
-      });
-    });
-    double lift = 0;
-    for (std::size_t number = 0; number < states_.size(); ++number) {
-      const double once_more = best(number, [&](std::size_t row) {
-        const Estimate value = value_of(row, [&](std::uint32_t next) { return values[next]; });
-        return value.value + value.error;
-      });
-      lift = std::max(lift, once_more - values[states_[number]]);
-    }
-    const double most = summed_up(highest_);
+    std::vector<double> values = settled_values(choices);
+    const double shift = shift_of(values, choices).most;
     for (const std::uint32_t state : states_) {
-      values[state] = std::min(values[state] + summed_up(lift) + 4 * ulp * std::abs(values[state]), most);
+      const double value = values[state] + shift + 4 * ulp * (std::abs(values[state]) + std::abs(shift));
+      values[state] = std::min(value, summed_up(highest_));
     }
     return values;
   }
 
-  // At least what so much at every decision adds up to.
+  // Of the best of each state's rows, about: by sweeps from nothing, until all states are off by nearly the same.
+  std::vector<double> settled_values(const Rows<std::uint32_t>& choices) const {
+    std::vector<double> values(model_.states, 0.0);
+    double outcomes = 0;
+    for (const std::uint32_t row : choices.elements) {
+      outcomes += static_cast<double>(model_.outcomes.end(row) - model_.outcomes.begin(row));
+    }
+    const double sweeps = std::max(operations_ / (outcomes + 1), least_sweeps_);
+    double next_look = 4;
+    for (double done = 1; done <= sweeps; ++done) {
+      if (sweep(values, choices) <= 1e-13 * scale_) break;
+      if (done < next_look) continue;
+      const Shift shift = shift_of(values, choices);
+      if (shift.most - shift.least <= settled_ * scale_) break;
+      next_look *= 1.5;
+    }
+    return values;
+  }
+
+  // Between which numbers the one lies that is to be added to the value of every state. Where one more decision by a row
+  // adds d to a state's value, and the mission goes on with probability p, values that are d / (1 - discount p) higher
+  // would stay as they are; with the most of all rows' none rises, with the least of all states' best rows none falls.
+  struct Shift {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -std::numeric_limits<double>::infinity();
+  };
+
+  Shift shift_of(const std::vector<double>& values, const Rows<std::uint32_t>& choices) const {
+    Shift shift;
+    for (std::size_t number = 0; number < states_.size(); ++number) {
+      double best = -std::numeric_limits<double>::infinity();
+      for (const auto* row = choices.begin(number); row != choices.end(number); ++row) {
+        const Estimate again = value_of(*row, [&](std::uint32_t next) { return values[next]; });
+        const double added = again.value - values[states_[number]];
+        const double error = again.error + ulp * std::abs(values[states_[number]]);
+        const double share = 1 - model_.discount * going_on(*row);
+        const auto divided = [&](double by, int direction) {
+          return by / (share - direction * (by < 0 ? -1 : 1) * rounding_) * (1 + direction * (by < 0 ? -1 : 1) * 4 * ulp);
+        };
+        shift.most = std::max(shift.most, divided(added + error, 1));
+        best = std::max(best, divided(added - error, -1));
+      }
+      shift.least = std::min(shift.least, best);
+    }
+    return states_.empty() ? Shift{0, 0} : shift;
+  }
+
+  double going_on(std::size_t row) const {
+    double sum = 0;
+    for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
+      if (regions_.region_of[outcome->next] != nowhere) sum += outcome->probability;
+    }
+    return sum;
+  }
+
+  // What so much at every decision adds up to, and a little more in size.
   double summed_up(double reward) const {
     return reward * (1 + 8 * ulp) / (1 - model_.discount * most_probable_ - 4 * ulp);
   }
@@ -236,12 +252,14 @@ class InitialBounds {
   }
 
   // There and back over `states_`, since values run along numbers that rise or that fall. Returns the largest change.
-  template <class NewValue>
-  double sweep(std::vector<double>& values, NewValue&& new_value) const {
+  double sweep(std::vector<double>& values, const Rows<std::uint32_t>& choices) const {
     double change = 0;
     const auto renew = [&](std::size_t number) {
       double& value = values[states_[number]];
-      const double renewed = new_value(number);
+      double renewed = -std::numeric_limits<double>::infinity();
+      for (const auto* row = choices.begin(number); row != choices.end(number); ++row) {
+        renewed = std::max(renewed, lasting_value(states_[number], *row, values));
+      }
       change = std::max(change, std::abs(renewed - value));
       value = renewed;
     };

@@ -381,7 +381,7 @@ class Sarsop {
       best = &branch;
       best_lower = branch.lower;
     }
-    const double worth_it = graph_.noise();
+    const double worth_it = graph_.noise_of_one();
     if (best != nullptr && best_lower > node.lower + worth_it) {
       const double before = node.lower;
       add_vector(node, *best);
