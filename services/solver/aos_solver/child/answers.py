@@ -172,15 +172,14 @@ class ExportedBelief(msgspec.Struct, frozen=True):
     """A belief that another engine with the same state layout can take: weights, and states as text.
 
     `constants` are the variables that no code of the model changes, as text; states hold the others.
-    `unobserved` are states drawn from the initial belief that took the same actions, and nothing was observed
-    of; a belief that no state was drawn for has none.
+    `history` tells how the states of a drawn belief came to be; it is empty where the engine does not know.
     """
 
     error_bound: float
     is_drawn: bool
     states: int
     constants: dict[str, str]
-    unobserved: tuple[str, ...]
+    history: str
     particles: tuple[tuple[float, str], ...]
 
     @property
@@ -190,10 +189,9 @@ class ExportedBelief(msgspec.Struct, frozen=True):
     def fields(self) -> list[str]:
         """What an engine that takes it over is told."""
         fields = [repr(self.error_bound), str(int(self.is_drawn))]
-        fields += str(len(self.constants)), str(len(self.unobserved))
+        fields += self.history, str(len(self.constants))
         for name, value in self.constants.items():
             fields += name, value
-        fields += self.unobserved
         for weight, state in self.particles:
             fields += repr(weight), state
         return fields

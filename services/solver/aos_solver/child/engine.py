@@ -277,6 +277,10 @@ class Engine:
             particles += piece.particles
         return msgspec.structs.replace(belief, particles=tuple(particles))
 
+    async def draw_belief(self) -> BeliefSummary:
+        """Back to the initial belief, as particles even where it could be enumerated."""
+        return await self._change_belief("draw_belief", BeliefSummary)
+
     async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
         """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
         return await self._change_belief("\t".join(("import_belief", *belief.fields())), BeliefSummary)

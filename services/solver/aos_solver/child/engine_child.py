@@ -30,6 +30,9 @@ A = TypeVar("A")
 
 START_DEADLINE_S = 20.0
 EXIT_DEADLINE_S = 2.0
+HANG_STATUS = 71
+"""How a child ends whose document code ran too long; known to watchdog.hpp."""
+
 ADDRESS_SPACE_BYTES = 8 * 1024**3
 ANSWER_LIMIT_BYTES = 32 * 1024**2
 """Of one answer; what may be longer comes in pieces."""
@@ -174,6 +177,8 @@ class EngineChild:
             return KilledError("the engine was killed", code="AOS213")
         if status is None:
             return self.fault(code, message, piece)
+        if status == HANG_STATUS and piece:
+            return self.fault("AOS211", "this code does not come to an end", piece)
         told = _status_text(status)
         if not piece:
             message = f"the engine ended outside of the documents' code ({told})"

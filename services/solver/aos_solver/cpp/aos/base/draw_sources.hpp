@@ -1,10 +1,11 @@
 // The functions of the sources of draws that are not compiled with every model. Included by support.hpp alone.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
+#include "aos/base/directed.hpp"
 #include "aos/base/enumerator.hpp"
 #include "aos/base/random.hpp"
 
@@ -12,12 +13,13 @@ namespace aos {
 
 namespace detail {
 
-// The first outcome at or after `from` that can happen; -1 if there is none.
-inline int next_outcome(const double* weights, int count, int from) {
-  for (int i = from; i < count; ++i) {
+// The outcome after `taken` that can happen, around to `first`; -1 if there is none.
+inline int next_outcome(const double* weights, int count, int taken, int first) {
+  for (int i = taken + 1;; ++i) {
+    if (i >= count) i = 0;
+    if (i == first) return -1;
     if (weights[i] > 0) return i;
   }
-  return -1;
 }
 
 template <class Source>
@@ -37,64 +39,34 @@ inline constexpr AnySource::Functions functions_of{
 }  // namespace detail
 
 AnySource::AnySource(Sampler& sampler) : source_(&sampler), functions_(detail::functions_of<Sampler>) {}
-AnySource::AnySource(Enumerator& enumerator) : source_(&enumerator), functions_(detail::functions_of<Enumerator>) {}
+AnySource::AnySource(DirectedDraws& draws) : source_(&draws), functions_(detail::functions_of<DirectedDraws>) {}
 
 int Enumerator::choose(const double* weights, int count, double total) {
-  if (depth_ < by_chance_) return choose_by_chance(weights, count, total);
-  if (depth_ == choices_.size()) choices_.push_back({detail::next_outcome(weights, count, 0), 0, 0});
+  if (depth_ == choices_.size()) {
+    if (depth_ == max_draws_of_path) throw NotEnumerable{"a step draws too often"};
+    const bool by_chance = is_best_first_ || depth_ >= max_draws_depth_first;
+    const int first = by_chance ? chance_.choose(weights, count, total) : detail::next_outcome(weights, count, -1, count);
+    choices_.push_back({first, none, first, 0});
+  }
   Choice& choice = choices_[depth_++];
-  choice.following = detail::next_outcome(weights, count, choice.taken + 1);
+  choice.following = detail::next_outcome(weights, count, choice.taken, choice.first);
+  if (is_best_first_) {
+    double following = 0;
+    for (int i = choice.following; i != none; i = detail::next_outcome(weights, count, i, choice.first)) {
+      following += weights[i];
+    }
+    choice.following_weight = probability_ * following / total;
+  }
   probability_ *= weights[choice.taken] / total;
   return choice.taken;
 }
 
-int Enumerator::choose_by_chance(const double* weights, int count, double total) {
-  if (depth_ == choices_.size()) {
-    int alternatives = 0;
-    for (int i = 0; i < count; ++i) alternatives += weights[i] > 0 ? 1 : 0;
-    choices_.push_back({chance_->choose(weights, count, total), none, alternatives});
-  }
-  return choices_[depth_++].taken;
-}
+double Enumerator::uniform() { throw NotEnumerable{"a draw is continuous"}; }
 
-double Enumerator::uniform() {
-  if (chance_ == nullptr) throw NotEnumerable{"a draw is continuous"};
-  if (depth_ == choices_.size()) choices_.push_back({0, none, no_alternatives, chance_->uniform()});
-  return choices_[depth_++].value;
-}
-
-void Enumerator::report(std::uint32_t key, const Distribution& distribution) {
-  if (sink_ == nullptr) throw NotEnumerable{numbers_are_observed};
-  sink_->take(key, distribution);
-}
-
-double Enumerator::combinations() const {
-  double product = 1;
-  for (const Choice& choice : choices_) {
-    if (choice.alternatives == no_alternatives) return std::numeric_limits<double>::infinity();
-    product *= choice.alternatives;
-  }
-  return product;
-}
-
-std::size_t Enumerator::draws_before_last(int most) const {
-  std::size_t first = choices_.size();
-  for (long combinations = 1; first > 0; --first) {
-    const int alternatives = choices_[first - 1].alternatives;
-    if (alternatives == no_alternatives || (combinations *= alternatives) > most) break;
-  }
-  return first;
-}
-
-void Enumerator::start(Sampler* chance, std::size_t by_chance) {
-  chance_ = chance;
-  by_chance_ = by_chance;
+void Enumerator::start() {
   choices_.clear();
-}
-
-void Enumerator::keep(std::size_t choices) {
-  if (choices_.size() > choices) choices_.resize(choices);
-  by_chance_ = all_draws;
+  chance_ = Sampler{1};
+  is_best_first_ = false;
 }
 
 bool Enumerator::advance() {
@@ -103,6 +75,51 @@ bool Enumerator::advance() {
   if (choices_.empty()) return false;
   choices_.back().taken = choices_.back().following;
   return true;
+}
+
+void Enumerator::begin_best_first() {
+  is_best_first_ = true;
+  nodes_.clear();
+  begun_.clear();
+  shared_ = 0;
+  last_ = no_node;
+  waiting_ = dropped_ = 0;
+}
+
+namespace detail {
+inline constexpr auto is_less_likely = [](const auto& left, const auto& right) { return left.weight < right.weight; };
+}  // namespace detail
+
+void Enumerator::put_off() {
+  constexpr double negligible = negligible_paths * 1e-6;
+  for (std::size_t depth = shared_; depth < depth_; ++depth) {
+    const Choice& choice = choices_[depth];
+    if (choice.following != none && choice.following_weight > negligible) {
+      begun_.push_back({choice.following_weight, last_, choice.following, choice.first});
+      std::push_heap(begun_.begin(), begun_.end(), detail::is_less_likely);
+      waiting_ += choice.following_weight;
+    } else if (choice.following != none) {
+      dropped_ += choice.following_weight;
+    }
+    nodes_.push_back({last_, choice.taken, choice.first});
+    last_ = static_cast<std::uint32_t>(nodes_.size() - 1);
+  }
+}
+
+void Enumerator::take_likeliest() {
+  std::pop_heap(begun_.begin(), begun_.end(), detail::is_less_likely);
+  const Begun begun = begun_.back();
+  begun_.pop_back();
+  waiting_ = std::max(waiting_ - begun.weight, 0.0);
+  if (begun_.empty()) waiting_ = 0;
+  choices_.clear();
+  choices_.push_back({begun.taken, none, begun.first, 0});
+  for (std::uint32_t node = begun.before; node != no_node; node = nodes_[node].before) {
+    choices_.push_back({nodes_[node].taken, none, nodes_[node].first, 0});
+  }
+  std::reverse(choices_.begin(), choices_.end());
+  shared_ = choices_.size() - 1;
+  last_ = begun.before;
 }
 
 }  // namespace aos

@@ -1,11 +1,11 @@
-// Model code over every combination of its discrete draws, each with its probability.
+// Model code over the combinations of its discrete draws, each with its probability.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
+#include "aos/base/directed.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -17,111 +17,126 @@ struct NotEnumerable {
 inline constexpr const char* numbers_are_observed = "what is observed are numbers";
 
 inline constexpr int path_budget = 4096;
+inline constexpr std::size_t max_draws_of_path = 100'000;
+// A path with more draws is taken to be in a loop that chance ends.
+inline constexpr std::size_t max_draws_depth_first = 64;
+inline constexpr std::size_t max_frontier = 4'000'000;  // of paths that are only begun, in nodes
+inline constexpr double negligible_paths = 1e-9;        // in all: they need not be walked
+inline constexpr double max_left_out = 1e-6;            // in all, where the budget is used up
 
-// Replays model code. One run follows one path: known choices are repeated, new ones take their first outcome. Outcomes
-// of probability zero are never walked.
+// Replays model code. One run follows one path: known choices are repeated, new ones are made. Outcomes of probability
+// zero are never walked.
 //
-// Where a step has too many paths, or a continuous draw, the first draws of a path can be left to chance, and the last
-// ones, which usually decide what is observed, enumerated.
-class Enumerator : public Draws<Enumerator> {
+// Paths are walked depth first, the first outcome of each new draw first. A loop that draws until a condition holds has
+// paths without end, though, and depth first may follow the endless one. So when a path gets long, new draws are made at
+// random from then on (with a seed of its own: a walk is always the same), and what is not walked yet is walked best
+// first: its probable parts before the others, until what is left is negligible.
+class Enumerator final : public DirectedDraws {
  public:
-  // Of the path; given the draws that were left to chance. With what its sink makes of the numbers that it reports.
-  double probability() const { return sink_ == nullptr ? probability_ : probability_ * sink_->weight(); }
+  // Of the path, with what its sink makes of the numbers that it reports.
+  double probability() const { return probability_ * weight_of_numbers(); }
 
   // How many choices are known of the path: all of the one before it that it shares.
   std::size_t draws() const { return choices_.size(); }
 
-  bool flag(double probability) {
-    if (probability <= 0) return false;
-    if (probability >= 1) return true;
-    const double weights[] = {1 - probability, probability};
-    return choose(weights, 2, 1.0) == 1;
-  }
-
-  int choose(const double* weights, int count, double total);
-  double uniform();
-  // Numbers are not enumerated: without a sink that has another use for them this throws NotEnumerable.
-  void report(std::uint32_t key, const Distribution& distribution);
-  // Returns the sink before.
-  NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
+  int choose(const double* weights, int count, double total) override;
+  double uniform() override;
 
   // Calls `run(enumerator)` once for each path; after it, `probability()` is the path's. Throws NotEnumerable.
   template <class Run>
-  void for_each_path(Run&& run, int most = path_budget) {
-    start(nullptr, 0);
+  void for_each_path(Run&& run, int max_paths = path_budget) {
+    start();
     int paths = 0;
     do {
-      if (++paths > most) throw NotEnumerable{"there are more combinations of draws than can be walked"};
+      if (++paths > max_paths) throw NotEnumerable{"there are more combinations of draws than can be walked"};
       run_once(run);
     } while (advance());
   }
 
-  // One path at random, of probability 1.
+  // The same for models with loops that chance ends: returns what the paths weigh, together, that were not walked, which
+  // is little. Throws NotEnumerable, too.
   template <class Run>
-  void draw_path(Sampler& chance, Run&& run) {
-    start(&chance, all_draws);
-    run_once(run);
-  }
-
-  // How many paths there were if all had as many alternatives as the one that was just drawn; on average this is right
-  // (Knuth, 1975). Infinite where a draw is continuous.
-  double combinations() const;
-
-  // How many draws of the path that was just drawn come before those that have at most `most` combinations together.
-  std::size_t draws_before_last(int most) const;
-
-  // Calls `run(enumerator)` once for each path that agrees with `by_chance` first draws, which are left to chance. Gives
-  // up after `most` paths, and then returns false.
-  template <class Run>
-  bool for_each_completion(Sampler& chance, std::size_t by_chance, int most, Run&& run) {
-    start(&chance, by_chance);
+  double for_nearly_each_path(Run&& run, int max_paths = path_budget) {
+    start();
     int paths = 0;
     do {
-      if (++paths > most) return false;
+      if (++paths > max_paths) throw NotEnumerable{"there are more combinations of draws than can be walked"};
       run_once(run);
+      if (depth_ > max_draws_depth_first) return best_first(run, max_paths - paths);
     } while (advance());
-    return true;
-  }
-
-  // One path at random that agrees with the last one in its `by_chance` first draws.
-  template <class Run>
-  void redraw_after(std::size_t by_chance, Run&& run) {
-    keep(by_chance);
-    run_once(run);
+    return 0;
   }
 
  private:
   static constexpr int none = -1;
-  static constexpr int no_alternatives = 0;
-  static constexpr std::size_t all_draws = static_cast<std::size_t>(-1);
+  static constexpr std::uint32_t no_node = 0xffffffffu;
 
+  // The outcomes of a draw are walked in their order, from the first one that was taken around to it.
   struct Choice {
     int taken;
-    int following;
-    int alternatives;  // of a draw left to chance: itself and the others that can happen
-    double value = 0;  // of a continuous draw
+    int following;  // or `none`
+    int first;
+    double following_weight;  // of all that follow, with the path to here; known best first only
+  };
+  // A choice as the end of the path to it.
+  struct Node {
+    std::uint32_t before;
+    int taken;
+    int first;
+  };
+  // Paths that agree up to a node, and go on with what has not been walked there.
+  struct Begun {
+    double weight;
+    std::uint32_t before;
+    int taken;
+    int first;
   };
 
-  int choose_by_chance(const double* weights, int count, double total);
-  void start(Sampler* chance, std::size_t by_chance);
-  // Of the last path so many choices; what follows is left to chance.
-  void keep(std::size_t choices);
+  // Numbers are not enumerated, so there must be a sink that has another use for them.
+  void ignore_number() override { throw NotEnumerable{numbers_are_observed}; }
+
+  void start();
+  // To the next path, depth first; false after the last.
   bool advance();
 
   template <class Run>
   void run_once(Run& run) {
     depth_ = 0;
     probability_ = 1;
-    if (sink_ != nullptr) sink_->begin();
+    begin_numbers();
     run(*this);
   }
+
+  template <class Run>
+  double best_first(Run& run, int max_paths) {
+    if (!advance()) return 0;
+    begin_best_first();
+    for (int paths = 0; paths < max_paths && nodes_.size() < max_frontier; ++paths) {
+      run_once(run);
+      put_off();
+      if (begun_.empty() || waiting_ + dropped_ <= negligible_paths) return waiting_ + dropped_;
+      take_likeliest();
+    }
+    if (waiting_ + dropped_ > max_left_out) throw NotEnumerable{"loops that draw have more paths than can be walked"};
+    return waiting_ + dropped_;
+  }
+  void begin_best_first();
+  // Notes what the path that was just walked leaves for later.
+  void put_off();
+  void take_likeliest();
 
   std::vector<Choice> choices_;
   std::size_t depth_ = 0;
   double probability_ = 1;
-  Sampler* chance_ = nullptr;
-  std::size_t by_chance_ = 0;
-  NumberSink* sink_ = nullptr;
+
+  bool is_best_first_ = false;
+  Sampler chance_{0};
+  std::vector<Node> nodes_;
+  std::vector<Begun> begun_;      // a heap, the likeliest on top
+  std::size_t shared_ = 0;        // choices of this path that the nodes up to `last_` stand for
+  std::uint32_t last_ = no_node;
+  double waiting_ = 0;
+  double dropped_ = 0;
 };
 
 // Before a step along a path: what it takes, in draws. A large state costs as much to copy.

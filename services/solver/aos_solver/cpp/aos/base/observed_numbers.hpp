@@ -93,8 +93,10 @@ class RecordedNumbers final : public NumberSink {
 class WeighedNumbers final : public NumberSink {
  public:
   // With `by_value` false it counts only which numbers a step reports, and not their values.
-  explicit WeighedNumbers(const ObservedNumbers& observed, bool by_value = true)
-      : observed_(observed), by_value_(by_value), is_taken_(observed.size(), false) {}
+  explicit WeighedNumbers(const ObservedNumbers& observed, bool by_value = true, double log_scale = 0)
+      : observed_(observed), by_value_(by_value), is_taken_(observed.size(), false), log_scale_(log_scale) {}
+
+  const ObservedNumbers& observed() const { return observed_; }
 
   void begin() override {
     std::fill(is_taken_.begin(), is_taken_.end(), false);
@@ -146,7 +148,7 @@ class WeighedNumbers final : public NumberSink {
   bool has_others_ = false;
   double log_density_ = 0;
   double highest_ = -std::numeric_limits<double>::infinity();
-  double log_scale_ = 0;
+  double log_scale_;
 };
 
 // For who wants successors, and what is observed without the numbers.

@@ -1,14 +1,15 @@
-// Where draws come from. Document code sees one interface; `Sampler` draws, `Enumerator` (enumerator.hpp) walks, and
-// `AnySource` stands for either.
+// Where draws come from. Document code sees one interface; `Sampler` draws, `DirectedDraws` (directed.hpp) are told what to
+// give, and `AnySource` stands for either.
 #pragma once
 
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <numbers>
 #include <utility>
+#include <vector>
+
+#include "aos/base/normal.hpp"
 
 namespace aos {
 
@@ -48,7 +49,7 @@ class Draws {
   template <class Weights>
   int SampleDiscrete(int name, const Weights& weights) {
     const Copied copied{weights};
-    return name + 1 + normalised(copied.weights.data(), copied.count);
+    return name + 1 + normalised(copied.weights, copied.count);
   }
 
   // An index, or -1 where the weights, which are not normalised, leave room. A gap that single precision explains is
@@ -56,17 +57,16 @@ class Draws {
   template <class Weights = std::initializer_list<double>>
   int SampleDiscrete(const Weights& weights) {
     Copied copied{weights};
-    const double total = checked_total(copied.weights.data(), copied.count, /*may_be_zero=*/true);
+    const double total = checked_total(copied.weights, copied.count, /*may_be_zero=*/true);
     const double gap = 1 - total;
-    if (gap <= weight_rounding) return source().choose(copied.weights.data(), copied.count, total);
+    if (gap <= weight_rounding) return source().choose(copied.weights, copied.count, total);
     copied.append(gap);
-    const int drawn = source().choose(copied.weights.data(), copied.count, 1.0);
+    const int drawn = source().choose(copied.weights, copied.count, 1.0);
     return drawn == copied.count - 1 ? -1 : drawn;
   }
 
   double SampleNormal(double mean, double deviation) {
-    const double radius = std::sqrt(-2 * std::log(1 - source().uniform()));
-    return mean + deviation * radius * std::cos(2 * std::numbers::pi * source().uniform());
+    return mean + deviation * normal_quantile(source().uniform() + 0x1p-54);
   }
   double SampleUniform(double low, double high) { return low + (high - low) * source().uniform(); }
 
@@ -76,19 +76,29 @@ class Draws {
   bool IsInitialized(bool value) { return value; }
 
  private:
-  static constexpr int most_weights = 512;
 
+  // In place as long as they are few.
   struct Copied {
     template <class Weights>
     explicit Copied(const Weights& from) {
       for (const double weight : from) append(weight);
     }
+    Copied(const Copied&) = delete;
+    Copied& operator=(const Copied&) = delete;
     void append(double weight) {
-      if (count == most_weights) bad_weights("more than 511 weights in one draw");
+      if (count == room) grow();
       weights[count++] = weight;
     }
-    std::array<double, most_weights> weights;
+    [[gnu::cold]] void grow() {
+      if (many.empty()) many.assign(weights, weights + count);
+      many.resize(static_cast<std::size_t>(room *= 2));
+      weights = many.data();
+    }
+    std::array<double, 256> few;
+    std::vector<double> many;
+    double* weights = few.data();
     int count = 0;
+    int room = static_cast<int>(few.size());
   };
 
   Source& source() { return static_cast<Source&>(*this); }
@@ -166,7 +176,7 @@ class Sampler : public Draws<Sampler> {
   NumberSink* sink_ = nullptr;
 };
 
-class Enumerator;
+class DirectedDraws;
 
 // A source that lives as long as this is used. What draws from it is compiled once, and not for each kind of source.
 class AnySource : public Draws<AnySource> {
@@ -179,7 +189,7 @@ class AnySource : public Draws<AnySource> {
   };
 
   explicit AnySource(Sampler& sampler);
-  explicit AnySource(Enumerator& enumerator);
+  explicit AnySource(DirectedDraws& draws);
 
   bool flag(double probability) { return functions_.flag(source_, probability); }
   int choose(const double* weights, int count, double total) {

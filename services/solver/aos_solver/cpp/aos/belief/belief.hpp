@@ -1,13 +1,16 @@
 // A belief: distinct states with weights that sum to 1, and Bayes' rule on it.
 //
 // While steps can be enumerated the update is exact: every outcome of every state, equal states merged, no sampling and
-// so no depletion. Where the states become too many, the heavy ones stay and the light ones are thinned out, and the
-// belief bounds how far it may be from the exact one. Where steps cannot be enumerated, it is a particle filter.
+// so no depletion. Where the states become too many, the heavy ones stay and the light ones are thinned out, and where a
+// loop has endless paths, the improbable ones are left out: the belief then bounds how far it may be from the exact one.
+// Where steps cannot be enumerated, it is drawn from then on: see particle_filter.hpp.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -16,9 +19,12 @@
 #include "aos/base/json.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/replay.hpp"
 #include "aos/belief/gathering.hpp"
+#include "aos/belief/history.hpp"
 #include "aos/belief/marginals.hpp"
 #include "aos/belief/outcomes.hpp"
+#include "aos/belief/particle_filter.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
@@ -27,7 +33,6 @@ inline constexpr std::size_t most_weighted_states = 100'000;
 inline constexpr std::size_t most_weighted_bytes = std::size_t{64} << 20;
 inline constexpr int most_initial_paths = 1'000'000;
 inline constexpr std::size_t most_enumerated_paths = 4'000'000;  // of one update of an exact belief
-inline constexpr std::size_t most_paths_of_particles = 10 * particle_count;  // of one update of any other
 inline constexpr double negligible_weight = 1e-12;
 
 // What the belief becomes when the model holds an observation impossible.
@@ -45,76 +50,63 @@ class Belief {
   bool is_exact() const { return error_bound_ == 0; }
   // Whether its states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
-  // Of a drawn one; there are none where the initial belief was enumerated.
-  const Unobserved<Model>& unobserved() const { return unobserved_; }
+  // Of a drawn one: how its particles came to be, if that is known.
+  const History<Model>& history() const { return history_; }
+  const std::vector<Lineage>& lineages() const { return lineages_; }
   // No event's probability is further than this from the exact belief's; 1 where steps were sampled.
   double error_bound() const { return error_bound_; }
-  // How many states of equal weight would tell as much.
+  // How many states of equal weight would tell as much; of a drawn belief, how many independent samples.
   double effective_states() const {
+    if (!lineages_.empty()) return Cloud<Model>{particles_, lineages_, history_}.effective();
     double squares = 0;
     for (const auto& particle : particles_) squares += particle.weight * particle.weight;
     return squares > 0 ? 1 / squares : 0;
   }
 
   static Belief initial(Sampler& random) {
-    Gathering<Model> gathering;
-    State state{};
-    Enumerator draws;
-    double combinations = 0;
-    constexpr int telling = 10;
-    for (int i = 0; i < telling; ++i) {
-      draws.draw_path(random, [&](Enumerator& path) { Model::initial(state, path); });
-      combinations += draws.combinations() / telling;
+    if (combinations(random) > 2 * most_initial_paths) return drawn(random);
+    try {
+      Gathering<Model> gathering;
+      State state{};
+      Enumerator draws;
+      double gone = 0;
+      const std::size_t most = most_states(Source::enumeration);
+      const auto add = [&](Enumerator& path) {
+        Model::initial(state, path);
+        gathering.add(state, path.probability());
+        if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
+      };
+      gone += draws.for_nearly_each_path(add, most_initial_paths);
+      gone += gathering.reduce(most, random);
+      return Belief{gathering, gone, Source::enumeration};
+    } catch (const NotEnumerable&) {
+      return drawn(random);
     }
-    if (combinations <= 2 * most_initial_paths) {
-      try {
-        double gone = 0;
-        const std::size_t most = most_states(Source::enumeration);
-        const auto add = [&](Enumerator& path) {
-          Model::initial(state, path);
-          gathering.add(state, path.probability());
-          if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
-        };
-        draws.for_each_path(add, most_initial_paths);
-        gone += gathering.reduce(most, random);
-        return Belief{gathering, gone, Source::enumeration};
-      } catch (const NotEnumerable&) {
-        gathering.clear();
-      }
-    }
-    Unobserved<Model> unobserved;
-    for (std::size_t i = 0; i < particle_count; ++i) {
-      Model::initial(state, random);
-      gathering.add(state, 1.0);
-      unobserved.add(state);
-    }
-    Belief belief{gathering, 1, Source::drawing};
-    belief.unobserved_ = std::move(unobserved);
-    return belief;
   }
 
-  // After an action, before any observation.
-  Belief predicted(int action, Sampler& random) const {
-    return gathered(action, ignored_numbers, random, [](Observation) { return true; }).first;
+  // The initial belief as particles.
+  static Belief drawn(Sampler& random) { return Belief{ParticleFilter<Model>{random}.initial()}; }
+
+  // After an action, before any observation; or after one of which nobody knows whether it ran.
+  Belief predicted(int action, Sampler& random, double ran_probability = 1) const {
+    if (is_drawn()) return stepped({.action = action, .ran_probability = ran_probability}, ignored_numbers, random).first;
+    Belief ran = enumerated_or_drawn({.action = action}, ignored_numbers, random).first;
+    return ran_probability < 1 ? mixed_with(ran, ran_probability) : ran;
   }
 
   // How likely each response is after an action, whatever numbers come with it; the likeliest first.
   ObservationOdds observations(int action, Sampler& random) const {
     std::unordered_map<Observation, double> odds;
-    const auto add = [&](const State&, Observation observation, double weight) {
-      odds[observation] += weight;
-      return true;
-    };
-    double total = 1;
+    const auto add = [&](Observation observation, double weight) { odds[observation] += weight; };
     try {
-      enumerate_outcomes<Model>(particles_, action, ignored_numbers, most_paths(), add);
+      if (is_drawn()) throw NotEnumerable{"the states were drawn"};
+      enumerate_outcomes<Model>(particles_, action, ignored_numbers, most_enumerated_paths,
+                                [&](const State&, Observation seen, double weight) { add(seen, weight); });
     } catch (const NotEnumerable&) {
       odds.clear();
-      total = DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, ignored_numbers, random}.draw(
-          add, [&] { odds.clear(); });
+      ParticleFilter<Model>{random}.draw_observations(particles_, action, add);
     }
     ObservationOdds sorted(odds.begin(), odds.end());
-    for (auto& [observation, probability] : sorted) probability /= total;
     std::sort(sorted.begin(), sorted.end(), [](const auto& left, const auto& right) {
       return left.second != right.second ? left.second > right.second : left.first < right.first;
     });
@@ -125,9 +117,14 @@ class Belief {
   // empty belief where that is impossible. `numbers` weighs each step by those that it reports.
   template <class Numbers>
   std::pair<Belief, double> posterior(int action, Observation response, Numbers& numbers, Sampler& random) const {
+    HistoryStep step{.action = action, .observation = response, .is_observed = true};
+    if constexpr (requires { numbers.observed(); }) {
+      if (Model::reports_numbers()) step.numbers = std::make_shared<const ObservedNumbers>(numbers.observed());
+    }
     while (true) {
+      step.log_scale = numbers.log_scale();
       auto [belief, probability] =
-          gathered(action, numbers, random, [&](Observation seen) { return seen == response; });
+          is_drawn() ? stepped(step, numbers, random) : enumerated_or_drawn(step, numbers, random);
       if (!numbers.rescale()) return {std::move(belief), std::log(probability) + numbers.log_scale()};
     }
   }
@@ -138,9 +135,7 @@ class Belief {
     for (const auto& [state, weight] : particles_) gathering.add(state, weight * (1 - share));
     for (const auto& [state, weight] : other.particles_) gathering.add(state, weight * share);
     const double error_bound = (1 - share) * error_bound_ + share * other.error_bound_;
-    Belief mixed{gathering, error_bound, std::max(source_, other.source_)};
-    mixed.unobserved_ = unobserved_;
-    return mixed;
+    return Belief{gathering, error_bound, std::max(source_, other.source_)};
   }
 
   const State& sample(Sampler& random) const {
@@ -176,14 +171,12 @@ class Belief {
     json.member("is_exact", is_exact()).member("error_bound", error_bound_).end_object();
   }
 
-  // One that was kept.
-  static Belief of(const std::vector<Particle>& particles, Unobserved<Model> unobserved, double error_bound,
-                   bool is_drawn) {
+  // One that was kept; of a drawn one, with the lineages and the history if they were.
+  static Belief of(Cloud<Model> cloud, double error_bound, bool is_drawn) {
+    if (is_drawn && !cloud.lineages.empty()) return Belief{std::move(cloud)};
     Gathering<Model> gathering;
-    for (const auto& [state, weight] : particles) gathering.add(state, weight);
-    Belief belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
-    belief.unobserved_ = std::move(unobserved);
-    return belief;
+    for (const auto& [state, weight] : cloud.particles) gathering.add(state, weight);
+    return Belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
   }
 
   // The same belief, for a model with the same states.
@@ -193,7 +186,6 @@ class Belief {
     for (const auto& [state, weight] : particles_) result.particles_.push_back({state, weight});
     result.cumulative_ = cumulative_;
     result.error_bound_ = error_bound_;
-    result.unobserved_ = unobserved_.template as<To>();
     result.source_ = static_cast<typename Belief<To>::Source>(source_);
     return result;
   }
@@ -207,71 +199,91 @@ class Belief {
   Belief(const Gathering<Model>& gathering, double error_bound, Source source)
       : error_bound_(std::min(error_bound, 1.0)), source_(source) {
     const double sum = gathering.total();
-    double before = 0;
     for (const auto& [state, weight] : gathering.particles()) {
-      if (weight <= negligible_weight * sum) continue;
-      particles_.push_back({state, weight / sum});
-      cumulative_.push_back(before += weight / sum);
+      if (weight > negligible_weight * sum) add(state, weight / sum);
     }
+  }
+  explicit Belief(Cloud<Model> cloud) : history_(std::move(cloud.history)), error_bound_(1), source_(Source::drawing) {
+    const double sum = cloud.total();
+    for (std::size_t i = 0; i < cloud.particles.size(); ++i) {
+      add(cloud.particles[i].state, cloud.particles[i].weight / sum);
+      lineages_.push_back({cloud.lineages[i].squares / sum / sum, std::move(cloud.lineages[i].trace)});
+    }
+  }
+  void add(const State& state, double weight) {
+    particles_.push_back({state, weight});
+    cumulative_.push_back((cumulative_.empty() ? 0 : cumulative_.back()) + weight);
   }
 
   static std::size_t most_states(Source source) {
     if (source == Source::drawing) return particle_count;
     return std::clamp(most_weighted_bytes / sizeof(State), particle_count, most_weighted_states);
   }
-  bool is_thin() const { return is_drawn() && particles_.size() < few_particles; }
-  std::size_t most_paths() const {
-    return is_drawn() ? most_paths_of_particles : most_enumerated_paths;
+
+  // About how many combinations of draws the initial belief has: the median of estimates from single paths, each of which
+  // is right on average (Knuth, 1975). Infinite where a draw is continuous.
+  static double combinations(Sampler& random) {
+    struct Alternatives final : DrawWatcher {
+      double product = 1;
+      void before_draw(std::size_t, const double* weights, int count, double) override {
+        const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
+        product *= weights == nullptr ? std::numeric_limits<double>::infinity() : static_cast<double>(positive);
+      }
+    };
+    std::vector<double> estimates;
+    const std::vector<double> none;
+    Replay replay;
+    State state{};
+    for (int i = 0; i < 11; ++i) {
+      Alternatives alternatives;
+      replay.start(none, random, nullptr, &alternatives);
+      Model::initial(state, replay);
+      estimates.push_back(alternatives.product);
+    }
+    std::nth_element(estimates.begin(), estimates.begin() + 5, estimates.end());
+    return estimates[5];
   }
 
-  // The outcomes whose observation is of use, as a belief, and their probability.
+  // By enumeration, else by drawing.
   //
   // Let two beliefs agree but for a share e of each. What was observed has probability p under this one, and so at least
-  // p - e under what they share: after it they agree but for e / p. Thinning out adds what it drops. A density may be
-  // any number under the share: where numbers weigh, nothing is known of a belief that is not exact.
-  template <class IsOfUse>
-  std::pair<Belief, double> gathered(int action, NumberSink& numbers, Sampler& random, IsOfUse&& is_of_use) const {
-    Gathering<Model> gathering;
-    const auto add = [&](const State& next, Observation seen, double weight) {
-      if (!is_of_use(seen) || weight <= 0) return false;
-      gathering.add(next, weight);
-      return true;
-    };
+  // p - e under what they share: after it they agree but for e / p. Thinning out adds what it drops, and so do paths that
+  // are left out. A density may be any number under the share: where numbers weigh, nothing is known of a belief that is
+  // not exact.
+  std::pair<Belief, double> enumerated_or_drawn(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
     try {
-      if (is_thin()) throw NotEnumerable{"the states were drawn, and are few"};
+      Gathering<Model> gathering;
       const std::size_t most = most_states(source_);
       double gone = 0;
-      const auto add_some = [&](const State& next, Observation seen, double weight) {
-        add(next, seen, weight);
+      const auto add = [&](const State& next, Observation seen, double weight) {
+        if ((step.is_observed && seen != step.observation) || weight <= 0) return;
+        gathering.add(next, weight);
         if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
       };
-      enumerate_outcomes<Model>(particles_, action, numbers, most_paths(), add_some);
-      if (is_drawn() && gathering.size() < few_particles) throw NotEnumerable{"few of the drawn states agree"};
+      gone += enumerate_outcomes<Model>(particles_, step.action, numbers, most_enumerated_paths, add);
       gone += gathering.reduce(most, random);
       const double probability = gathering.total();
-      const double bound_before = error_bound_ > 0 && numbers.weighs() ? probability : error_bound_;
-      const double error_bound = probability > 0 ? (bound_before + gone) / probability : 0;
-      return {followed(Belief{gathering, error_bound, source_}, action, random), probability};
+      const bool is_unbounded = numbers.weighs() && error_bound_ + gone > 0;
+      const double error_bound = probability > 0 ? (is_unbounded ? probability : error_bound_ + gone) / probability : 0;
+      return {Belief{gathering, error_bound, source_}, probability};
     } catch (const NotEnumerable&) {
-      gathering.clear();
+      return stepped(step, numbers, random);
     }
-    const double drawn =
-        DrawnOutcomes<Model>{particles_, unobserved_, is_thin(), action, numbers, random}.draw(add, [&] { gathering.clear(); });
-    const double probability = gathering.total() / drawn;
-    gathering.reduce(particle_count, random);
-    return {followed(Belief{gathering, 1, Source::drawing}, action, random), probability};
   }
 
-  // What nothing is observed of takes the same action.
-  Belief followed(Belief next, int action, Sampler& random) const {
-    next.unobserved_ = unobserved_;
-    next.unobserved_.step(action, random);
-    return next;
+  std::pair<Belief, double> stepped(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
+    ParticleFilter<Model> filter{random};
+    Cloud<Model> cloud = lineages_.empty() ? filter.begun(particles_, !is_drawn())
+                                           : Cloud<Model>{particles_, lineages_, history_};
+    auto updated = filter.after(std::move(cloud), step, numbers);
+    if (updated.cloud.particles.empty()) return {Belief{}, 0};
+    return {Belief{std::move(updated.cloud)}, updated.probability};
   }
 
   std::vector<Particle> particles_;
   std::vector<double> cumulative_;
-  Unobserved<Model> unobserved_;  // of a drawn belief only
+  std::vector<Lineage> lineages_;  // of a drawn belief only
+  History<Model> history_;
   double error_bound_ = 0;
   Source source_ = Source::enumeration;
 };

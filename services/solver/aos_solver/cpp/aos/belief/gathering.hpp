@@ -30,23 +30,59 @@ void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t coun
   }
 }
 
+// The weight c with which the sum of min(weight / c, 1) over all weights is `count`, of which there are more.
+inline double common_weight(std::vector<double> weights, std::size_t count) {
+  std::sort(weights.begin(), weights.end());
+  double light = 0;  // of the lightest so far
+  std::size_t heavy = weights.size();
+  for (const double weight : weights) {
+    if (heavy < count && weight * static_cast<double>(count - heavy) >= light) break;
+    light += weight;
+    --heavy;
+  }
+  return light / static_cast<double>(count - heavy);
+}
+
+// Leaves at most `count` weights, the others become 0; no weight's mean changes (Fearnhead and Clifford, 2003). Heavy ones
+// stay as they are, of the light ones some are drawn and get the same weight. Returns the weight of those that went,
+// which is the total variation distance to what was there, in its unit.
+inline double thin_out(std::vector<double>& weights, std::size_t count, Sampler& random) {
+  if (weights.size() <= count) return 0;
+  const double common = common_weight(weights, count);
+  double gone = 0;
+  double drawn = random.uniform() * common;
+  for (double& weight : weights) {
+    if (weight >= common) continue;
+    if ((drawn -= weight) < 0) {
+      weight = common;
+      drawn += common;
+    } else {
+      gone += weight;
+      weight = 0;
+    }
+  }
+  return gone;
+}
+
 // Merges equal states; the order of first appearance is kept, so that results do not depend on hashing.
 template <class Model>
 class Gathering {
  public:
   using State = typename Model::State;
 
-  void add(const State& state, double weight) {
+  // Returns the number of the state's particle.
+  std::size_t add(const State& state, double weight) {
     if (2 * particles_.size() >= places_.size()) grow();
     const std::uint64_t hash = Model::hash(state);
     std::size_t place = hash & (places_.size() - 1);
     for (; places_[place].number != none; place = (place + 1) & (places_.size() - 1)) {
       if (places_[place].hash != hash || !(particles_[places_[place].number].state == state)) continue;
       particles_[places_[place].number].weight += weight;
-      return;
+      return places_[place].number;
     }
     places_[place] = {hash, static_cast<std::uint32_t>(particles_.size())};
     particles_.push_back({state, weight});
+    return particles_.size() - 1;
   }
 
   void clear() {
@@ -62,28 +98,18 @@ class Gathering {
     return sum;
   }
 
-  // Leaves at most `most` states without changing any state's expected weight (Fearnhead and Clifford, 2003): heavy ones
-  // stay as they are, of the light ones some are drawn and get the same weight. Returns the weight of those that went,
-  // which is the total variation distance to what was there, in its unit.
-  double reduce(std::size_t most, Sampler& random) {
-    if (particles_.size() <= most) return 0;
-    const double common = common_weight(most);
-    double gone = 0;
-    double drawn = random.uniform() * common;
-    std::vector<Particle<Model>> kept;
-    kept.reserve(most + 1);
-    for (const auto& particle : particles_) {
-      if (particle.weight >= common) {
-        kept.push_back(particle);
-      } else if ((drawn -= particle.weight) < 0) {
-        kept.push_back({particle.state, common});
-        drawn += common;
-      } else {
-        gone += particle.weight;
-      }
-    }
+  // Leaves at most `count` states. Returns the weight of those that went.
+  double reduce(std::size_t count, Sampler& random) {
+    if (particles_.size() <= count) return 0;
+    std::vector<double> weights;
+    for (const auto& particle : particles_) weights.push_back(particle.weight);
+    const double gone = thin_out(weights, count, random);
+    std::vector<Particle<Model>> all;
+    all.swap(particles_);
     clear();
-    for (const auto& particle : kept) add(particle.state, particle.weight);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] > 0) add(all[i].state, weights[i]);
+    }
     return gone;
   }
 
@@ -104,21 +130,6 @@ class Gathering {
       while (places_[place].number != none) place = (place + 1) & (places_.size() - 1);
       places_[place] = entry;
     }
-  }
-
-  // The weight c with which the sum of min(weight / c, 1) over all states is `most`.
-  double common_weight(std::size_t most) const {
-    std::vector<double> weights;
-    for (const auto& particle : particles_) weights.push_back(particle.weight);
-    std::sort(weights.begin(), weights.end());
-    double light = 0;  // of the lightest so far
-    std::size_t heavy = weights.size();
-    for (const double weight : weights) {
-      if (heavy < most && weight * static_cast<double>(most - heavy) >= light) break;
-      light += weight;
-      --heavy;
-    }
-    return light / static_cast<double>(most - heavy);
   }
 
   std::vector<Place> places_;

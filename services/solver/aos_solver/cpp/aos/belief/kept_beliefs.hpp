@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/belief/saved_history.hpp"
 
 namespace aos {
 
@@ -36,34 +36,33 @@ class KeptBeliefs {
     ++changes_;
     if (file_ < 0) return;
     const auto& particles = belief.particles();
-    const auto& unobserved = belief.unobserved().states();
+    const Words history = saved_history(belief);
     const Head none{};
-    const Head head{changes_, particles.size(), unobserved.size(), belief.error_bound(), belief.is_drawn()};
+    const Head head{changes_, particles.size(), history.size(), belief.error_bound(), belief.is_drawn()};
     if (!write(&none, sizeof none, 0) || !write_all(particles, sizeof head)) return;
-    if (write_all(unobserved, sizeof head + bytes_of(particles))) write(&head, sizeof head, 0);
+    if (write_all(history, sizeof head + bytes_of(particles))) write(&head, sizeof head, 0);
   }
 
   // The belief after the change of this number, from which counting goes on; nothing where it was not kept.
-  std::optional<Belief<Model>> restore(std::uint64_t change, Sampler& random) {
+  std::optional<Belief<Model>> restore(std::uint64_t change) {
     changes_ = change;
     Head head;
     if (file_ < 0 || !read(&head, sizeof head, 0) || head.change != change || head.particles == 0) return std::nullopt;
     std::vector<Particle> particles(head.particles);
-    std::vector<State> unobserved(head.unobserved);
+    Words history(head.history_words);
     if (!read_all(particles, sizeof head)) return std::nullopt;
-    if (!read_all(unobserved, sizeof head + bytes_of(particles))) return std::nullopt;
-    return Belief<Model>::of(particles, {std::move(unobserved), random}, head.error_bound, head.is_drawn);
+    if (!read_all(history, sizeof head + bytes_of(particles))) return std::nullopt;
+    return Belief<Model>::of(with_history<Model>(std::move(particles), history), head.error_bound, head.is_drawn);
   }
 
  private:
-  using State = typename Model::State;
   using Particle = aos::Particle<Model>;
   static_assert(std::is_trivially_copyable_v<Particle>);
 
   struct Head {
     std::uint64_t change;
     std::uint64_t particles;
-    std::uint64_t unobserved;
+    std::uint64_t history_words;
     double error_bound;
     bool is_drawn;
   };

@@ -26,6 +26,7 @@
 #include "aos/base/observed_numbers.hpp"
 #include "aos/child/bad_command.hpp"
 #include "aos/child/commands.hpp"
+#include "aos/child/watchdog.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/budget.hpp"
 
@@ -94,6 +95,7 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   const auto real = [&](std::size_t index) { return number_of<double>(fields, index); };
   if (command == "describe") return engine.describe(json);
   if (command == "reset_belief") return engine.reset_belief(json);
+  if (command == "draw_belief") return engine.draw_belief(json);
   if (command == "summary") return engine.summary(json);
   if (command == "plan") {
     return engine.plan(json, budget_of(fields, 1, 6), large(3), whole(4), planner_of(fields, 5));
@@ -115,8 +117,7 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "update_without_observation") return engine.update_without_observation(json, whole(1), real(2));
   if (command == "export_belief") return engine.export_belief(json, large(1), whole(2) != 0);
   if (command == "import_belief") {
-    const SavedCounts counts{large(3), large(4)};
-    return engine.import_belief(json, real(1), whole(2) != 0, counts, {fields.begin() + 5, fields.end()});
+    return engine.import_belief(json, real(1), whole(2) != 0, fields.at(3), large(4), {fields.begin() + 5, fields.end()});
   }
   if (command == "restore_belief") return engine.restore_belief(json, large(1));
   if (command == "reset_world") return engine.reset_world(json, large(1));
@@ -190,6 +191,7 @@ int run_child(int argc, char** argv) {
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   detail::share_blame(argv[1]);
+  watchdog::start();
   std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
 

@@ -71,6 +71,9 @@ class Engine {
     become(json, Belief<Model>::initial(random_), [&] { search_.start_over(); });
   }
 
+  // The initial belief as particles, also where it could be enumerated: to try the one against the other.
+  void draw_belief(JsonWriter& json) { become(json, Belief<Model>::drawn(random_)); }
+
   void summary(JsonWriter& json) const { belief_.write_summary(json); }
 
   void plan(JsonWriter& json, Budget budget, std::uint64_t seed, int horizon, PlannerKind planner) {
@@ -191,7 +194,7 @@ class Engine {
   // Nobody knows whether the action ran.
   void update_without_observation(JsonWriter& json, int action, double ran_probability) {
     json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
-    become(json.key("summary"), belief_.mixed_with(belief_.predicted(checked(action), random_), ran_probability));
+    become(json.key("summary"), belief_.predicted(checked(action), random_, ran_probability));
     json.end_object();
   }
 
@@ -220,16 +223,16 @@ class Engine {
     save_belief(json, belief_, first, [&](const State& state) { return is_whole ? state : left_out.rest_of(state); });
   }
 
-  void import_belief(JsonWriter& json, double error_bound, bool is_drawn, SavedCounts counts,
-                     const std::vector<std::string_view>& fields) {
-    auto belief = load_belief<Model>(error_bound, is_drawn, counts, fields, random_);
+  void import_belief(JsonWriter& json, double error_bound, bool is_drawn, std::string_view history,
+                     std::size_t constant_count, const std::vector<std::string_view>& fields) {
+    auto belief = load_belief<Model>(error_bound, is_drawn, history, constant_count, fields);
     if (belief.particles().empty()) throw BadCommand{"an empty belief"};
     become(json, std::move(belief));
   }
 
   // After the change of this number, of an engine before this one.
   void restore_belief(JsonWriter& json, std::uint64_t change) {
-    auto kept = kept_.restore(change, random_);
+    auto kept = kept_.restore(change);
     if (!kept) throw BadCommand{"that belief was not kept"};
     belief_ = *std::move(kept);
     search_.forget();

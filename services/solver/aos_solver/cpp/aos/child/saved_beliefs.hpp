@@ -2,14 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "aos/base/base64.hpp"
 #include "aos/base/json.hpp"
-#include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/belief/saved_history.hpp"
 #include "aos/model/state_text.hpp"
 
 namespace aos {
@@ -17,8 +19,7 @@ namespace aos {
 inline constexpr std::size_t most_answer_bytes = std::size_t{16} << 20;  // about
 
 // The particles from number `first` on, as many as fit one answer, each as its weight and its state as text. What is the
-// same in all states, and the states that nothing was observed of, only with the first of them. `told` gives what is told
-// of a state.
+// same in all states, and the history of a drawn belief, only with the first of them. `told` gives what is told of a state.
 template <class Model, class Told>
 void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t first, Told&& told) {
   const auto& particles = belief.particles();
@@ -26,11 +27,8 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
   json.begin_object().member("error_bound", belief.error_bound()).member("is_drawn", belief.is_drawn());
   json.member("states", particles.size()).key("constants").begin_object();
   for (const auto& [name, text] : constants.texts()) json.member(name, text);
-  json.end_object().key("unobserved").begin_array();
-  if (first == 0) {
-    for (const auto& state : belief.unobserved().states()) json.value(Model::save_state(state));
-  }
-  json.end_array().key("particles").begin_array();
+  json.end_object().member("history", first == 0 ? to_base64(saved_history(belief)) : std::string{});
+  json.key("particles").begin_array();
   const std::size_t most_bytes = json.text().size() + most_answer_bytes;
   for (std::size_t number = first; number < particles.size() && json.text().size() < most_bytes; ++number) {
     const auto& [state, weight] = particles[number];
@@ -39,36 +37,23 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
   json.end_array().end_object();
 }
 
-// How many of the fields of a saved belief are what.
-struct SavedCounts {
-  std::size_t constants;
-  std::size_t unobserved;
-};
-
-// Of fields in this order: pairs of a constant's name and text, states that nothing was observed of, pairs of a weight and
-// a state.
+// Of fields in this order: so many pairs of a constant's name and text, pairs of a weight and a state.
 template <class Model>
-Belief<Model> load_belief(double error_bound, bool is_drawn, SavedCounts counts,
-                          const std::vector<std::string_view>& fields, Sampler& random) {
+Belief<Model> load_belief(double error_bound, bool is_drawn, std::string_view history, std::size_t constant_count,
+                          const std::vector<std::string_view>& fields) {
   SavedConstants constants;
   std::size_t next = 0;
-  for (; next + 1 < fields.size() && next < 2 * counts.constants; next += 2) {
+  for (; next + 1 < fields.size() && next < 2 * constant_count; next += 2) {
     constants.add_text(fields[next], fields[next + 1]);
-  }
-  const auto state_of = [&](std::string_view text) {
-    typename Model::State state{};
-    Model::load_state(state, text, constants);
-    return state;
-  };
-  std::vector<typename Model::State> unobserved;
-  for (; next < fields.size() && unobserved.size() < counts.unobserved; ++next) {
-    unobserved.push_back(state_of(fields[next]));
   }
   std::vector<Particle<Model>> particles;
   for (; next + 1 < fields.size(); next += 2) {
-    particles.push_back({state_of(fields[next + 1]), std::stod(std::string{fields[next]})});
+    typename Model::State state{};
+    Model::load_state(state, fields[next + 1], constants);
+    particles.push_back({state, std::stod(std::string{fields[next]})});
   }
-  return Belief<Model>::of(particles, {std::move(unobserved), random}, error_bound, is_drawn);
+  const Words words = from_base64<std::uint64_t>(history).value_or(Words{});
+  return Belief<Model>::of(with_history<Model>(std::move(particles), words), error_bound, is_drawn);
 }
 
 }  // namespace aos

@@ -91,7 +91,7 @@ struct ErasedModel {
   static Step step(State& state, int action, Random& random) {
     return functions<Random>().step(state.bytes, action, random);
   }
-  static bool meets_precondition(const State& state, int action, Enumerator& random) {
+  static bool meets_precondition(const State& state, int action, DirectedDraws& random) {
     return compiled_model.meets_precondition(state.bytes, action, random);
   }
   template <class Random>
@@ -121,11 +121,11 @@ struct ErasedModel {
   static const GroundedAction& grounded(int action) { return (*compiled_model.actions)[static_cast<std::size_t>(action)]; }
 
   template <class Random>
-  static const DrawingFunctions<Random>& functions() {
+  static const auto& functions() {
     if constexpr (std::is_same_v<Random, Sampler>) {
       return compiled_model.sampling;
     } else {
-      return compiled_model.enumerating;
+      return compiled_model.directed;
     }
   }
 };

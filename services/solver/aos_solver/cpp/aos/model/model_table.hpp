@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "aos/base/build_kind.hpp"
-#include "aos/base/enumerator.hpp"
+#include "aos/base/directed.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/grounding.hpp"
@@ -65,8 +65,8 @@ struct ModelTable {
   void (*load_state)(void* state, std::string_view saved, const SavedConstants& constants);
 
   DrawingFunctions<Sampler> sampling;
-  DrawingFunctions<Enumerator> enumerating;
-  bool (*meets_precondition)(const void* state, int action, Enumerator& random);
+  DrawingFunctions<DirectedDraws> directed;
+  bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
   double (*rollout)(const void* state, int horizon, Sampler& random);
   void (*rollout_odds)(const void* state, double* odds, int count, Sampler& random);
   Walked (*walk)(std::uint64_t steps, Sampler& random);  // null in a quick build
@@ -83,12 +83,13 @@ constexpr DrawingFunctions<Random> drawing_functions() {
           [](void* state, Random& random) {
             ModelSource<Random> draws{random};
             Model::initial(*static_cast<State*>(state), draws);
+            blame::over();
           },
       .step =
           [](void* state, int action, Random& random) {
             ModelSource<Random> draws{random};
             const Step step = Model::step(*static_cast<State*>(state), action, draws);
-            blame::at(0);
+            blame::over();
             return step;
           },
       .correct =
@@ -109,7 +110,7 @@ constexpr auto walk_function() -> Walked (*)(std::uint64_t steps, Sampler& rando
   } else {
     return [](std::uint64_t steps, Sampler& random) {
       const Walked walked = aos::walk<Model>(steps, random);
-      blame::at(0);
+      blame::over();
       return walked;
     };
   }
@@ -149,24 +150,24 @@ constexpr ModelTable table_of() {
             Model::load_state(*static_cast<State*>(state), saved, constants);
           },
       .sampling = drawing_functions<Model, Sampler>(),
-      .enumerating = drawing_functions<Model, Enumerator>(),
+      .directed = drawing_functions<Model, DirectedDraws>(),
       .meets_precondition =
-          [](const void* state, int action, Enumerator& random) {
-            ModelSource<Enumerator> draws{random};
+          [](const void* state, int action, DirectedDraws& random) {
+            ModelSource<DirectedDraws> draws{random};
             const bool meets = Model::meets_precondition(*static_cast<const State*>(state), action, draws);
-            blame::at(0);
+            blame::over();
             return meets;
           },
       .rollout =
           [](const void* state, int horizon, Sampler& random) {
             const double value = aos::rollout<Model>(*static_cast<const State*>(state), horizon, random);
-            blame::at(0);
+            blame::over();
             return value;
           },
       .rollout_odds =
           [](const void* state, double* odds, int count, Sampler& random) {
             aos::rollout_odds<Model>(*static_cast<const State*>(state), odds, count, random);
-            blame::at(0);
+            blame::over();
           },
       .walk = walk_function<Model>(),
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace aos {
@@ -21,6 +22,32 @@ struct Step {
   Observation observation = default_observation;
 
   bool operator==(const Step&) const = default;
+};
+
+// The text response of the step that runs in this thread, as far as it is written; null where none is.
+inline thread_local const std::string* response_text = nullptr;
+// Where the whole text is put when the step is over, if somebody wants it.
+inline thread_local std::string* finished_text = nullptr;
+
+// As long as it lives, the texts of responses are put there.
+class WholeText {
+ public:
+  explicit WholeText(std::string& place) { finished_text = &place; }
+  WholeText(const WholeText&) = delete;
+  WholeText& operator=(const WholeText&) = delete;
+  ~WholeText() { finished_text = nullptr; }
+};
+
+// Whether this thread remembers the texts that it makes numbers of.
+inline thread_local bool remembers_texts = true;
+
+// As long as it lives, texts are not remembered: those of many steps that nobody asks for.
+class ForgottenTexts {
+ public:
+  ForgottenTexts() { remembers_texts = false; }
+  ForgottenTexts(const ForgottenTexts&) = delete;
+  ForgottenTexts& operator=(const ForgottenTexts&) = delete;
+  ~ForgottenTexts() { remembers_texts = true; }
 };
 
 // The number of a text observation: 63 bits of FNV-1a, the same in every process.

@@ -73,6 +73,7 @@ Observation text_observation(std::string_view text) {
   }
   auto number = static_cast<Observation>(hash | (std::uint64_t{1} << 63));
   if (number == default_observation) --number;
+  if (!remembers_texts) return number;
   // Most texts come again soon.
   thread_local std::array<Observation, 256> recent{};
   Observation& last = recent[static_cast<std::size_t>(number) % recent.size()];

@@ -27,6 +27,21 @@ struct EffectWithText : Effect {
   std::string text = no_text_response;
 };
 
+// Shows the text of a response while it is written to whoever directs the draws.
+class ShownText {
+ public:
+  explicit ShownText(const EffectWithText& effect) { response_text = &effect.text; }
+  ShownText(const ShownText&) = delete;
+  ShownText& operator=(const ShownText&) = delete;
+  ~ShownText() {
+    if (finished_text != nullptr) *finished_text = *response_text;
+    response_text = nullptr;
+  }
+};
+struct NoText {
+  explicit NoText(const Effect&) {}
+};
+
 // What a skill document leaves out.
 struct SkillDefaults {
   struct Parameters {
@@ -123,6 +138,7 @@ template <class Environment, class Skill>
 Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, int execution_time,
                double extrinsic_reward, const auto& parameters, auto& random) {
   std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
+  [[maybe_unused]] const std::conditional_t<Skill::has_text_response, ShownText, NoText> shown{effect};
   Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
   Step step;
   step.reward = effect.reward;

@@ -1,0 +1,319 @@
+// Steps that lead to what was observed, each with its weight: likelihood weighting for models that give no likelihood.
+//
+// A step is a sequence of draws. The first ones are left to chance. At each of the others (sequential importance
+// sampling) all that the draw can give is tried: every outcome of a discrete draw, and of a continuous one a point of each
+// of some strata. A trial runs to the end of the step with chance for the later draws, and has a promise:
+//
+//   1     it ended with the observation, or has written its beginning
+//   0     it ended with another one, and no draw was left to chance
+//   0.25  nothing is written, and chance has not led to the observation this time
+//   0.001 chance has not, and the text of the response, as far as it was written before the next draw, does not begin what was
+//         observed: that promises nothing, as long as something else does
+//
+// Of discrete draws all that is promising is followed, up to 16 branches in all; else one trial, drawn in proportion to
+// probability times promise, and weighted by what makes up for that. Once in 10,000 draws what promises nothing is followed
+// all the same, and counts by so much more. Only where it is certain that nothing can come, nothing is expected: so the weights estimate the probability of the observation, and of all that comes with it, without
+// bias, whatever the code does. (A document may assign its text anew after it began another one; then a promise misleads,
+// and costs precision only.)
+//
+// The strata of a continuous draw are found before, at eleven points and by bisection between those that agree and those that
+// do not: long ones where all points tell the same, short ones between. They are other points than those of the trials,
+// so that a trial in each stratum, at random within it, is without bias, too.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/base/replay.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/transition.hpp"
+
+namespace aos {
+
+inline constexpr int max_branches = 16;
+inline constexpr int explored_points = 9;                // of a continuous draw
+inline constexpr double explored_tail = 1e-4;
+inline constexpr int bisections = 5;
+inline constexpr int max_alternatives = 64;              // of a discrete draw; one with more is taken as continuous
+inline constexpr std::size_t max_guided_draws = 64;      // of one step; chance makes the others
+inline constexpr double doubtful = 0.25;
+inline constexpr double contradicted = 0.001;
+inline constexpr double misled = 1e-4;   // how often what is contradicted is followed beside what is not
+
+// Whether a response's text is being written now; false before, and where none is.
+inline bool is_text_begun() { return response_text != nullptr && *response_text != no_text_response; }
+
+template <class Model>
+class GuidedStep {
+ public:
+  using State = typename Model::State;
+
+  // Numbers that steps report are weighed by `numbers`, or ignored where it is null.
+  GuidedStep(int action, Observation observation, NumberSink* numbers, Sampler& random)
+      : action_(action), observation_(observation), random_(random), watch_(observation, random) {
+    replay_.report_to(numbers);
+  }
+
+  // How many draws come first that only chance makes.
+  void leave_to_chance(std::size_t draws) { by_chance_ = draws; }
+
+  // Whether the last call left nothing to chance but for what has no promise.
+  bool was_exhaustive() const { return is_exhaustive_; }
+
+  // How many steps were run until now.
+  std::size_t runs() const { return runs_; }
+
+  // Calls `visit(next, weight, values)` for steps from a state that agree, `values` being all their draws. Returns the sum
+  // of the weights.
+  template <class Visit>
+  double from(const State& state, Visit&& visit, int branches = max_branches) {
+    const WholeText whole{text_};
+    start_ = &state;
+    values_.clear();
+    is_exhaustive_ = by_chance_ == 0;
+    if (by_chance_ > 0) {
+      std::vector<double> drawn;
+      State next = state;
+      replay_.start(values_, random_, &drawn);
+      ++runs_;
+      Model::step(next, action_, replay_);
+      drawn.resize(std::min(drawn.size(), by_chance_));
+      values_ = std::move(drawn);
+    }
+    return follow(1.0, branches, visit);
+  }
+
+ private:
+  // How the text of a response is to the observed one, as far as it is written: before it in the order of characters,
+  // its beginning, after it; or there is no text.
+  enum class Order { agreeing = 0, before = 1, unknown = 2, after = 3 };
+
+  // Sees what the first random draw can be, and how the response's text begins before it.
+  class Watch final : public DrawWatcher {
+   public:
+    Watch(Observation observation, Sampler& random)
+        : observed_(observation < default_observation ? observation_text(observation) : std::string_view{}),
+          random_(random) {}
+
+    // `alternatives` is null where they are of no interest; they stay empty for a continuous draw.
+    void start(std::size_t given, std::vector<Alternative>* alternatives) {
+      given_ = given;
+      alternatives_ = alternatives;
+      order_ = Order::unknown;
+    }
+    Order order() const { return order_; }
+    Order order_of(std::string_view text) const {
+      const int order = text.compare(observed_.substr(0, text.size()));
+      return order < 0 ? Order::before : order > 0 ? Order::after : Order::agreeing;
+    }
+    void before_draw(std::size_t number, const double* weights, int count, double total) override {
+      if (number != given_) return;
+      if (is_text_begun()) order_ = order_of(*response_text);
+      if (alternatives_ == nullptr) return;
+      alternatives_->clear();
+      const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
+      if (weights == nullptr || positive > max_alternatives) return;
+      double below = 0;
+      for (int i = 0; i < count; ++i) {
+        if (weights[i] <= 0) continue;
+        alternatives_->push_back({(below + random_.uniform() * weights[i]) / total, weights[i] / total});
+        below += weights[i];
+      }
+    }
+
+   private:
+    std::string_view observed_;
+    Sampler& random_;
+    std::size_t given_ = 0;
+    std::vector<Alternative>* alternatives_ = nullptr;
+    Order order_ = Order::unknown;
+  };
+
+  struct Trial {
+    bool has_ended;  // with the draws that were given
+    bool agrees;
+    Order order;
+
+    double promise() const {
+      if (agrees) return 1;
+      if (has_ended) return 0;
+      return order == Order::agreeing ? 1 : order == Order::unknown ? doubtful : contradicted;
+    }
+  };
+
+  // The step with the draws in `values_`, and chance for the others.
+  Trial tried(std::vector<Alternative>* alternatives) {
+    next_ = *start_;
+    watch_.start(values_.size(), alternatives);
+    replay_.start(values_, random_, nullptr, &watch_);
+    ++runs_;
+    text_.clear();
+    const Step step = Model::step(next_, action_, replay_);
+    const bool has_ended = replay_.draws() <= values_.size();
+    const bool agrees = step.observation == observation_;
+    if (!has_ended) return {false, agrees, watch_.order()};
+    return {true, agrees, agrees ? Order::agreeing : text_.empty() ? Order::unknown : watch_.order_of(text_)};
+  }
+  Trial tried_at(double value) {
+    values_.push_back(value);
+    const Trial trial = tried(nullptr);
+    values_.pop_back();
+    return trial;
+  }
+
+  // A point of a continuous draw and what it leads to.
+  struct Point {
+    double value;
+    int kind;  // equal where the same was found
+
+    static int kind_of(const Trial& trial) { return 4 * (trial.has_ended ? 1 : 0) + static_cast<int>(trial.order); }
+    bool agrees() const { return kind == 0 || kind == 4; }
+  };
+
+  // A random point in each stratum of a continuous draw.
+  std::vector<Alternative> explored() {
+    std::vector<Point> points;
+    add_point(points, explored_tail);
+    for (int i = 0; i < explored_points; ++i) add_point(points, (i + 0.5) / explored_points);
+    add_point(points, 1 - explored_tail);
+    for (int i = 0; i <= explored_points; ++i) bisect(points, points[i], points[i + 1], bisections);
+    std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.value < b.value; });
+    std::vector<Alternative> strata;
+    double from = 0;
+    const auto end_stratum = [&](double to) {
+      if (to > from) strata.push_back({from + random_.uniform() * (to - from), to - from});
+      from = to;
+    };
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      if (points[i].kind == points[i + 1].kind) continue;
+      end_stratum(points[i].value);
+      end_stratum(points[i + 1].value);
+    }
+    end_stratum(1);
+    return strata;
+  }
+  void add_point(std::vector<Point>& points, double value) {
+    points.push_back({value, Point::kind_of(tried_at(value))});
+  }
+  // Between points of which one agrees, or of which one comes before the observed text and one after it.
+  void bisect(std::vector<Point>& points, Point left, Point right, int depth) {
+    if (depth == 0 || left.kind == right.kind) return;
+    const bool is_between = (left.kind & 3) + (right.kind & 3) == 4 && (left.kind & 3) != 2;
+    if (!left.agrees() && !right.agrees() && !is_between) return;
+    add_point(points, (left.value + right.value) / 2);
+    const Point middle = points.back();
+    bisect(points, left, middle, depth - 1);
+    bisect(points, middle, right, depth - 1);
+  }
+
+  // From the draws in `values_` on.
+  template <class Visit>
+  double follow(double weight, int branches, Visit& visit) {
+    std::vector<Alternative> alternatives;
+    if (values_.size() >= by_chance_ + max_guided_draws) {
+      is_exhaustive_ = false;
+      rest_.clear();
+      replay_.start(values_, random_, &rest_);
+      next_ = *start_;
+      ++runs_;
+      if (Model::step(next_, action_, replay_).observation != observation_) return 0;
+      return visited(weight, rest_, visit);
+    }
+    const Trial reached = tried(&alternatives);
+    if (reached.has_ended) {
+      return reached.agrees ? visited(weight, values_, visit) : 0;
+    }
+    const bool is_discrete = !alternatives.empty();
+    if (!is_discrete) alternatives = explored();
+    std::vector<double> promises;
+    for (const Alternative& alternative : alternatives) promises.push_back(tried_at(alternative.value).promise());
+    const auto promising = std::count_if(promises.begin(), promises.end(), [](double p) { return p >= doubtful; });
+    if (is_discrete && promising > 0 && promising <= branches) {
+      return follow_all(alternatives, promises, weight, branches / static_cast<int>(promising), visit);
+    }
+    is_exhaustive_ = is_exhaustive_ && is_discrete;
+    return follow_one(alternatives, promises, weight, branches, visit);
+  }
+
+  template <class Visit>
+  double visited(double weight, const std::vector<double>& values, Visit& visit) {
+    weight *= replay_.weight();
+    if (weight > 0) visit(next_, weight, values);
+    return weight;
+  }
+
+  // Each that is promising, and now and then one of the others.
+  template <class Visit>
+  double follow_all(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
+                    int branches, Visit& visit) {
+    double sum = 0;
+    std::vector<double> others;
+    for (std::size_t i = 0; i < alternatives.size(); ++i) {
+      const bool is_promising = promises[i] >= doubtful;
+      others.push_back(is_promising ? 0 : promises[i]);
+      if (is_promising) sum += follow_at(alternatives[i], weight * alternatives[i].probability, branches, visit);
+    }
+    if (random_.flag(misled)) sum += follow_drawn(alternatives, others, weight / misled, visit);
+    return sum;
+  }
+
+  // One that is promising, or now and then one of the others.
+  template <class Visit>
+  double follow_one(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
+                    int branches, Visit& visit) {
+    std::vector<double> promising = promises;
+    std::vector<double> others = promises;
+    bool is_mixed = false;
+    for (std::size_t i = 0; i < promises.size(); ++i) {
+      (promises[i] >= doubtful ? others : promising)[i] = 0;
+      is_mixed = is_mixed || (promises[i] > 0 && promises[i] < doubtful);
+    }
+    is_mixed = is_mixed && std::any_of(promising.begin(), promising.end(), [](double promise) { return promise > 0; });
+    if (!is_mixed) return follow_drawn(alternatives, promises, weight, visit, branches);
+    if (random_.flag(misled)) return follow_drawn(alternatives, others, weight / misled, visit);
+    return follow_drawn(alternatives, promising, weight / (1 - misled), visit, branches);
+  }
+
+  template <class Visit>
+  double follow_drawn(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
+                      Visit& visit, int branches = 1) {
+    std::vector<double> shares;
+    double total = 0;
+    for (std::size_t i = 0; i < alternatives.size(); ++i) {
+      shares.push_back(alternatives[i].probability * promises[i]);
+      total += shares.back();
+    }
+    if (total <= 0) return 0;
+    is_exhaustive_ = is_exhaustive_ && alternatives.size() == 1;
+    const auto chosen = static_cast<std::size_t>(random_.choose(shares.data(), static_cast<int>(shares.size()), total));
+    return follow_at(alternatives[chosen], weight * total / promises[chosen], branches, visit);
+  }
+
+  template <class Visit>
+  double follow_at(const Alternative& alternative, double weight, int branches, Visit& visit) {
+    values_.push_back(alternative.value);
+    const double sum = follow(weight, branches, visit);
+    values_.pop_back();
+    return sum;
+  }
+
+  int action_;
+  Observation observation_;
+  Sampler& random_;
+  Watch watch_;
+  Replay replay_;
+  const State* start_ = nullptr;
+  State next_{};
+  std::vector<double> values_;
+  std::vector<double> rest_;
+  std::string text_;
+  std::size_t by_chance_ = 0;
+  std::size_t runs_ = 0;
+  bool is_exhaustive_ = false;
+};
+
+}  // namespace aos

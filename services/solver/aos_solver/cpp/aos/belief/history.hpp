@@ -1,0 +1,242 @@
+// What happened since a belief was drawn, and how each of its particles came to be: the draws that led there.
+//
+// A trace is a chain of blocks, one for the origin and one for each step, which particles with common ancestors share. A
+// block that was drawn freely is known by the seed of its draws.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/base/replay.hpp"
+#include "aos/belief/gathering.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+// A window longer than this is closed, and another one begins: it costs time to replay, and memory.
+inline constexpr std::size_t max_history = 400;
+
+// The draws of one block: values of the first ones, and the seed of the others. `likelihood` is what was estimated for
+// the observation where the step was guided; such a step is never replayed with other draws before it, but guided anew.
+// Where it was not, it is the density of the numbers that were observed, or 1.
+struct Block {
+  std::vector<double> values;
+  std::uint64_t seed = 0;
+  double likelihood = 1;
+  std::uint32_t draws = 0;
+};
+
+struct Trace {
+  std::shared_ptr<const Trace> before;  // null for the origin
+  const Trace* origin;                  // itself for the origin
+  Block block;
+};
+using TraceLink = std::shared_ptr<const Trace>;
+
+inline TraceLink begun_trace(Block block) {
+  auto trace = std::make_shared<Trace>(Trace{nullptr, nullptr, std::move(block)});
+  trace->origin = trace.get();
+  return trace;
+}
+inline TraceLink longer(TraceLink before, Block block) {
+  const Trace* const origin = before->origin;
+  return std::make_shared<Trace>(Trace{std::move(before), origin, std::move(block)});
+}
+// The blocks from the origin on.
+inline std::vector<const Block*> blocks_of(const TraceLink& trace) {
+  std::vector<const Block*> blocks;
+  for (const Trace* block = trace.get(); block != nullptr; block = block->before.get()) blocks.push_back(&block->block);
+  std::reverse(blocks.begin(), blocks.end());
+  return blocks;
+}
+
+struct HistoryStep {
+  int action;
+  Observation observation = default_observation;
+  bool is_observed = false;
+  bool is_guided = false;
+  std::uint32_t by_chance = 0;  // of the draws of a guided one
+  double ran_probability = 1;   // below 1 where nobody knows whether it ran
+  // What was observed besides; null where the numbers of the step are ignored. Their densities are relative to the scale.
+  std::shared_ptr<const ObservedNumbers> numbers = nullptr;
+  double log_scale = 0;
+
+  bool agrees(const Step& step) const { return !is_observed || step.observation == observation; }
+};
+
+// As long as it is there, numbers that replayed steps report are weighed as the step's were.
+class NumbersOf {
+ public:
+  NumbersOf(const HistoryStep& step, Replay& replay) : replay_(replay) {
+    if (step.numbers != nullptr) weighed_.emplace(*step.numbers, true, step.log_scale);
+    replay_.report_to(sink());
+  }
+  NumbersOf(const NumbersOf&) = delete;
+  NumbersOf& operator=(const NumbersOf&) = delete;
+  ~NumbersOf() { replay_.report_to(nullptr); }
+  NumberSink* sink() { return weighed_ ? &*weighed_ : nullptr; }
+
+ private:
+  Replay& replay_;
+  std::optional<WeighedNumbers> weighed_;
+};
+
+template <class Model>
+class History {
+ public:
+  using State = typename Model::State;
+
+  // It begins with the documents' initial belief, or with these states.
+  History() = default;
+  explicit History(const std::vector<Particle<Model>>& particles) {
+    auto origins = std::make_shared<Origins>();
+    for (const auto& [state, weight] : particles) {
+      origins->states.push_back(state);
+      origins->cumulative.push_back((origins->cumulative.empty() ? 0 : origins->cumulative.back()) + weight);
+    }
+    origins_ = std::move(origins);
+  }
+
+  bool begins_with_the_documents() const { return origins_ == nullptr; }
+  // A number in [0, 1) that originates the state of that number.
+  double origin_value(std::size_t number, Sampler& random) const {
+    const double below = number > 0 ? origins_->cumulative[number - 1] : 0;
+    return (below + random.uniform() * (origins_->cumulative[number] - below)) / origins_->cumulative.back();
+  }
+  const std::vector<HistoryStep>& steps() const { return steps_; }
+  void add(const HistoryStep& step) { steps_.push_back(step); }
+
+  // Whether it is time to move particles of few origins; moves that lead nowhere are tried less and less often.
+  bool is_time_to_move() { return ++since_moves_ > pause_; }
+  void note_moves(bool have_helped) {
+    since_moves_ = 0;
+    pause_ = have_helped ? 0 : 2 * pause_ + 1;
+  }
+
+  void originate(State& state, Replay& draws) const {
+    if (origins_ == nullptr) return Model::initial(state, draws);
+    const auto& cumulative = origins_->cumulative;
+    const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), draws.uniform() * cumulative.back());
+    state = origins_->states[std::min<std::size_t>(found - cumulative.begin(), cumulative.size() - 1)];
+  }
+
+  // One step as its draws say.
+  static Step run(State& state, const HistoryStep& step, Replay& draws) {
+    if (step.ran_probability < 1 && draws.uniform() >= step.ran_probability) return {};
+    return Model::step(state, step.action, draws);
+  }
+
+ private:
+  struct Origins {
+    std::vector<State> states;
+    std::vector<double> cumulative;
+  };
+  std::shared_ptr<const Origins> origins_;
+  std::vector<HistoryStep> steps_;
+  unsigned since_moves_ = 0;  // updates
+  unsigned pause_ = 0;        // updates between moves
+};
+
+// What a particle of a drawn belief carries beside its state and weight.
+//
+// It stands for weight^2 / squares independent samples, `squares` being the sum of the squares of their weights; 0 for a
+// weight that is known exactly.
+struct Lineage {
+  double squares = 0;
+  TraceLink trace;
+
+  // What it is when the weight, which was drawn to grow or else to vanish, has grown.
+  double grown_squares(double weight, double grown) const {
+    const double growth = grown / weight;
+    return squares * growth * growth + grown * (grown - weight);
+  }
+};
+
+inline constexpr std::size_t particle_count = 5000;
+
+// A drawn belief: particles, not normalised, with their lineages.
+template <class Model>
+struct Cloud {
+  using State = typename Model::State;
+
+  std::vector<Particle<Model>> particles;
+  std::vector<Lineage> lineages;
+  History<Model> history;
+
+  double total() const {
+    double sum = 0;
+    for (const auto& particle : particles) sum += particle.weight;
+    return sum;
+  }
+  // How many independent samples its weights are worth (Kong, Liu and Wong, 1994), up to `particle_count`.
+  double effective() const {
+    double squares = 0;
+    for (const Lineage& lineage : lineages) squares += lineage.squares;
+    const double sum = total();
+    if (sum <= 0) return 0;
+    return std::min(sum * sum / std::max(squares, 1e-300), static_cast<double>(particle_count));
+  }
+  // The same of the origins that they descend from.
+  double effective_origins() const {
+    std::vector<std::pair<const Trace*, double>> weights;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      weights.emplace_back(lineages[i].trace->origin, particles[i].weight);
+    }
+    std::sort(weights.begin(), weights.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    double sum = 0;
+    double squares = 0;
+    for (auto next = weights.begin(); next != weights.end();) {
+      double of_one = 0;
+      for (const Trace* const origin = next->first; next != weights.end() && next->first == origin; ++next) {
+        of_one += next->second;
+      }
+      sum += of_one;
+      squares += of_one * of_one;
+    }
+    return squares > 0 ? sum * sum / squares : 0;
+  }
+};
+
+// Particles as they come in: equal states are merged, and one of their traces goes on, drawn by weight.
+template <class Model>
+class GatheredCloud {
+ public:
+  void add(const typename Model::State& state, double weight, double squares, TraceLink trace, Sampler& random) {
+    const std::size_t number = states_.add(state, weight);
+    if (number == lineages_.size()) {
+      lineages_.push_back({squares, std::move(trace)});
+      return;
+    }
+    lineages_[number].squares += squares;
+    if (random.flag(weight / states_.particles()[number].weight)) lineages_[number].trace = std::move(trace);
+  }
+  std::size_t size() const { return lineages_.size(); }
+
+  // Its lightest particles thinned out.
+  Cloud<Model> thinned(std::size_t max_particles, History<Model> history, Sampler& random) const {
+    std::vector<double> weights;
+    for (const auto& particle : states_.particles()) weights.push_back(particle.weight);
+    thin_out(weights, max_particles, random);
+    Cloud<Model> cloud{{}, {}, std::move(history)};
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] <= 0) continue;
+      const auto& [state, weight] = states_.particles()[i];
+      cloud.particles.push_back({state, weights[i]});
+      cloud.lineages.push_back({lineages_[i].grown_squares(weight, weights[i]), lineages_[i].trace});
+    }
+    return cloud;
+  }
+
+ private:
+  Gathering<Model> states_;
+  std::vector<Lineage> lineages_;
+};
+
+}  // namespace aos

@@ -1,0 +1,218 @@
+// Resample-move (Gilks and Berzuini, 2001): particles that have become few, or that descend from few origins, are copied,
+// and each copy is moved by Metropolis and Hastings' rule, which leaves the belief as it is.
+//
+// What is moved is the whole trace of a particle: all draws from the origin on, as numbers in [0, 1) that are uniform and
+// independent under the documents (primary sample space: Kelemen and others, 2002). A proposal changes some draws of one
+// block, the origin's or a step's, and the rest is replayed: it is accepted with what the later steps make of it. A step
+// that was drawn freely must bring what was observed then. A step that was guided is guided anew from where the trace is
+// now, and its likelihood counts (pseudo-marginal: Andrieu and Roberts, 2009). So variables of two particles are never
+// mixed, and what all histories have in common stays.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/base/replay.hpp"
+#include "aos/belief/guided_step.hpp"
+#include "aos/belief/history.hpp"
+
+namespace aos {
+
+inline constexpr std::size_t max_moving_steps = 200'000;  // of one update
+inline constexpr std::size_t proposals_that_tell = 500;
+inline constexpr std::size_t least_accepted = 1;          // of them; else there is little to be gained
+
+template <class Model>
+class Moves {
+ public:
+  using State = typename Model::State;
+
+  Moves(const History<Model>& history, Sampler& random) : history_(history), random_(random) {}
+
+  // About so many copies of a cloud's particles, after moves; the cloud as it is where moves lead nowhere.
+  Cloud<Model> moved(const Cloud<Model>& cloud, std::size_t copies) {
+    copy(cloud, copies);
+    std::size_t proposed = 0;
+    std::size_t accepted = 0;
+    while (steps_ < max_moving_steps) {
+      for (Copy& copy : copies_) {
+        accepted += move(copy) ? 1 : 0;
+        if (++proposed == proposals_that_tell && accepted < least_accepted) return cloud;
+        if (steps_ >= max_moving_steps) break;
+      }
+    }
+    return accepted > 0 ? gathered(cloud, copies) : cloud;
+  }
+
+ private:
+  struct Copy {
+    std::size_t particle;
+    State state;
+    double weight;
+    TraceLink trace;
+    bool is_moved;
+  };
+
+  // In proportion to the weights, and each particle once at least, so that none is lost.
+  void copy(const Cloud<Model>& cloud, std::size_t copies) {
+    const double unit = cloud.total() / static_cast<double>(copies);
+    for (std::size_t i = 0; i < cloud.particles.size(); ++i) {
+      const auto& [state, weight] = cloud.particles[i];
+      const long count = std::max(1L, std::lround(weight / unit));
+      for (long copy = 0; copy < count; ++copy) {
+        copies_.push_back({i, state, weight / static_cast<double>(count), cloud.lineages[i].trace, false});
+      }
+    }
+  }
+
+  // Copies that were not moved are worth as many samples as their particle was.
+  Cloud<Model> gathered(const Cloud<Model>& cloud, std::size_t max_particles) {
+    std::vector<double> unmoved(cloud.particles.size(), 0);
+    for (const Copy& copy : copies_) unmoved[copy.particle] += copy.is_moved ? 0 : copy.weight;
+    GatheredCloud<Model> gathered;
+    for (std::size_t i = 0; i < unmoved.size(); ++i) {
+      if (unmoved[i] == 0) continue;
+      const auto& [state, weight] = cloud.particles[i];
+      const double share = unmoved[i] / weight;
+      gathered.add(state, unmoved[i], cloud.lineages[i].squares * share * share, cloud.lineages[i].trace, random_);
+    }
+    for (Copy& copy : copies_) {
+      if (copy.is_moved) gathered.add(copy.state, copy.weight, copy.weight * copy.weight, std::move(copy.trace), random_);
+    }
+    return gathered.thinned(max_particles, cloud.history, random_);
+  }
+
+  // One proposal. A change that leads to the same state is none.
+  bool move(Copy& copy) {
+    const std::vector<const Block*> blocks = blocks_of(copy.trace);
+    const std::size_t last = blocks.size() - 1;
+    const std::size_t place = last == 0 || random_.flag(0.5) ? 0 : 1 + static_cast<std::size_t>(random_.below(static_cast<int>(last)));
+    ++steps_;
+    if (blocks[place]->draws == 0) return false;
+    State state{};
+    for (std::size_t i = 0; i < place; ++i) repeat(i, *blocks[i], state);
+    State before = state;
+    std::vector<Block> proposed;
+    double ratio = is_guided(place) ? guided(place, *blocks[place], state, proposed)
+                                    : changed(place, *blocks[place], state, proposed);
+    if (ratio <= 0) return false;
+    repeat(place, *blocks[place], before);
+    if (state == before) return false;
+    for (std::size_t i = place + 1; i <= last; ++i) {
+      if (is_guided(i)) {
+        ratio *= guided(i, *blocks[i], state, proposed);
+      } else {
+        proposed.push_back(*blocks[i]);
+        proposed.back().likelihood = repeat(i, *blocks[i], state);
+        proposed.back().draws = static_cast<std::uint32_t>(replay_.draws());
+        ratio *= proposed.back().likelihood / blocks[i]->likelihood;
+      }
+      if (ratio <= 0) return false;
+    }
+    if (ratio < 1 && !random_.flag(ratio)) return false;
+    copy.state = state;
+    copy.trace = replaced(copy.trace, blocks.size() - place, proposed);
+    copy.is_moved = true;
+    return true;
+  }
+
+  bool is_guided(std::size_t place) const { return place > 0 && history_.steps()[place - 1].is_guided; }
+
+  // Runs a block's draws. Returns 0 where it does not bring what was observed, else the density of the numbers.
+  double repeat(std::size_t place, const Block& block, State& state) {
+    Sampler later{block.seed};
+    return run(place, block.values, later, state, nullptr);
+  }
+  double run(std::size_t place, const std::vector<double>& values, Sampler& later, State& state,
+           std::vector<double>* record) {
+    ++steps_;
+    if (place == 0) {
+      replay_.start(values, later, record);
+      history_.originate(state, replay_);
+      return 1;
+    }
+    const HistoryStep& step = history_.steps()[place - 1];
+    const NumbersOf numbers{step, replay_};
+    replay_.start(values, later, record);
+    return step.agrees(History<Model>::run(state, step, replay_)) ? replay_.weight() : 0;
+  }
+
+  // A block with some draws changed, and what that makes of the ratio: by the number of draws the way back is likelier; 0
+  // where it does not bring what was observed.
+  double changed(std::size_t place, const Block& block, State& state, std::vector<Block>& proposed) {
+    std::vector<double> values;
+    State old = state;
+    Sampler later{block.seed};
+    run(place, block.values, later, old, &values);
+    const auto count = static_cast<double>(values.size());
+    perturb(values);
+    std::vector<double> used;
+    const double likelihood = run(place, values, random_, state, &used);
+    if (likelihood <= 0 || used.empty()) return 0;
+    const double ratio = count / static_cast<double>(used.size()) * likelihood / block.likelihood;
+    const auto draws = static_cast<std::uint32_t>(used.size());
+    proposed.push_back({std::move(used), 0, likelihood, draws});
+    return ratio;
+  }
+
+  // From one of the draws on, a few in a row are drawn anew, or turned by a little: both are as likely there as back.
+  void perturb(std::vector<double>& values) {
+    const auto first = static_cast<std::size_t>(random_.below(static_cast<int>(values.size())));
+    const std::size_t length = random_.flag(0.02) ? values.size() : 1 + static_cast<std::size_t>(random_.below(4));
+    const bool is_turned = random_.flag(0.4);
+    const double reach = is_turned ? std::exp(std::log(0.5) - random_.uniform() * std::log(500.0)) : 0;
+    for (std::size_t i = first; i < std::min(values.size(), first + length); ++i) {
+      if (is_turned) {
+        const double turned = values[i] + reach * (2 * random_.uniform() - 1);
+        values[i] = turned - std::floor(turned);
+        if (values[i] >= 1) values[i] = 0;
+      } else {
+        values[i] = random_.uniform();
+      }
+    }
+  }
+
+  // A step guided anew, and what its likelihood makes of the ratio.
+  double guided(std::size_t place, const Block& block, State& state, std::vector<Block>& proposed) {
+    const HistoryStep& step = history_.steps()[place - 1];
+    NumbersOf numbers{step, replay_};
+    GuidedStep<Model> steps{step.action, step.observation, numbers.sink(), random_};
+    steps.leave_to_chance(step.by_chance);
+    const State before = state;
+    double sum = 0;
+    Block chosen;
+    steps.from(before, [&](const State& next, double weight, const std::vector<double>& values) {
+      sum += weight;
+      if (!random_.flag(weight / sum)) return;
+      state = next;
+      chosen.values = values;
+    });
+    steps_ += steps.runs();
+    chosen.likelihood = sum;
+    chosen.draws = static_cast<std::uint32_t>(chosen.values.size());
+    proposed.push_back(std::move(chosen));
+    return sum / block.likelihood;
+  }
+
+  // A trace with its last `count` blocks replaced.
+  static TraceLink replaced(TraceLink trace, std::size_t count, std::vector<Block>& blocks) {
+    for (std::size_t i = 0; i < count; ++i) trace = trace->before;
+    for (Block& block : blocks) {
+      trace = trace == nullptr ? begun_trace(std::move(block)) : longer(std::move(trace), std::move(block));
+    }
+    return trace;
+  }
+
+  const History<Model>& history_;
+  Sampler& random_;
+  Replay replay_;
+  std::vector<Copy> copies_;
+  std::size_t steps_ = 0;
+};
+
+}  // namespace aos

@@ -1,0 +1,332 @@
+// A belief that cannot be enumerated, as particles: one step of the filter.
+//
+// Each particle makes trials in proportion to its weight, and at least one. A trial draws the whole step where many agree
+// with what was observed (the bootstrap filter: Gordon, Salmond and Smith, 1993), else it is guided towards the observation
+// and weighted (guided_step.hpp). Equal states are merged, light particles thinned out (gathering.hpp). Where too few agree,
+// or the particles are worth too few samples or descend from too few origins, they are moved (moves.hpp).
+//
+// All limits are numbers of steps, so that the same seed gives the same belief.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/base/replay.hpp"
+#include "aos/belief/gathering.hpp"
+#include "aos/belief/guided_step.hpp"
+#include "aos/belief/history.hpp"
+#include "aos/belief/moves.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+inline constexpr double max_guided_runs = 80'000;           // of one update, about
+inline constexpr std::size_t max_guesses = 500; 
+inline constexpr std::size_t max_guessing_runs = 500'000;
+inline constexpr std::size_t price_count = 50;
+inline constexpr std::size_t few_particles = 300;           // more are not guessed at, as far as each can have a trial
+inline constexpr double max_covering_runs = 2'000'000;      // where many particles are to be covered
+inline constexpr double nearly_all = 1 - 1e-8;
+inline constexpr std::size_t pilot_count = 200;
+inline constexpr double rare_observation = 0.25;            // in that share of steps
+inline constexpr double few_effective = 0.2 * particle_count;
+inline constexpr double few_origins = 100;
+inline constexpr double too_few_effective = 50;
+inline constexpr int max_rescues = 3;
+
+template <class Model>
+class ParticleFilter {
+ public:
+  using State = typename Model::State;
+  struct Updated {
+    Cloud<Model> cloud;
+    double probability;  // of what was observed
+  };
+
+  explicit ParticleFilter(Sampler& random) : random_(random) {}
+
+  // The documents' initial belief.
+  Cloud<Model> initial() {
+    GatheredCloud<Model> gathered;
+    State state{};
+    for (std::size_t i = 0; i < particle_count; ++i) {
+      Block block = free_block();
+      Model::initial(state, replay_);
+      block.draws = static_cast<std::uint32_t>(replay_.draws());
+      gathered.add(state, 1.0, 1.0, begun_trace(std::move(block)), random_);
+    }
+    return gathered.thinned(particle_count, {}, random_);
+  }
+
+  // A belief from which a history begins, of weights that are known exactly, or of one sample each.
+  Cloud<Model> begun(const std::vector<Particle<Model>>& particles, bool exact) {
+    Cloud<Model> cloud{particles, {}, History<Model>{particles}};
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      Block block{{cloud.history.origin_value(i, random_)}, 0, 1, 1};
+      cloud.lineages.push_back({exact ? 0 : particles[i].weight * particles[i].weight, begun_trace(std::move(block))});
+    }
+    return cloud;
+  }
+
+  // After a step. The cloud has no particle where no trial brought what was observed.
+  Updated after(Cloud<Model> before, HistoryStep step, NumberSink& numbers) {
+    const ForgottenTexts forgotten;
+    numbers_ = &numbers;
+    replay_.report_to(numbers_);
+    if (before.history.steps().size() >= max_history) before = begun(before.particles, false);
+    Updated updated = propagated(before, step);
+    const bool is_worth_moving = !before.history.steps().empty() || before.history.begins_with_the_documents();
+    for (int rescue = 0; rescue < max_rescues && step.is_observed && is_worth_moving; ++rescue) {
+      if (updated.cloud.effective() >= too_few_effective) break;
+      before = Moves<Model>{before.history, random_}.moved(before, particle_count);
+      Updated again = propagated(before, step);
+      if (again.cloud.effective() >= updated.cloud.effective()) updated = std::move(again);
+    }
+    if (!updated.cloud.particles.empty() && step.is_observed) move_where_few(updated.cloud);
+    return updated;
+  }
+
+  // Calls `visit(observation, weight)` for steps at random; the weights sum to 1.
+  template <class Visit>
+  void draw_observations(const std::vector<Particle<Model>>& particles, int action, Visit&& visit) {
+    draw_evenly<Model>(particles, particle_count, random_, [&](const State& drawn) {
+      State next = drawn;
+      visit(Model::step(next, action, random_).observation, 1.0 / particle_count);
+    });
+  }
+
+ private:
+  // How trials are made: of each particle so many, on average.
+  struct Plan {
+    bool is_guided = false;
+    std::size_t by_chance = 0;
+    std::vector<double> trials;
+  };
+
+  // Notes of each draw how many outcomes it has, 0 for a continuous one, and whether a text is begun.
+  class Look final : public DrawWatcher {
+   public:
+    void before_draw(std::size_t, const double* weights, int count, double) override {
+      const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
+      draws_.push_back({weights == nullptr ? 0 : static_cast<int>(positive), is_text_begun()});
+    }
+    // Of the draws since the last call: how many come before those that are best guided. They are those that write a text,
+    // or else the last ones, with as many before them as have few combinations.
+    std::size_t first_guided() {
+      const auto begun = std::find_if(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.is_text_begun; });
+      auto first = static_cast<std::size_t>(begun - draws_.begin());
+      for (long combinations = 1; first > 0; --first) {
+        const int outcomes = draws_[first - 1].outcomes;
+        combinations *= outcomes > 0 ? outcomes : max_branches;
+        if (combinations > max_branches) break;
+      }
+      draws_.clear();
+      return first;
+    }
+
+   private:
+    struct Draw {
+      int outcomes;
+      bool is_text_begun;
+    };
+    std::vector<Draw> draws_;
+  };
+
+  Block free_block() {
+    Block block;
+    block.seed = random_.bits();
+    chance_ = Sampler{block.seed};
+    replay_.start(none_, chance_);
+    return block;
+  }
+
+  void move_where_few(Cloud<Model>& cloud) {
+    const bool is_few = cloud.effective() < few_effective;
+    if (!is_few && cloud.effective_origins() >= few_origins) return;
+    if (!cloud.history.is_time_to_move()) return;
+    Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud, particle_count);
+    const bool have_helped = is_few ? moved.effective() > 1.1 * cloud.effective()
+                                    : moved.effective_origins() > 1.5 * cloud.effective_origins();
+    if (have_helped) cloud = std::move(moved);
+    cloud.history.note_moves(have_helped);
+  }
+
+  Plan plan_of(const Cloud<Model>& before, const HistoryStep& step) {
+    if (!step.is_observed) return {false, 0, by_weight(before, particle_count)};
+    Look look;
+    std::vector<std::size_t> first_guided;
+    std::size_t agreed = 0;
+    draw_evenly<Model>(before.particles, pilot_count, random_, [&](const State& drawn) {
+      State next = drawn;
+      replay_.start(none_, random_, nullptr, &look);
+      agreed += Model::step(next, step.action, replay_).observation == step.observation && replay_.weight() > 0 ? 1 : 0;
+      first_guided.push_back(look.first_guided());
+    });
+    std::nth_element(first_guided.begin(), first_guided.begin() + pilot_count / 2, first_guided.end());
+    const double share = static_cast<double>(agreed) / pilot_count;
+    const std::size_t by_chance = first_guided[pilot_count / 2];
+    if (by_chance > 0 && share >= rare_observation) return {false, 0, by_weight(before, particle_count / share)};
+    return {true, by_chance, by_promise(before, step, by_chance)};
+  }
+
+  // In proportion to the weights, at least one each.
+  static std::vector<double> by_weight(const Cloud<Model>& before, double all) {
+    std::vector<double> trials;
+    const double total = before.total();
+    for (const auto& particle : before.particles) trials.push_back(std::max(1.0, all * particle.weight / total));
+    return trials;
+  }
+
+  // In proportion to the weights and to a rough guess at how likely the observation is from each particle (as the auxiliary
+  // particle filter: Pitt and Shephard, 1999), and a few of them to the weights alone. Of many particles one trial each
+  // tells more.
+  std::vector<double> by_promise(const Cloud<Model>& before, const HistoryStep& step, std::size_t by_chance) {
+    GuidedStep<Model> guided{step.action, step.observation, numbers_, random_};
+    guided.leave_to_chance(by_chance);
+    const auto nothing = [](const State&, double, const std::vector<double>&) {};
+    if (before.particles.size() > few_particles) {
+      draw_evenly<Model>(before.particles, price_count, random_, [&](const State& drawn) { guided.from(drawn, nothing); });
+      const double price = static_cast<double>(guided.runs()) / price_count;
+      if (price * static_cast<double>(before.particles.size()) <= max_covering_runs) return by_weight(before, few_particles);
+    }
+    const std::size_t guesses = std::clamp<std::size_t>(max_guesses / before.particles.size(), 1, 8);
+    std::vector<double> trials;
+    double sum = 0;
+    double guessed = 0;
+    for (const auto& particle : before.particles) {
+      double guess = sum / std::max(guessed, 1e-300);
+      if (guided.runs() < max_guessing_runs) {
+        guess = 0;
+        for (std::size_t i = 0; i < guesses; ++i) guess += guided.from(particle.state, nothing, 1);
+        sum += particle.weight * guess;
+        guessed += particle.weight;
+      }
+      trials.push_back(particle.weight * guess);
+    }
+    const double total = before.total();
+    double promised = 0;
+    for (const double promise : trials) promised += promise;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      const double by_weight = before.particles[i].weight / total;
+      trials[i] = promised > 0 ? 0.98 * trials[i] / promised + 0.02 * by_weight : by_weight;
+    }
+    return priced(before, std::move(trials), guided);
+  }
+
+  // As many trials as the budget allows, shared out like this; and one at least for each of the particles that make up
+  // nearly all of it.
+  std::vector<double> priced(const Cloud<Model>& before, std::vector<double> shares, GuidedStep<Model>& guided) {
+    std::vector<Particle<Model>> promising;
+    for (std::size_t i = 0; i < shares.size(); ++i) promising.push_back({before.particles[i].state, shares[i]});
+    const std::size_t runs_before = guided.runs();
+    draw_evenly<Model>(promising, price_count, random_, [&](const State& drawn) {
+      guided.from(drawn, [](const State&, double, const std::vector<double>&) {});
+    });
+    const double price = static_cast<double>(guided.runs() - runs_before) / price_count;
+    std::vector<double> sorted = shares;
+    std::sort(sorted.begin(), sorted.end(), std::greater<>{});
+    double light = 1 - nearly_all;
+    std::size_t covered = sorted.size();
+    while (covered > 0 && (light -= sorted[covered - 1]) > 0) --covered;
+    covered = std::min(covered, static_cast<std::size_t>(max_covering_runs / price));
+    const double least = covered > 0 ? sorted[covered - 1] : 1;
+    const double all = std::min(max_guided_runs / price, 1.0 * particle_count);
+    for (double& share : shares) share = std::max(all * share, share >= least ? 1.0 : 0.0);
+    return shares;
+  }
+
+  Updated propagated(const Cloud<Model>& before, HistoryStep step) {
+    const Plan plan = plan_of(before, step);
+    step.is_guided = plan.is_guided;
+    step.by_chance = static_cast<std::uint32_t>(plan.by_chance);
+    GatheredCloud<Model> gathered;
+    GuidedStep<Model> guided{step.action, step.observation, numbers_, random_};
+    guided.leave_to_chance(plan.by_chance);
+    for (std::size_t i = 0; i < plan.trials.size(); ++i) {
+      const double expected = plan.trials[i];
+      if (expected < 1 && !random_.flag(expected)) continue;
+      const long trials = std::max(1L, std::lround(expected));
+      const auto& [state, weight] = before.particles[i];
+      const double grown = expected < 1 ? weight / expected : weight;
+      const Parent parent{state, grown, before.lineages[i].grown_squares(weight, grown), before.lineages[i].trace, trials};
+      if (plan.is_guided) {
+        guide(parent, guided, gathered);
+      } else {
+        draw(parent, step, gathered);
+      }
+    }
+    History<Model> history = before.history;
+    history.add(step);
+    Cloud<Model> cloud = gathered.thinned(particle_count, std::move(history), random_);
+    const double probability = cloud.total() / before.total();
+    return {std::move(cloud), probability};
+  }
+
+  struct Parent {
+    const State& state;
+    double weight;
+    double squares;
+    const TraceLink& trace;
+    long trials;
+
+    double weight_of_trial() const { return weight / static_cast<double>(trials); }
+  };
+
+  // Whole steps at random. One is enough where nothing is drawn.
+  void draw(const Parent& parent, const HistoryStep& step, GatheredCloud<Model>& gathered) {
+    for (long trial = 0; trial < parent.trials; ++trial) {
+      State next = parent.state;
+      Block block = free_block();
+      const bool agrees = step.agrees(History<Model>::run(next, step, replay_));
+      block.draws = static_cast<std::uint32_t>(replay_.draws());
+      block.likelihood = agrees ? replay_.weight() : 0;
+      const bool is_certain = block.draws == 0;
+      if (block.likelihood > 0) {
+        const double weight = block.likelihood * (is_certain ? parent.weight : parent.weight_of_trial());
+        const double squares = is_certain ? parent.squares * block.likelihood * block.likelihood : weight * weight;
+        gathered.add(next, weight, squares, longer(parent.trace, std::move(block)), random_);
+      }
+      if (is_certain) return;
+    }
+  }
+
+  // Steps guided towards the observation. One is enough where it followed all that can be.
+  void guide(const Parent& parent, GuidedStep<Model>& guided, GatheredCloud<Model>& gathered) {
+    for (long trial = 0; trial < parent.trials; ++trial) {
+      outcomes_.clear();
+      const double sum = guided.from(parent.state, [&](const State& next, double weight, const std::vector<double>& values) {
+        outcomes_.push_back({next, weight, values});
+      });
+      const bool is_whole = guided.was_exhaustive();
+      for (auto& [next, likelihood, values] : outcomes_) {
+        const double weight = (is_whole ? parent.weight : parent.weight_of_trial()) * likelihood;
+        const double squares = is_whole ? parent.squares * likelihood * likelihood : weight * weight;
+        const auto draws = static_cast<std::uint32_t>(values.size());
+        gathered.add(next, weight, squares, longer(parent.trace, {std::move(values), 0, sum, draws}), random_);
+      }
+      if (is_whole) return;
+    }
+  }
+
+  struct Outcome {
+    State next;
+    double likelihood;
+    std::vector<double> values;
+  };
+
+  Sampler& random_;
+  Sampler chance_{0};
+  Replay replay_;
+  const std::vector<double> none_;
+  std::vector<Outcome> outcomes_;
+  NumberSink* numbers_ = nullptr;
+};
+
+}  // namespace aos
