@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import random
 import subprocess
@@ -16,6 +17,8 @@ from aos_registry.load import load_bundle
 
 WALKS = 6
 STEPS_OF_A_WALK = 15
+NORMAL = ("laser-normal", "lightdark-normal")
+"""Observations are numbers here."""
 
 
 @pytest.mark.parametrize("problem", MODELS)
@@ -46,12 +49,31 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(
                 assert update.summary.entropy == pytest.approx(entropy, abs=1e-6)
 
 
+async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_dir: Path) -> None:
+    """The robot starts in one of nine cells; after a step north it measures its place."""
+    east_m, north_m = 2.9, 1.4
+    weights = {}
+    for x, y in itertools.product((1, 2, 3), (2, 3, 4)):
+        deviation = 0.4 + 0.45 * (9 - y)
+        squares = ((east_m - x) / deviation) ** 2 + ((north_m - y) / deviation) ** 2
+        weights[x, y] = math.exp(-squares / 2) / (2 * math.pi * deviation**2) / 9
+    density = sum(weights.values())
+    async with engine_of(await built_bundle(bundles / "bench" / "lightdark-normal", cache_dir)) as engine:
+        numbers = {"east_m": east_m, "north_m": north_m}
+        update = await engine.update("move(direction=north)", "moved", numbers=numbers)
+    assert update.probability == pytest.approx(density, rel=1e-9)
+    (rows,) = (each.values for each in update.summary.marginals if each.variable == "y")
+    for y in (2, 3, 4):
+        weight = sum(weights[x, y] for x in (1, 2, 3))
+        assert rows[str(y)] == pytest.approx(weight / density, abs=1e-9)
+
+
 def test_the_rocksample_bundles_are_as_their_script_writes_them(bundles: Path) -> None:
     script = bundles / "bench" / "write_rocksamples.py"
     subprocess.run([sys.executable, script, "--check"], check=True, timeout=30)
 
 
-@pytest.mark.parametrize("problem", [*MODELS, "rocksample-11-11", "rocksample-15-15", "pocman"])
+@pytest.mark.parametrize("problem", [*MODELS, "rocksample-11-11", "rocksample-15-15", "pocman", *NORMAL])
 def test_the_benchmark_bundles_have_no_mistakes(problem: str, bundles: Path) -> None:
     loaded = load_bundle(bundles / "bench" / problem)
     assert loaded.project is not None

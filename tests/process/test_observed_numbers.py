@@ -269,7 +269,7 @@ async def test_what_enumerates_observations_says_that_it_cannot(cache_dir: Path)
             await engine.exact()
         assert raised.value.code == "AOS220"
         with pytest.raises(ModelError, match="what is observed are numbers"):
-            await engine.explore(is_new=True, time_s=1)
+            await engine.list_states(1000)
         plan = await engine.plan(seed=1, simulations=200, planner="auto")
         assert plan.planner in ("pomcp", "despot")
 

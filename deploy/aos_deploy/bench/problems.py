@@ -46,6 +46,8 @@ _PROBLEMS = {
         _ours("laser-discrete", runs=100),
         _ours("ship10", runs=50, steps=100),
         _ours("maint10", runs=50),
+        _ours("lightdark-normal", runs=100),
+        _ours("laser-normal", runs=100),
         _ours("navigation"),
         _theirs("sampling-rate"),
         _theirs("wildfire"),
