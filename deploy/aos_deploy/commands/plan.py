@@ -205,7 +205,8 @@ def rate(
 ) -> None:
     """Measure how many samples a second the model gives.
 
-    A sample is a next state, an observation and a reward.
+    A sample is a next state, an observation and a reward, made as planners
+    make it: by one call of the model's code for each step.
     """
 
     async def measure(engine: Engine) -> list[float]:

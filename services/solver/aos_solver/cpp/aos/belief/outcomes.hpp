@@ -154,7 +154,7 @@ class DrawnOutcomes {
     State mixed = left;
     if (&places_of(right) != &places) return mixed;
     for (const Place& place : places.all) {
-      if (random_.flag(0.5)) copy_place(place, right, mixed);
+      if (random_.flag(0.5)) copy_place<Model>(place, right, mixed);
     }
     return mixed;
   }
@@ -165,7 +165,7 @@ class DrawnOutcomes {
     if (&places_of(unobserved) != &places || places.open.empty()) return result;
     for (std::size_t i = 0; i < forgotten_; ++i) {
       const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(places.open.size())));
-      copy_place(places.open[chosen], unobserved, result);
+      copy_place<Model>(places.open[chosen], unobserved, result);
     }
     return result;
   }

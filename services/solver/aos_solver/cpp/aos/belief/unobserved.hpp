@@ -21,14 +21,14 @@ class Unobserved {
  public:
   using State = typename Model::State;
   static constexpr std::size_t most_bytes = std::size_t{8} << 20;
-  static constexpr std::size_t most_states = std::clamp<std::size_t>(most_bytes / sizeof(State), 1, 1000);
+  static std::size_t most_states() { return std::clamp<std::size_t>(most_bytes / Model::state_bytes(), 1, 1000); }
 
   Unobserved() = default;
   // One that was kept with these states, of this model or of one with the same states before it. What is open is found
   // among them and by drawing from the initial belief again.
   Unobserved(std::vector<State> states, Sampler& random) {
     State initial{};
-    for (std::size_t i = 0; i < most_states && !states.empty(); ++i) {
+    for (std::size_t i = 0; i < most_states() && !states.empty(); ++i) {
       Model::initial(initial, random);
       add(initial);
     }
@@ -39,9 +39,9 @@ class Unobserved {
   bool is_empty() const { return states_.empty(); }
   const std::vector<State>& states() const { return states_; }
 
-  // A state from the initial belief; those after the first `most_states` are not needed.
+  // A state from the initial belief; those after the first `most_states()` are not needed.
   void add(const State& initial) {
-    if (states_.size() == most_states) return;
+    if (states_.size() == most_states()) return;
     states_.push_back(initial);
     note_differences(initial);
   }
@@ -85,10 +85,10 @@ class Unobserved {
   friend class Unobserved;
 
   void note_differences(const State& state) {
-    const std::byte* const first = bytes_of(states_.front());
-    const std::byte* const other = bytes_of(state);
-    differences_.resize(sizeof(State));
-    for (std::size_t i = 0; i < sizeof(State); ++i) differences_[i] |= first[i] ^ other[i];
+    const std::byte* const first = Model::bytes_of(states_.front());
+    const std::byte* const other = Model::bytes_of(state);
+    differences_.resize(Model::state_bytes());
+    for (std::size_t i = 0; i < differences_.size(); ++i) differences_[i] |= first[i] ^ other[i];
   }
 
   static bool goes_on(State& state, int action, Sampler& random) {
@@ -99,7 +99,6 @@ class Unobserved {
     }
     return Model::ending(state) == Ending::running;
   }
-  static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
 
   std::vector<State> states_;
   std::vector<std::byte> differences_;  // by byte of a state; 0 where all states have always had the same
