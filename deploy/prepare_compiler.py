@@ -14,7 +14,7 @@ from pathlib import Path
 
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import AosError
-from aos_solver.building.build import build_engine
+from aos_solver.building.build import ANY_SIZE, build_engine
 from aos_solver.building.compiler import Compiler, find_compiler
 
 PROGRAM = "#include <vector>\nint main() { return std::vector<int>(3).size() == 3 ? 0 : 1; }\n"
@@ -32,11 +32,17 @@ def main() -> int:
         return 2
     sys.stdout.write(f"{compiler.version}\n")
     try:
-        asyncio.run(build_engine(cache_dir(), compiler=compiler))
+        asyncio.run(build_engines(compiler))
     except (AosError, OSError) as error:
         sys.stderr.write(f"{compiler.version} cannot build the engine:\n{error}\n")
         return 2
     return 0
+
+
+async def build_engines(compiler: Compiler) -> None:
+    """The engine of most models, and the one that takes all others."""
+    await build_engine(cache_dir(), compiler=compiler)
+    await build_engine(cache_dir(), compiler=compiler, state_bytes=ANY_SIZE)
 
 
 def _complaint_about(compiler: Compiler) -> str:

@@ -66,7 +66,7 @@ class SolverPart(msgspec.Struct, frozen=True, kw_only=True):
     time_s: Seconds | None = None
     horizon: Count | None = None
     policy: str | None = None
-    planner: Literal["pomcp", "despot", "sarsop", "auto"] = "pomcp"
+    planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
     threads: Annotated[int, msgspec.Meta(ge=1, le=32)] = 1
     think_while_acting: bool = True
     seed: Seed = 1

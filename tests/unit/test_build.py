@@ -15,7 +15,7 @@ from scripted_models import bundle_project, json_text, lowered, mapping_text, te
 
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as build_module
-from aos_solver.building.build import SOURCES, BuiltModel, build, build_engine
+from aos_solver.building.build import ANY_SIZE, SOURCES, BuiltModel, build, build_engine
 from aos_solver.building.build_cache import BuildCache
 from aos_solver.building.compiler import find_compiler
 from aos_solver.emission.emit import EmittedModel
@@ -76,10 +76,21 @@ async def test_progress_says_what_takes_the_time(cache_dir: Path) -> None:
     assert remarks[-1].startswith("compiled test in ")
 
 
-async def test_a_large_state_gets_an_engine_of_its_size(
-    cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("length", "ready", "taken"),
+    [
+        (40, {64}, 256),
+        (40, {64, 256, ANY_SIZE}, 256),
+        (40, {64, ANY_SIZE}, ANY_SIZE),  # rather than compile the other one first
+        (400, {64, 256}, ANY_SIZE),
+    ],
+)
+async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
+    length: int, ready: set[int], taken: int, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     usual = await build_engine(cache_dir)
+    compiler = await find_compiler()
+    names = {build_module._engine_name(compiler, size) for size in ready}
     sizes: list[int] = []
 
     async def recorded(*_: Any, state_bytes: int, **__: Any) -> Path:
@@ -87,9 +98,11 @@ async def test_a_large_state_gets_an_engine_of_its_size(
         return usual
 
     monkeypatch.setattr(build_module, "build_engine", recorded)
-    row = "state_variable: int row []\ncode:\nstate.row = vector<int>(40, 0);\n"
-    await build(emitted_skill("state__.row[3] = 1;", HOME + row), cache_dir=cache_dir)
-    assert sizes == [64, 256]
+    monkeypatch.setattr(BuildCache, "find", lambda _, name: usual if name in names else None)
+    row = f"state_variable: int row []\ncode:\nstate.row = vector<int>({length}, 0);\n"
+    step = f"state__.row[3] = {len(ready)};"
+    await build(emitted_skill(step, HOME + row), cache_dir=cache_dir)
+    assert sizes == [64, taken]
 
 
 async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) -> None:

@@ -68,7 +68,7 @@ def plan(
     time_s: Time = None,
     horizon: Horizon = None,
     seed: Seed = 1,
-    planner: PlannerName = "pomcp",
+    planner: PlannerName = "auto",
     threads: Threads = 1,
     policy: PolicyFile = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
@@ -122,7 +122,7 @@ def simulate(
     simulations: Simulations = 100_000,
     time_s: Time = None,
     horizon: Horizon = None,
-    planner: PlannerName = "pomcp",
+    planner: PlannerName = "auto",
     threads: Threads = 1,
     policy: PolicyFile = None,
     goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
@@ -205,7 +205,8 @@ def rate(
 ) -> None:
     """Measure how many samples a second the model gives.
 
-    A sample is a next state, an observation and a reward.
+    A sample is a next state, an observation and a reward, made as planners
+    make it: by one call of the model's code for each step.
     """
 
     async def measure(engine: Engine) -> list[float]:

@@ -13,7 +13,7 @@ from aos_solver.emission.findings import Findings
 __all__ = ["reachability_findings"]
 
 _NAMED_ACTIONS = 3
-_TIME_S = 3.0
+_TIME_S = 2.0
 
 
 async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Diagnostic, ...]:

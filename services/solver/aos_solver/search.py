@@ -24,7 +24,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     seed: int
     time_s: float | None = None
     horizon: int | None = None
-    planner: Planner = "pomcp"
+    planner: Planner = "auto"
     threads: int = 1
     thinks_while_acting: bool = True
 

@@ -28,7 +28,7 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     step_limit: int = 30
     stop_below_value: float | None = None
     activation_timeout_s: float = 120.0
-    planner: Literal["pomcp", "despot", "sarsop", "auto"] = "pomcp"
+    planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
     threads: int = 1
     think_while_acting: bool = True
     impossible_observation: Literal["hold", "widen", "reset"] = "widen"

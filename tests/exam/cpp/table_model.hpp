@@ -103,6 +103,9 @@ struct TableModel {
   }
   static std::span<const aos::ByteRange> irrelevant() { return irrelevant_; }
   static std::size_t state_bytes() { return sizeof(State); }
+  static const std::byte* bytes_of(const State& state) { return reinterpret_cast<const std::byte*>(&state); }
+  static std::byte* bytes_of(State& state) { return reinterpret_cast<std::byte*>(&state); }
+  static std::size_t bytes_elsewhere() { return 0; }
   static std::string state_text(const State& state) { return std::to_string(number_of(state)); }
 
   template <class Visitor>

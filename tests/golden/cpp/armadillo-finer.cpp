@@ -62,8 +62,19 @@ struct State {
     visit("drink_served", self.drink_served);
     visit("person_injured", self.person_injured);
   }
+  static std::span<const aos::Member> __members();
   bool operator==(const State&) const = default;
 };
+inline constexpr std::array<aos::Member, 7> members{
+    aos::member_at<Place>("easy_can_at", offsetof(State, easy_can_at)),
+    aos::member_at<Place>("hard_can_at", offsetof(State, hard_can_at)),
+    aos::member_at<Place>("robot_at", offsetof(State, robot_at)),
+    aos::member_at<bool>("holding_can", offsetof(State, holding_can)),
+    aos::member_at<bool>("arm_outstretched", offsetof(State, arm_outstretched)),
+    aos::member_at<bool>("drink_served", offsetof(State, drink_served)),
+    aos::member_at<bool>("person_injured", offsetof(State, person_injured)),
+};
+inline std::span<const aos::Member> State::__members() { return members; }
 
 // All variables, open to the code that gives them their first values.
 struct Draft : State, Constants {
@@ -78,43 +89,43 @@ inline void default_values(Draft& state) {
     aos::blame::at(5);
 #line 16 "armadillo.ef"
 state.easy_can_at = EasyTable;
-#line 82 "model.cpp"
+#line 93 "model.cpp"
   }
   {
     aos::blame::at(6);
 #line 20 "armadillo.ef"
 state.hard_can_at = HardTable;
-#line 88 "model.cpp"
+#line 99 "model.cpp"
   }
   {
     aos::blame::at(7);
 #line 24 "armadillo.ef"
 state.robot_at = Unknown;
-#line 94 "model.cpp"
+#line 105 "model.cpp"
   }
   {
     aos::blame::at(8);
 #line 28 "armadillo.ef"
 state.holding_can = false;
-#line 100 "model.cpp"
+#line 111 "model.cpp"
   }
   {
     aos::blame::at(9);
 #line 32 "armadillo.ef"
 state.arm_outstretched = false;
-#line 106 "model.cpp"
+#line 117 "model.cpp"
   }
   {
     aos::blame::at(10);
 #line 36 "armadillo.ef"
 state.drink_served = false;
-#line 112 "model.cpp"
+#line 123 "model.cpp"
   }
   {
     aos::blame::at(11);
 #line 40 "armadillo.ef"
 state.person_injured = false;
-#line 118 "model.cpp"
+#line 129 "model.cpp"
   }
   {
     aos::blame::at(12);
@@ -123,7 +134,7 @@ state.easy_table.place = EasyTable;
 state.easy_table.x = 0.0;
 state.easy_table.y = 2.0;
 state.easy_table.yaw = 1.5708;
-#line 127 "model.cpp"
+#line 138 "model.cpp"
   }
   {
     aos::blame::at(13);
@@ -132,7 +143,7 @@ state.hard_table.place = HardTable;
 state.hard_table.x = 0.0;
 state.hard_table.y = -2.0;
 state.hard_table.yaw = -1.5708;
-#line 136 "model.cpp"
+#line 147 "model.cpp"
   }
   {
     aos::blame::at(14);
@@ -141,7 +152,7 @@ state.corridor.place = Corridor;
 state.corridor.x = 4.0;
 state.corridor.y = 0.0;
 state.corridor.yaw = 0.0;
-#line 145 "model.cpp"
+#line 156 "model.cpp"
   }
   aos::blame::at(0);
 }
@@ -176,7 +187,7 @@ struct skill__navigate : aos::SkillDefaults {
     aos::blame::at(19);
 #line 5 "navigate.sd"
 __meetPrecondition = state.robot_at != Unknown;
-#line 180 "model.cpp"
+#line 191 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -191,7 +202,7 @@ bool is_there = AOS.Bernoulli(1.0);
 if (is_there) state__.robot_at = destination.place;
 __moduleResponse = is_there ? arrived : failed;
 __reward = -5;
-#line 195 "model.cpp"
+#line 206 "model.cpp"
   }
 };
 
@@ -209,7 +220,7 @@ struct skill__observe_arm_outstretched : aos::SkillDefaults {
 #line 4 "observe_arm_outstretched.sd"
 __moduleResponse = state.arm_outstretched ? outstretched : not_outstretched;
 __reward = -1;
-#line 213 "model.cpp"
+#line 224 "model.cpp"
   }
 };
 
@@ -228,7 +239,7 @@ struct skill__observe_holding : aos::SkillDefaults {
 // In 2 of 11 runs the fingers report nothing although they hold the can; never the other way round.
 __moduleResponse = state.holding_can && AOS.Bernoulli(0.818) ? holding : not_holding;
 __reward = -1;
-#line 232 "model.cpp"
+#line 243 "model.cpp"
   }
 };
 
@@ -244,7 +255,7 @@ struct skill__pick : aos::SkillDefaults {
 #line 4 "pick.sd"
 bool can_in_reach = state.easy_can_at == state.robot_at || state.hard_can_at == state.robot_at;
 __meetPrecondition = can_in_reach && !state.holding_can;
-#line 248 "model.cpp"
+#line 259 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -274,7 +285,7 @@ state__.arm_outstretched = ending == GraspedArmOut;
 // The skill notices an arm that stays out, and neither a missed nor a dropped can.
 __moduleResponse = ending == GraspedArmOut ? pick_failed : pick_succeeded;
 __reward = -2;
-#line 278 "model.cpp"
+#line 289 "model.cpp"
   }
 };
 
@@ -289,7 +300,7 @@ struct skill__serve : aos::SkillDefaults {
     aos::blame::at(25);
 #line 4 "serve.sd"
 __meetPrecondition = state.holding_can && !state.arm_outstretched && state.robot_at == Corridor;
-#line 293 "model.cpp"
+#line 304 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -305,7 +316,7 @@ state__.drink_served = __meetPrecondition && !state__.person_injured;
 // All 21 runs reported a delivery, whether or not there was a can in the hand.
 __moduleResponse = AOS.Bernoulli(1.0) ? delivered : not_delivered;
 __reward = state__.person_injured ? -20 : -8;
-#line 309 "model.cpp"
+#line 320 "model.cpp"
   }
 };
 
@@ -314,7 +325,7 @@ struct Environment : aos::EnvironmentDefaults {
     aos::blame::at(15);
 #line 64 "armadillo.ef"
 state.robot_at = state.hard_table.place;
-#line 318 "model.cpp"
+#line 329 "model.cpp"
   }
 
   static void special_state__1(const State& state, double& __reward, bool& __isGoalState,
@@ -325,7 +336,7 @@ if (state.drink_served) {
     __reward = 30;
     __isGoalState = true;
 }
-#line 329 "model.cpp"
+#line 340 "model.cpp"
   }
 
   static void special_state__2(const State& state, double& __reward, bool& __isGoalState,
@@ -336,7 +347,7 @@ if (state.person_injured) {
     __reward = -10;
     __isFailureState = true;
 }
-#line 340 "model.cpp"
+#line 351 "model.cpp"
   }
 
   static void special_state__3(const State& state, double& __reward, bool& __isGoalState,
@@ -347,7 +358,7 @@ if (state.person_injured) {
 if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
     __isFailureState = true;
 }
-#line 351 "model.cpp"
+#line 362 "model.cpp"
   }
 
   static constexpr bool has_special_states = true;
@@ -442,16 +453,6 @@ struct Model {
       return aos::step<Environment, Skill>(state, parameters, random);
     });
   }
-  // The same action in each of so many states; the sum of the rewards.
-  static double step_all(int action, int count, auto&& state_at, auto& random) {
-    return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto parameters) {
-      double rewards = 0;
-      for (int place = 0; place < count; ++place) {
-        rewards += aos::step<Environment, Skill>(state_at(place), parameters, random).reward;
-      }
-      return rewards;
-    });
-  }
   static bool meets_precondition(const State& state, int action, auto& random) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       return aos::meets_precondition<Skill>(state, parameters, random);
@@ -492,7 +493,7 @@ struct Model {
   // What differs between states.
   static std::string save_state(const State& state) {
     aos::StateWriter text;
-    State::__fields(state, [&](const char*, const auto& value) { text.write(value); });
+    text.write(state);
     text.write(state.__ending);
     return text.text();
   }
@@ -501,9 +502,7 @@ struct Model {
   // Either may have come from documents in which other variables were constants.
   static void load_state(State& state, std::string_view saved, const aos::SavedConstants& constants) {
     aos::StateReader text{saved};
-    State::__fields(state, [&](const char* name, auto& value) {
-      constants.read(name, value, text);
-    });
+    constants.read_all(members, &state, text);
     text.read(state.__ending);
     text.finish();
   }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable
 
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, SkillModel, Snippet
@@ -26,14 +27,12 @@ def check_unused_variables(
     defaults = {id(variable.default_code) for variable in environment.variables}
     words = _words(block.snippet for block in blocks if id(block.snippet) not in defaults)
     looped = _looped_types(environment, models)
-    for variable in environment.variables:
+    of_default = [_words((code,) if (code := each.default_code) else ()) for each in environment.variables]
+    defaults_with = Counter(word for each in of_default for word in each)
+    for variable, own in zip(environment.variables, of_default, strict=True):
         used = (variable.name, f"{variable.type}Objects", f"{variable.type}ObjectsForActions")
-        others = _words(
-            other.default_code
-            for other in environment.variables
-            if other is not variable and other.default_code is not None
-        )
-        if variable.is_parameter_value or variable.type in looped or not (words | others).isdisjoint(used):
+        is_used = any(word in words or defaults_with[word] > (word in own) for word in used)
+        if variable.is_parameter_value or variable.type in looped or is_used:
             continue
         message = f"no code uses the state variable {variable.name}"
         findings.warning("AOS133", message, variable.span, "Leave it out, or use it")

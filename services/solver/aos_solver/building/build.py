@@ -26,13 +26,16 @@ from aos_solver.building.compiler_messages import read_messages, without_line_di
 from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, run_compiler
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
 
-__all__ = ["SOURCES", "BuildKind", "BuiltModel", "build", "build_engine"]
+__all__ = ["ANY_SIZE", "SOURCES", "BuildKind", "BuiltModel", "build", "build_engine"]
 
 SOURCES = Path(__file__).parents[1] / "cpp"
 """The engine, and what emitted models stand on."""
 
-STATE_BYTES = (64, 256, 1024, 4096, 16384, 65536, 262144, 1048576)
+STATE_BYTES = (64, 256)
 """The sizes of states that engines are compiled for; most models fit the first."""
+ANY_SIZE = 0
+"""Stands for the engine that takes states of every size: each has memory of its own, which takes longer."""
+MAX_STATE_BYTES = 1 << 20
 
 _SUPPORT = "aos/model/model_support.hpp"
 """What every emitted model includes first."""
@@ -116,7 +119,7 @@ async def build_engine(
     """The directory of the engine's object files for states of up to `state_bytes`; errors as in `build`.
 
     What does not depend on states is only in that of the smallest size.
-    Setting up a machine may call it, so that its first model is compiled as quickly as the later ones.
+    Setting up a machine calls it for the smallest and for `ANY_SIZE`, so that no model waits for its engine.
     """
     compiler = compiler or await find_compiler()
 
@@ -180,7 +183,7 @@ class _Build:
             raise errors.exceptions[0] from None
         state_bytes = self._state_bytes(staging / _OBJECT)
         usual = usual_engine.result()
-        engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(state_bytes)
+        engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
         await self._link(staging, [engine / _ENGINE_OBJECT, usual / _NUMBERS_OBJECT])
 
     async def _engine(self, state_bytes: int) -> Path:
@@ -210,14 +213,22 @@ class _Build:
         return self._compiler.precompiled(_SUPPORT, str(entry))
 
     def _state_bytes(self, model: Path) -> int:
-        """The smallest size of engine that takes the model's states."""
+        """The size of the quickest engine that takes the model's states."""
         mark = _STATE_BYTES_MARK.search(model.read_bytes())
         needed = int(mark[1]) if mark is not None else 0
-        for state_bytes in STATE_BYTES:
-            if needed <= state_bytes:
-                return state_bytes
-        message = f"a state of {self._emitted.project} takes {needed} bytes; {STATE_BYTES[-1]} is the limit"
-        raise ModelError(message, hint="Use smaller vectors and maps for state variables")
+        if needed > MAX_STATE_BYTES:
+            message = (
+                f"a state of {self._emitted.project} takes {needed} bytes; {MAX_STATE_BYTES} is the limit"
+            )
+            raise ModelError(message, hint="Use smaller vectors and maps for state variables")
+        return next((state_bytes for state_bytes in STATE_BYTES if needed <= state_bytes), ANY_SIZE)
+
+    def _ready_size(self, state_bytes: int) -> int:
+        """That size, or any size where a quick build would have to compile that engine first."""
+        is_there = self._cache.find(_engine_name(self._compiler, state_bytes)) is not None
+        is_other_there = self._cache.find(_engine_name(self._compiler, ANY_SIZE)) is not None
+        is_quick = self._options == _OPTIONS["quick"]
+        return ANY_SIZE if is_quick and is_other_there and not is_there else state_bytes
 
     async def _link(self, staging: Path, engine: list[Path]) -> None:
         model = staging / _OBJECT

@@ -27,7 +27,8 @@ MODEL_FILE = "model.cpp"
 _MARK, _END = "\ue000", "\ue001"
 _PLACE = re.compile(f"{_MARK}(\\d+){_END}")
 _OWN_NAMES = (
-    "State", "Draft", "Constants", "Environment", "Model", "actions", "constants", "default_values", "start",
+    "State", "Draft", "Constants", "Environment", "Model", "actions", "constants", "default_values",
+    "members", "start", "variables",
 )  # fmt: skip
 _PLAIN_VALUE = re.compile(r"[\w.+-]*")
 

@@ -72,10 +72,19 @@ def _reads_changed(section: tuple[Assignment, ...], older: tuple[str, ...], newe
     if any(assignment.over_previous or assignment.over_next for assignment in section):
         return True
     uses = _uses(section, older, newer)
+    reads: dict[str, list[_Use]] = {}
+    for read in uses.reads:
+        reads.setdefault(read.variable, []).append(read)
+
+    def reads_of(variable: str) -> Iterable[_Use]:
+        if variable == _WHOLE_STATE:
+            return uses.reads
+        return (*reads.get(variable, ()), *reads.get(_WHOLE_STATE, ()))
+
     return any(
-        _overlap({write.variable}, {read.variable}) and not _is_before(read, write, uses.unordered)
+        not _is_before(read, write, uses.unordered)
         for write in uses.writes
-        for read in uses.reads
+        for read in reads_of(write.variable)
     )
 
 

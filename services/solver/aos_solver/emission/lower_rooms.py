@@ -24,6 +24,7 @@ _SIZING = frozenset({"assign", "resize"})
 _NUMBER = r"\s*(\d+(?:\s*\*\s*\d+)*)\s*"  # or a product of numbers
 _LOOP_BOUND = re.compile(rf"\bfor\s*\([^;{{}}]*;[^;{{}}]*<=?{_NUMBER};")
 _CONSTRUCTED = re.compile(rf"(?:std::)?vector\s*<[^(){{}};]*>\s*\({_NUMBER}[,)]")
+_COPIED = re.compile(r"state_*\.(?:\w+\.)*(\w+)\s*;")
 _SIZED = re.compile(rf"\.\s*\w+\s*\({_NUMBER}[,)]")
 _LOOP_COLON = re.compile(r"\s*:\s*")
 _LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
@@ -92,7 +93,7 @@ class Rooms:
             return
         if (listed := _LISTED.match(value)) is not None:
             value = value[listed.end() :]
-        if re.match(rf"state_*\.(?:\w+\.)*{re.escape(key[0])}\s*;", value):
+        if (copied := _COPIED.match(value)) is not None and copied[1] == key[0]:
             return
         if value.startswith("{"):
             for depth, count in enumerate(_list_lengths(value)):

@@ -217,7 +217,7 @@ class Belief {
 
   static std::size_t most_states(Source source) {
     if (source == Source::drawing) return particle_count;
-    return std::clamp(most_weighted_bytes / sizeof(State), particle_count, most_weighted_states);
+    return std::clamp(most_weighted_bytes / Model::state_bytes(), particle_count, most_weighted_states);
   }
 
   // About how many combinations of draws the initial belief has: the median of estimates from single paths, each of which

@@ -10,8 +10,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,8 +39,14 @@ class KeptBeliefs {
     const Words history = saved_history(belief);
     const Head none{};
     const Head head{changes_, particles.size(), history.size(), belief.error_bound(), belief.is_drawn()};
-    if (!write(&none, sizeof none, 0) || !write_all(particles, sizeof head)) return;
-    if (write_all(history, sizeof head + bytes_of(particles))) write(&head, sizeof head, 0);
+    packed_.clear();
+    for (const Particle& particle : particles) {
+      pack(&particle.weight, sizeof particle.weight);
+      pack(Model::bytes_of(particle.state), Model::state_bytes());
+    }
+    pack(history.data(), history.size() * sizeof(Words::value_type));
+    if (!write(&none, sizeof none, 0) || !write(packed_.data(), packed_.size(), sizeof head)) return;
+    write(&head, sizeof head, 0);
   }
 
   // The belief after the change of this number, from which counting goes on; nothing where it was not kept.
@@ -50,14 +56,19 @@ class KeptBeliefs {
     if (file_ < 0 || !read(&head, sizeof head, 0) || head.change != change || head.particles == 0) return std::nullopt;
     std::vector<Particle> particles(head.particles);
     Words history(head.history_words);
-    if (!read_all(particles, sizeof head)) return std::nullopt;
-    if (!read_all(history, sizeof head + bytes_of(particles))) return std::nullopt;
+    packed_.resize(head.particles * (sizeof(double) + Model::state_bytes()) + history.size() * sizeof(Words::value_type));
+    if (!read(packed_.data(), packed_.size(), sizeof head)) return std::nullopt;
+    const std::byte* next = packed_.data();
+    for (Particle& particle : particles) {
+      next = unpack(next, &particle.weight, sizeof particle.weight);
+      next = unpack(next, Model::bytes_of(particle.state), Model::state_bytes());
+    }
+    unpack(next, history.data(), history.size() * sizeof(Words::value_type));
     return Belief<Model>::of(with_history<Model>(std::move(particles), history), head.error_bound, head.is_drawn);
   }
 
  private:
   using Particle = aos::Particle<Model>;
-  static_assert(std::is_trivially_copyable_v<Particle>);
 
   struct Head {
     std::uint64_t change;
@@ -70,17 +81,13 @@ class KeptBeliefs {
   // Far apart, in a file that takes memory only for what is written.
   off_t begin() const { return static_cast<off_t>(changes_ % 2) << 36; }
 
-  template <class Element>
-  static std::size_t bytes_of(const std::vector<Element>& elements) {
-    return elements.size() * sizeof(Element);
+  void pack(const void* from, std::size_t count) {
+    const auto* const bytes = static_cast<const std::byte*>(from);
+    packed_.insert(packed_.end(), bytes, bytes + count);
   }
-  template <class Element>
-  bool write_all(const std::vector<Element>& elements, std::size_t offset) const {
-    return write(elements.data(), bytes_of(elements), offset);
-  }
-  template <class Element>
-  bool read_all(std::vector<Element>& elements, std::size_t offset) const {
-    return read(elements.data(), bytes_of(elements), offset);
+  static const std::byte* unpack(const std::byte* from, void* to, std::size_t count) {
+    std::memcpy(to, from, count);
+    return from + count;
   }
 
   bool write(const void* bytes, std::size_t count, std::size_t offset) const {
@@ -112,6 +119,7 @@ class KeptBeliefs {
 
   int file_;
   std::uint64_t changes_ = 0;
+  std::vector<std::byte> packed_;  // a belief in the order of the file; its memory serves the next one
 };
 
 }  // namespace aos

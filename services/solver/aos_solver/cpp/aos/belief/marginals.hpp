@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -25,14 +26,13 @@ class Marginals {
 
   // The particles must outlive this.
   explicit Marginals(const std::vector<Particle<Model>>& particles) : particles_(particles) {
-    LeafNumbers leaves;
-    for (std::size_t number = 0; number < particles.size(); ++number) {
-      leaves.clear();
-      Model::visit_values(particles[number].state, leaves);
-      const std::vector<std::size_t>& variables = variables_of(leaves.shape, particles[number].state);
-      for (std::size_t leaf = 0; leaf < variables.size(); ++leaf) {
-        variables_[variables[leaf]].add({leaves.numbers[leaf], particles[number].weight, number, leaf});
-      }
+    if (particles.empty()) return;
+    const std::vector<std::byte> differences = differing_bits();
+    const StateLeaves leaves{particles.front().state};
+    if (leaves.hold_all_of(differences)) {
+      add_by_place(leaves.all, differences);
+    } else {
+      add_by_visit();
     }
   }
 
@@ -89,6 +89,73 @@ class Marginals {
     }
   };
 
+  // The single values of a state, where they stand.
+  struct StateLeaves final : ValueVisitor {
+    explicit StateLeaves(const State& state) : state(Model::bytes_of(state)) { Model::visit_values(state, *this); }
+    void leaf(const Leaf& leaf) override { all.push_back(leaf); }
+    std::size_t offset(const Leaf& leaf) const {
+      return static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) - state);
+    }
+
+    // Whether no byte differs outside of them: then all states have the same shape.
+    bool hold_all_of(const std::vector<std::byte>& differences) const {
+      std::vector<std::byte> outside = differences;
+      for (const Leaf& leaf : all) std::memset(outside.data() + offset(leaf), 0, leaf.size);
+      return std::all_of(outside.begin(), outside.end(), [](std::byte byte) { return byte == std::byte{0}; });
+    }
+
+    const std::byte* state;
+    std::vector<Leaf> all;
+  };
+
+  // The bits in which any state differs from the first one.
+  std::vector<std::byte> differing_bits() const {
+    std::vector<std::byte> differences(Model::state_bytes());
+    const std::byte* const first = Model::bytes_of(particles_.front().state);
+    for (const auto& particle : particles_) {
+      const std::byte* const other = Model::bytes_of(particle.state);
+      for (std::size_t i = 0; i < differences.size(); ++i) differences[i] |= first[i] ^ other[i];
+    }
+    return differences;
+  }
+
+  // In states of one shape a single value stands at one place. Most have one value in all of them.
+  void add_by_place(const std::vector<Leaf>& leaves, const std::vector<std::byte>& differences) {
+    const std::byte* const first = Model::bytes_of(particles_.front().state);
+    double total = 0;
+    for (const auto& particle : particles_) total += particle.weight;
+    variables_of(0, particles_.front().state);
+    std::vector<std::size_t> varied;
+    for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+      const auto* const bits = differences.data() + (static_cast<const std::byte*>(leaves[leaf].place) - first);
+      if (std::any_of(bits, bits + leaves[leaf].size, [](std::byte byte) { return byte != std::byte{0}; })) {
+        varied.push_back(leaf);
+      } else {
+        variables_[leaf].add({leaf_number(leaves[leaf]), total, 0, leaf});
+      }
+    }
+    for (std::size_t number = 0; number < particles_.size(); ++number) {
+      const std::byte* const state = Model::bytes_of(particles_[number].state);
+      for (const std::size_t leaf : varied) {
+        Leaf there = leaves[leaf];
+        there.place = state + (static_cast<const std::byte*>(there.place) - first);
+        variables_[leaf].add({leaf_number(there), particles_[number].weight, number, leaf});
+      }
+    }
+  }
+
+  void add_by_visit() {
+    LeafNumbers leaves;
+    for (std::size_t number = 0; number < particles_.size(); ++number) {
+      leaves.clear();
+      Model::visit_values(particles_[number].state, leaves);
+      const std::vector<std::size_t>& variables = variables_of(leaves.shape, particles_[number].state);
+      for (std::size_t leaf = 0; leaf < variables.size(); ++leaf) {
+        variables_[variables[leaf]].add({leaves.numbers[leaf], particles_[number].weight, number, leaf});
+      }
+    }
+  }
+
   // The variable of each leaf, for states of a shape.
   const std::vector<std::size_t>& variables_of(std::uint64_t shape, const State& state) {
     const auto [entry, is_new] = shapes_.try_emplace(shape);
@@ -129,11 +196,8 @@ class Marginals {
     });
     for (auto next = wanted.begin(); next != wanted.end();) {
       const std::size_t particle = next->particle;
-      std::size_t leaf = 0;
-      Model::visit(particles_[particle].state, [&](const std::string&, const Leaf& value) {
-        if (next != wanted.end() && next->particle == particle && next->leaf == leaf) *next++->text = leaf_text(value);
-        ++leaf;
-      });
+      const StateLeaves leaves{particles_[particle].state};
+      for (; next != wanted.end() && next->particle == particle; ++next) *next->text = leaf_text(leaves.all[next->leaf]);
     }
   }
 

@@ -24,15 +24,14 @@
 #include "aos/child/bad_command.hpp"
 #include "aos/child/left_out.hpp"
 #include "aos/child/listing.hpp"
+#include "aos/child/rates.hpp"
 #include "aos/child/reachability.hpp"
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/worlds.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/correction.hpp"
-#include "aos/model/walk.hpp"
 #include "aos/planning/exact.hpp"
 #include "aos/planning/planner.hpp"
-#include "aos/planning/table_walk.hpp"
 
 namespace aos {
 
@@ -41,7 +40,6 @@ class Engine {
  public:
   using State = typename Model::State;
   using Corrected = CorrectedModel<Model>;
-  static_assert(std::is_trivially_copyable_v<State>);
 
   // `kept_beliefs` is the path of the file for KeptBeliefs.
   Engine(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs)
@@ -273,46 +271,18 @@ class Engine {
     json.begin_object().member("state", Model::state_text(hidden_)).end_object();
   }
 
-  // Samples of (next state, observation, reward) for random actions, from initial states, by the documents' code: see
-  // walk.hpp.
+  // How fast planners step the model by the documents' code.
   void rate(JsonWriter& json, double seconds, std::uint64_t seed) const {
-    Sampler random{seed};
-    count_samples(json, seconds, [&](std::uint64_t steps) { return Model::walk(steps, random); });
+    write_rate(json, seconds, CodeSteps<Model>{seed});
   }
 
-  // The same by the table that POMCP steps a small model with; none of a model that has no table.
+  // The same by the table of a small model; none where there is no table.
   void rate_by_table(JsonWriter& json, double seconds, std::uint64_t seed) const {
-    Sampler random{seed};
-    const auto belief = Belief<Model>::initial(random);
-    StateSpace<Model> space;
-    StepTable<Model> table;
-    if (!space.reach(belief) || !table.prepare(space, belief)) return write_samples(json, Walked{}, 0, 0);
-    TableWalks<Model> walks{table, random};
-    count_samples(json, seconds, [&](std::uint64_t steps) { return walks.walk(steps, random); });
+    TableSteps<Model> steps{seed};
+    write_rate(json, steps.is_there() ? seconds : 0, steps);
   }
 
  private:
-  // By walks of more and more steps, for so long.
-  template <class Walk>
-  static void count_samples(JsonWriter& json, double seconds, Walk&& walk) {
-    const auto start = std::chrono::steady_clock::now();
-    const auto processor_start = processor_time();
-    std::chrono::duration<double> spent{};
-    Walked all;
-    for (std::uint64_t steps = 64; spent.count() < seconds; steps = std::min<std::uint64_t>(2 * steps, 1 << 16)) {
-      const Walked walked = walk(steps);
-      all.steps += walked.steps;
-      all.rewards += walked.rewards;
-      spent = std::chrono::steady_clock::now() - start;
-    }
-    write_samples(json, all, spent.count(), seconds_since(processor_start));
-  }
-  static void write_samples(JsonWriter& json, const Walked& walked, double seconds, double cpu_seconds) {
-    json.begin_object().member("samples", walked.steps).member("seconds", seconds).member("cpu_seconds", cpu_seconds);
-    const double mean = walked.steps > 0 ? walked.rewards / static_cast<double>(walked.steps) : 0;
-    json.member("mean_reward", mean).end_object();
-  }
-
   struct Thought {
     int action;
     Budget budget;

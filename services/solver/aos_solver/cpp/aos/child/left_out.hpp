@@ -24,7 +24,7 @@ class LeftOut {
 
   State rest_of(const State& state) const {
     State rest = state;
-    for (const Place& place : places_) copy_place(place, stand_in_, rest);
+    for (const Place& place : places_) copy_place<Model>(place, stand_in_, rest);
     return rest;
   }
 

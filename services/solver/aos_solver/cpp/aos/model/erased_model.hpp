@@ -11,21 +11,12 @@
 #include <vector>
 
 #include "aos/model/model_table.hpp"
+#include "aos/model/states.hpp"
 #include "aos/model/values.hpp"
-#include "aos/model/walk.hpp"
 
 namespace aos {
 
-// A state of up to `Size` bytes.
-template <std::size_t Size>
-struct ErasedState {
-  alignas(std::uint64_t) std::byte bytes[Size]{};
-
-  friend bool operator==(const ErasedState& left, const ErasedState& right) {
-    return compiled_model.equal(left.bytes, right.bytes);
-  }
-};
-
+// States have up to `Size` bytes, or any number where that is 0.
 template <std::size_t Size>
 struct ErasedModel {
   using State = ErasedState<Size>;
@@ -78,6 +69,10 @@ struct ErasedModel {
   }
   // How many bytes of a state the model uses; the others are 0.
   static std::size_t state_bytes() { return compiled_model.state_bytes; }
+  static const std::byte* bytes_of(const State& state) { return state.bytes; }
+  static std::byte* bytes_of(State& state) { return state.bytes; }
+  // How many bytes a state takes beside those of the object.
+  static std::size_t bytes_elsewhere() { return Size == 0 ? state_bytes() : 0; }
   // Where the state's single values stand, in the order of `visit`.
   static std::vector<Place> places(const State& state) {
     return places_in(state.bytes, [&](ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); });
@@ -105,16 +100,6 @@ struct ErasedModel {
   // With which probability it takes each action first, into `odds`.
   static void rollout_odds(const State& state, double* odds, Sampler& random) {
     compiled_model.rollout_odds(state.bytes, odds, action_count(), random);
-  }
-  // The same action in each of so many states; the sum of the rewards.
-  static double step_all(int action, int count, auto&& state_at, Sampler& random) {
-    double rewards = 0;
-    for (int place = 0; place < count; ++place) rewards += step(state_at(place), action, random).reward;
-    return rewards;
-  }
-  // Many steps in one call, or one by one where the model is built quickly: see walk.hpp.
-  static Walked walk(std::uint64_t steps, Sampler& random) {
-    return compiled_model.walk != nullptr ? compiled_model.walk(steps, random) : aos::walk<ErasedModel>(steps, random);
   }
 
  private:

@@ -19,7 +19,6 @@
 #include "aos/model/rollout.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/step.hpp"
-#include "aos/model/walk.hpp"
 
 namespace aos {
 
@@ -69,7 +68,6 @@ struct ModelTable {
   bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
   double (*rollout)(const void* state, int horizon, Sampler& random);
   void (*rollout_odds)(const void* state, double* odds, int count, Sampler& random);
-  Walked (*walk)(std::uint64_t steps, Sampler& random);  // null in a quick build
 };
 
 // The model that this executable is linked with.
@@ -100,20 +98,6 @@ constexpr DrawingFunctions<Random> drawing_functions() {
             }
           },
   };
-}
-
-// Rates are measured in thorough builds.
-template <class Model>
-constexpr auto walk_function() -> Walked (*)(std::uint64_t steps, Sampler& random) {
-  if constexpr (is_quick_build) {
-    return nullptr;
-  } else {
-    return [](std::uint64_t steps, Sampler& random) {
-      const Walked walked = aos::walk<Model>(steps, random);
-      blame::over();
-      return walked;
-    };
-  }
 }
 
 template <class Model>
@@ -169,7 +153,6 @@ constexpr ModelTable table_of() {
             aos::rollout_odds<Model>(*static_cast<const State*>(state), odds, count, random);
             blame::over();
           },
-      .walk = walk_function<Model>(),
   };
 }
 

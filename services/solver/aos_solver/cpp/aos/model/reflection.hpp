@@ -2,14 +2,16 @@
 // states list their members in `__fields`, enums have a `name_of`, both emitted.
 //
 // A type is visited by one small function. All that is made of values (text, JSON, places) is compiled once, with the
-// engine: values.hpp, value_text.hpp.
+// engine: values.hpp, value_text.hpp. The variables of a state, which may be thousands, are data: see Member.
 #pragma once
 
 #include <bit>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -29,6 +31,8 @@ struct ByteRange {
 
 template <class T>
 concept Compound = requires(const T& value) { T::__fields(value, [](const char*, const auto&) {}); };
+template <class T>
+concept Listed = requires { T::__members(); };
 template <class T>
 concept Sequence = requires(const T& value) {
   typename T::value_type;
@@ -104,9 +108,25 @@ class ValueVisitor {
   ~ValueVisitor() = default;
 };
 
+class StateReader;
+
+// A variable of a state: its name, its place, and what can be done with its type.
+struct Member {
+  const char* name;
+  std::size_t offset;    // within the state
+  const void* constant;  // the variable itself where no state holds it
+  void (*visit)(const void* variable, ValueVisitor& visitor);
+  void (*read)(void* variable, StateReader& text);
+};
+
+// Visits the members of a state.
+void visit_members(const void* state, std::span<const Member> members, ValueVisitor& visitor);
+
 template <class T>
 void visit_value(const T& value, ValueVisitor& visitor) {
-  if constexpr (Compound<T>) {
+  if constexpr (Listed<T>) {
+    visit_members(&value, T::__members(), visitor);
+  } else if constexpr (Compound<T>) {
     visitor.begin_compound();
     T::__fields(value, [&](const char* name, const auto& member) {
       visitor.member(name);
@@ -169,10 +189,30 @@ inline std::uint64_t mixed(std::uint64_t hash, std::uint64_t more) {
   return hash ^ (hash >> 32);
 }
 
+// Of so many bytes; out of line, since a state may have many arrays.
+[[gnu::noinline]] inline std::uint64_t hashed_bytes(std::uint64_t hash, const void* bytes, std::size_t size) {
+  const auto* next = static_cast<const char*>(bytes);
+  std::uint64_t word = 0;
+  for (; size >= sizeof word; size -= sizeof word, next += sizeof word) {
+    std::memcpy(&word, next, sizeof word);
+    hash = mixed(hash, word);
+  }
+  word = 0;
+  std::memcpy(&word, next, size);
+  return size > 0 ? mixed(hash, word) : hash;
+}
+
+// Whether equal values are equal byte for byte, and stand one after another.
+template <class T>
+concept PlainSequence = Sequence<T> && requires(const T& value) { value.data(); } &&
+                        std::has_unique_object_representations_v<typename T::value_type>;
+
 // A hash that agrees with `==`: 0.0 and -0.0 are one, unused storage does not count.
 template <class T>
 std::uint64_t hashed(std::uint64_t hash, const T& value) {
-  if constexpr (Compound<T>) {
+  if constexpr (PlainSequence<T>) {
+    return hashed_bytes(mixed(hash, value.size()), value.data(), value.size() * sizeof(typename T::value_type));
+  } else if constexpr (Compound<T>) {
     T::__fields(value, [&](const char*, const auto& member) { hash = hashed(hash, member); });
     return hash;
   } else if constexpr (Mapping<T>) {

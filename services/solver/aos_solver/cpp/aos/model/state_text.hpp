@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -72,25 +73,22 @@ class StateReader {
   std::string_view rest_;
 };
 
-// A variable of any type that lives as long as this is used.
-class AnyVariable {
- public:
-  template <class T>
-  AnyVariable(T& variable)
-      : place_(const_cast<std::remove_const_t<T>*>(&variable)), is_constant_(std::is_const_v<T>), read_(read_as<T>) {}
-  bool is_constant() const { return is_constant_; }
-  void read(StateReader& text) const { read_(place_, text); }
-
- private:
-  template <class T>
-  static void read_as(void* variable, StateReader& text) {
-    text.read(*static_cast<T*>(variable));
-  }
-
-  void* place_;
-  bool is_constant_;
-  void (*read_)(void* variable, StateReader& text);
-};
+// A variable that states of type `State` hold.
+template <class T>
+constexpr Member member_at(const char* name, std::size_t offset) {
+  return {name, offset, nullptr, [](const void* variable, ValueVisitor& visitor) {
+            visit_value(*static_cast<const T*>(variable), visitor);
+          },
+          [](void* variable, StateReader& text) { text.read(*static_cast<T*>(variable)); }};
+}
+// One that is a constant.
+template <class T>
+constexpr Member constant_member(const char* name, const T& constant) {
+  Member member = member_at<T>(name, 0);
+  member.constant = &constant;
+  member.read = [](void* variable, StateReader& text) { text.read(*static_cast<const T*>(variable)); };
+  return member;
+}
 
 // The variables that are constants where states are saved, by name: what need not be saved with each of them.
 class SavedConstants {
@@ -99,8 +97,10 @@ class SavedConstants {
   void add_text(std::string_view name, std::string_view text);
   const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
 
-  // The value of a variable from here if it was a constant, or else from the rest of a saved state.
-  void read(std::string_view name, const AnyVariable& variable, StateReader& state) const;
+  // The value of a state's variable from here if it was a constant, or else from the rest of a saved state.
+  void read(const Member& member, void* state, StateReader& text) const;
+  // Of all variables.
+  void read_all(std::span<const Member> members, void* state, StateReader& text) const;
 
  private:
   const std::string* find(std::string_view name) const;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -43,6 +44,15 @@ std::string leaves_text(AnyValue value) {
   NamedLeavesCall visitor{add};
   value.visit(visitor);
   return text;
+}
+
+void visit_members(const void* state, std::span<const Member> members, ValueVisitor& visitor) {
+  visitor.begin_compound();
+  for (const Member& member : members) {
+    visitor.member(member.name);
+    member.visit(static_cast<const std::byte*>(state) + member.offset, visitor);
+  }
+  visitor.end();
 }
 
 // Compounds as `{x=1, y=2}`, sequences as `[1, 2]`.
@@ -206,13 +216,19 @@ void SavedConstants::add(std::string_view name, AnyValue value) {
 
 void SavedConstants::add_text(std::string_view name, std::string_view text) { texts_.emplace_back(name, text); }
 
-void SavedConstants::read(std::string_view name, const AnyVariable& variable, StateReader& state) const {
-  const std::string* const constant = find(name);
-  if (constant == nullptr) return variable.read(state);
-  if (variable.is_constant()) return;
-  StateReader text{*constant};
-  variable.read(text);
-  text.finish();
+void SavedConstants::read(const Member& member, void* state, StateReader& text) const {
+  const bool is_constant = member.constant != nullptr;
+  void* const variable = is_constant ? const_cast<void*>(member.constant) : static_cast<std::byte*>(state) + member.offset;
+  const std::string* const known = find(member.name);
+  if (known == nullptr) return member.read(variable, text);
+  if (is_constant) return;
+  StateReader value{*known};
+  member.read(variable, value);
+  value.finish();
+}
+
+void SavedConstants::read_all(std::span<const Member> members, void* state, StateReader& text) const {
+  for (const Member& member : members) read(member, state, text);
 }
 
 const std::string* SavedConstants::find(std::string_view name) const {

@@ -95,8 +95,21 @@ class NamedLeavesCall final : public NamedLeaves {
   Use& use_;
 };
 
-// Single values as numbers, in their order: equal values have equal numbers. Values of the same shape have the same leaves,
-// by name.
+// A single value as a number: equal values have equal numbers.
+inline std::uint64_t leaf_number(const Leaf& leaf) {
+  if (is_text(leaf)) return std::hash<std::string_view>{}(characters_of(leaf));
+  std::uint64_t bits = 0;
+  with_number(leaf, [&](auto number) {
+    if constexpr (std::is_floating_point_v<decltype(number)>) {
+      bits = std::bit_cast<std::uint64_t>(double{number});
+    } else {
+      bits = static_cast<std::uint64_t>(number);
+    }
+  });
+  return bits;
+}
+
+// Single values as numbers, in their order. Values of the same shape have the same leaves, by name.
 struct LeafNumbers final : ValueVisitor {
   std::vector<std::uint64_t> numbers;
   std::uint64_t shape = 0;
@@ -106,16 +119,7 @@ struct LeafNumbers final : ValueVisitor {
     shape = 0;
   }
 
-  void leaf(const Leaf& leaf) override {
-    if (is_text(leaf)) return numbers.push_back(std::hash<std::string_view>{}(characters_of(leaf)));
-    with_number(leaf, [&](auto number) {
-      if constexpr (std::is_floating_point_v<decltype(number)>) {
-        numbers.push_back(std::bit_cast<std::uint64_t>(double{number}));
-      } else {
-        numbers.push_back(static_cast<std::uint64_t>(number));
-      }
-    });
-  }
+  void leaf(const Leaf& leaf) override { numbers.push_back(leaf_number(leaf)); }
   void begin_sequence(std::size_t size) override { shape = mixed(shape, size); }
 };
 
@@ -128,10 +132,9 @@ struct Place {
 };
 
 // Gives a state what stands at a place of another one.
-template <class State>
-void copy_place(const Place& place, const State& from, State& to) {
-  std::memcpy(reinterpret_cast<std::byte*>(&to) + place.offset,
-              reinterpret_cast<const std::byte*>(&from) + place.offset, place.size);
+template <class Model>
+void copy_place(const Place& place, const typename Model::State& from, typename Model::State& to) {
+  std::memcpy(Model::bytes_of(to) + place.offset, Model::bytes_of(from) + place.offset, place.size);
 }
 
 // The places of a state, without overlap; it is visited by `visit(visitor)`.

@@ -47,7 +47,7 @@ class Despot {
       : evaluation_(values),
         nodes_(most_node_bytes / sizeof(Node)),
         actions_(most_node_bytes / sizeof(ActionNode)),
-        scenarios_(most_scenario_bytes / sizeof(Scenario<Model>)) {}
+        scenarios_(most_scenario_bytes / scenario_bytes()) {}
 
   // Runs the search and returns how many simulations it took: a simulation is a step of a scenario with the evaluation of
   // what it leads to.
@@ -89,6 +89,7 @@ class Despot {
   void forget() {}
 
  private:
+  static std::size_t scenario_bytes() { return sizeof(Scenario<Model>) + Model::bytes_elsewhere(); }
   using Evaluation = ScenarioEvaluation<Model>;
 
   struct Node {
@@ -160,7 +161,7 @@ class Despot {
       share = share_of_first_look * budget_.seconds / (seconds * action_count() * most_evaluated);
     }
     const auto affordable = static_cast<std::size_t>(std::min(share, 1.0) * most_scenarios);
-    const std::size_t room = std::min(most_node_bytes / sizeof(Node), most_scenario_bytes / sizeof(Scenario<Model>));
+    const std::size_t room = std::min(most_node_bytes / sizeof(Node), most_scenario_bytes / scenario_bytes());
     return std::clamp(room / (2 * action_count()), std::size_t{1}, std::max(affordable, fewest_scenarios));
   }
 

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -24,8 +23,7 @@ class StateNumbers {
  public:
   using State = typename Model::State;
 
-  StateNumbers() {
-    mask_.fill(~std::uint64_t{0});
+  StateNumbers() : mask_(words(), ~std::uint64_t{0}), is_hashed_(words()) {
     for (const ByteRange& range : Model::irrelevant()) {
       std::memset(reinterpret_cast<std::byte*>(mask_.data()) + range.offset, 0, range.size);
     }
@@ -52,25 +50,24 @@ class StateNumbers {
   }
 
  private:
-  static constexpr std::size_t words = (sizeof(State) + 7) / 8;
-  static std::size_t words_in_use() { return (Model::state_bytes() + 7) / 8; }
+  static std::size_t words() { return (Model::state_bytes() + 7) / 8; }
 
   std::uint64_t word_of(const State& state, std::size_t word) const {
     std::uint64_t value = 0;
-    std::memcpy(&value, reinterpret_cast<const std::byte*>(&state) + 8 * word, std::min<std::size_t>(8, sizeof(State) - 8 * word));
+    std::memcpy(&value, Model::bytes_of(state) + 8 * word, std::min<std::size_t>(8, Model::state_bytes() - 8 * word));
     return value & mask_[word];
   }
 
   // Whether a state has what all have had so far, in the words that are not hashed.
   bool agrees_elsewhere(const State& state) const {
     std::uint64_t difference = 0;
-    for (std::size_t word = 0; word < words_in_use(); ++word) {
+    for (std::size_t word = 0; word < words(); ++word) {
       if (!is_hashed_[word]) difference |= word_of(state, word) ^ word_of(states_.front(), word);
     }
     return difference == 0;
   }
   void tell_apart_by_more(const State& state) {
-    for (std::size_t word = 0; word < words_in_use(); ++word) {
+    for (std::size_t word = 0; word < words(); ++word) {
       if (is_hashed_[word] || word_of(state, word) == word_of(states_.front(), word)) continue;
       is_hashed_[word] = true;
       hashed_.push_back(word);
@@ -98,8 +95,8 @@ class StateNumbers {
     }
   }
 
-  std::array<std::uint64_t, words> mask_;
-  std::array<bool, words> is_hashed_{};
+  std::vector<std::uint64_t> mask_;
+  std::vector<bool> is_hashed_;
   std::vector<std::size_t> hashed_;  // words in which any two states differ
   std::vector<State> states_;
   std::vector<std::uint32_t> numbers_;
