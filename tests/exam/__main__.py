@@ -3,17 +3,20 @@
   python -m tests.exam bounds --models 1000 --jobs 2
   python -m tests.exam regret --models 60 --seconds 0.1 --planner auto --planner look-ahead
   python -m tests.exam regret --needles --models 20
+  python -m tests.exam documents --models 40 --texts 2000
   python -m tests.exam show corridor/17
 
 A problem is named by its family and its seed, FAMILY/SEED, or FAMILY+/SEED where it is large, and is always the
 same under its name. `bounds` counts false claims; each is printed with its problem, and with `--dump DIR` the problem
 is written there. `regret` tells per family what planners lose against the optimum, in percent of the range between
-random actions and the optimum. Exit code 1: a claim was false, or a target was missed.
+random actions and the optimum. `documents` compiles bundles in which a value goes from one variable to the next
+by idioms of C++, and also looks only for variables that are wrongly left out, in `--texts` more. Exit code 1: a claim was false, or a target was missed.
 """
 
 from __future__ import annotations
 
 import argparse
+import asyncio
 import json
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -21,12 +24,14 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
+from .compiled import examined, left_out
+from .documents import Documents, documents
 from .driver import Driver, built_driver
 from .families import FAMILIES, NEEDLES
 from .generation import named_problem, problems
 from .pomdp_file import pomdp_text
 from .problem import Problem
-from .summary import Bounds, Regrets
+from .summary import WORST_TARGET, Bounds, Regrets
 
 CACHE = Path.home() / ".cache" / "aos-exam"
 
@@ -58,6 +63,13 @@ def main() -> int:
             command.add_argument("--planner", action="append", help="auto, pomcp, despot, sarsop, look-ahead")
             command.add_argument("--seconds", type=float, help="of processor time for a decision; 0.1")
             command.add_argument("--missions", type=int, default=4, metavar="N", help="of each model")
+    command = commands.add_parser("documents", help="bundles of documents, compiled")
+    command.add_argument("--models", type=int, default=40, metavar="N")
+    command.add_argument("--seed", type=int, default=1, help="of the first bundle")
+    command.add_argument("--planner", default="auto")
+    command.add_argument("--simulations", type=int, default=2000, metavar="N")
+    command.add_argument("--dump", type=Path, metavar="DIR", help="where false bundles are written")
+    command.add_argument("--texts", type=int, default=0, metavar="N", help="so many more, not compiled")
     show = commands.add_parser("show", help="print a problem as .pomdp")
     show.add_argument("problem")
     show.add_argument("--max-states", type=int, default=200)
@@ -65,14 +77,62 @@ def main() -> int:
     if arguments.command == "show":
         print(pomdp_text(named_problem(arguments.problem, 1_000_000)))
         return 0
+    if arguments.command == "documents":
+        return asyncio.run(_documents(arguments))
     return _examine(arguments)
+
+
+async def _documents(arguments: argparse.Namespace) -> int:
+    truth = Driver(await built_driver(CACHE), "values", {}, patience_s=60)
+    wrong = 0
+    decisions, worst = 0, 0.0
+    try:
+        for seed in range(arguments.seed, arguments.seed + arguments.models):
+            bundle = documents(seed)
+            found = await examined(bundle, truth, CACHE, arguments.planner, arguments.simulations)
+            decisions += found.decisions
+            worst = max(worst, found.worst)
+            if found.false:
+                wrong += 1
+                _clear_line()
+                print(f"{found.name} ({', '.join(found.idioms)})", *found.false[:3], sep="\n  ", flush=True)
+                _write_bundle(arguments.dump, bundle)
+            _tell_progress(f"{seed - arguments.seed + 1}/{arguments.models} {wrong} wrong")
+    finally:
+        _clear_line()
+        truth.close()
+    after = arguments.seed + arguments.models
+    texts = [documents(seed) for seed in range(after, after + arguments.texts)]
+    misread = [bundle for bundle in texts if left_out(bundle)]
+    for bundle in misread:
+        print(f"{bundle.name} ({', '.join(bundle.idioms)}): left out, but they matter: {', '.join(left_out(bundle))}")
+        _write_bundle(arguments.dump, bundle)
+    print(
+        f"{arguments.models} bundles compiled, {wrong} with mistakes; {decisions} decisions, the worst loses "
+        f"{worst:.1f} % of what actions differ by; {len(texts)} more read, {len(misread)} with mistakes"
+    )
+    return 1 if wrong or misread or worst > 100 * WORST_TARGET else 0
+
+
+def _write_bundle(directory: Path | None, bundle: Documents) -> None:
+    if directory is None:
+        return
+    folder = directory / bundle.name.replace("/", "-")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in bundle.files.items():
+        (folder / name).write_text(text)
+
+
+def _tell_progress(text: str) -> None:
+    if sys.stderr.isatty():
+        print(f"\r{text}\033[K", end="", file=sys.stderr, flush=True)
 
 
 def _examine(arguments: argparse.Namespace) -> int:
     summary: Bounds | Regrets = Bounds() if arguments.command == "bounds" else Regrets()
     options = _options(arguments)
     drivers: SimpleQueue[Driver] = SimpleQueue()
-    executable = built_driver(CACHE)
+    executable = asyncio.run(built_driver(CACHE))
     for _ in range(arguments.jobs):
         drivers.put(Driver(executable, arguments.command, options, patience_s=600))
     all_problems = _problems(arguments)
@@ -95,8 +155,7 @@ def _examine(arguments: argparse.Namespace) -> int:
                     print(summary.told(problem, answer), flush=True)
                 if is_false and arguments.dump:
                     _dump(arguments.dump, problem, answer)
-                if sys.stderr.isatty():
-                    print(f"\r{done}/{len(all_problems)} {summary.line()}\033[K", end="", file=sys.stderr)
+                _tell_progress(f"{done}/{len(all_problems)} {summary.line()}")
     finally:
         _clear_line()
         while not drivers.empty():

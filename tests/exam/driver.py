@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import os
 import subprocess
@@ -22,12 +21,8 @@ __all__ = ["Driver", "built_driver"]
 _CPP = Path(__file__).parent / "cpp"
 
 
-def built_driver(cache_dir: Path) -> Path:
+async def built_driver(cache_dir: Path) -> Path:
     """The executable, from the cache or compiled now, which takes about a minute."""
-    return asyncio.run(_built(cache_dir))
-
-
-async def _built(cache_dir: Path) -> Path:
     compiler = await find_compiler()
     sources = [*sorted(_CPP.glob("*")), *sorted(SOURCES.rglob("*.[ch]pp"))]
     name = f"exam-{digest_of([compiler.version, *(path.read_text() for path in sources)])}"

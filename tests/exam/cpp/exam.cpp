@@ -10,6 +10,7 @@
 #include "aos/model/support.hpp"
 #include "claims.hpp"
 #include "regret.hpp"
+#include "truth.hpp"
 
 namespace {
 
@@ -20,7 +21,23 @@ double number_of(const Options& options, const std::string& name, double otherwi
   return found != options.end() ? std::atof(found->second.c_str()) : otherwise;
 }
 
+// The true values of the actions at the start, with a horizon's decisions to go, as brackets.
+std::string values_of(const exam::Problem& problem, double seconds) {
+  const exam::Flat flat{problem};
+  exam::Truth truth{flat, problem.horizon};
+  const auto [start, running] = flat.start();
+  aos::JsonWriter json;
+  json.begin_object().member("problem", problem.name).key("values").begin_array();
+  for (std::size_t action = 0; action < problem.actions; ++action) {
+    truth.narrow_action(start, action, problem.horizon, 1e-9 * flat.largest_reward(), seconds);
+    const exam::Bracket value = truth.action_value(start, action, problem.horizon);
+    json.begin_array().value(running * value.lower).value(running * value.upper).end_array();
+  }
+  return json.end_array().end_object().text();
+}
+
 std::string report_of(const std::string& what, const exam::Problem& problem, const Options& options) {
+  if (what == "values") return values_of(problem, number_of(options, "truth", 1));
   if (what == "bounds") {
     exam::ClaimOptions claims;
     claims.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
@@ -51,8 +68,8 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   Options options;
   for (int i = 2; i + 1 < argc; i += 2) options[argv[i]] = argv[i + 1];
-  if (what != "bounds" && what != "regret") {
-    std::fprintf(stderr, "usage: %s bounds|regret [NAME VALUE]... < PROBLEMS\n", argv[0]);
+  if (what != "bounds" && what != "regret" && what != "values") {
+    std::fprintf(stderr, "usage: %s bounds|regret|values [NAME VALUE]... < PROBLEMS\n", argv[0]);
     return 2;
   }
   try {
