@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <optional>
 #include <regex>
 #include <string>
 #include <utility>
@@ -50,7 +49,6 @@ class Claims {
     Belief belief = Belief::initial(random_);
     Mass exact = start;
     double known_running = running;
-    if (problem_.discount < 1) without_end_.emplace(flat_, 0);
     Planner automatic;
     Planner point_based;
     start_numbers(start);
@@ -59,7 +57,7 @@ class Claims {
       check_belief(belief, exact, known_running);
       check_exact_values(belief, exact, known_running);
       check_planner(aos::PlannerKind::automatic, automatic, belief, exact, known_running);
-      if (problem_.discount < 1) check_planner(aos::PlannerKind::sarsop, point_based, belief, exact, known_running);
+      check_planner(aos::PlannerKind::sarsop, point_based, belief, exact, known_running);
       check_numbers(exact);
       if (step == options_.steps) break;
       const int action = random_.below(TableModel::action_count());
@@ -137,7 +135,7 @@ class Claims {
 
   void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact, double running,
                            int decisions) {
-    Truth& truth = with_end_.try_emplace(decisions, flat_, decisions).first->second;
+    Truth& truth = truth_of(decisions);
     for (std::size_t i = 0; i < std::min(values.size(), most_actions); ++i) {
       const std::size_t action = values.size() <= most_actions ? i : choosing_.bits() % values.size();
       within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4); });
@@ -156,12 +154,13 @@ class Claims {
     who_ = asked + " (" + planner.name() + ")";
     planners_[planner.name()] += 1;
     const std::string& why = planner.why();
-    static const std::regex worth{"worth between (-?[0-9.e+-]+) and (-?[0-9.e+-]+)"};
+    static const std::regex worth{"(?:with ([0-9]+) decisions to go|without a horizon) the belief is worth between (-?[0-9.e+-]+) and (-?[0-9.e+-]+)"};
     static const std::regex listed{"([0-9]+) states can be listed"};
     std::smatch found;
-    if (std::regex_search(why, found, worth) && without_end_) {
-      check_bounds(std::stod(found[1]), std::stod(found[2]), exact, running, why);
-      if (planner.name() == std::string{"sarsop"}) check_lower_values(planner.estimates(belief), exact, running);
+    if (std::regex_search(why, found, worth)) {
+      const int decisions = found[1].matched ? std::stoi(found[1]) : 0;
+      check_bounds(std::stod(found[2]), std::stod(found[3]), exact, running, decisions, why);
+      if (planner.name() == std::string{"sarsop"}) check_lower_values(planner.estimates(belief), exact, running, decisions);
     }
     if (std::regex_search(why, found, listed)) check_states(std::stoul(found[1]), exact, why);
     if (planner.name() == std::string{"exact"}) {
@@ -172,10 +171,15 @@ class Claims {
     who_.clear();
   }
 
+  // The truth with so many decisions to go; 0 counts none.
+  Truth& truth_of(int decisions) { return truths_.try_emplace(decisions, flat_, decisions).first->second; }
+
   // Of a belief of which `running` has not ended; the rest is worth nothing.
-  void check_bounds(double lower, double upper, const Mass& exact, double running, const std::string& why) {
-    within_allowance([&](double seconds) { without_end_->narrow(exact, 0, 1e-7 * largest_, seconds / 2); });
-    Bracket bracket = without_end_->value(exact, 0);
+  void check_bounds(double lower, double upper, const Mass& exact, double running, int decisions, const std::string& why) {
+    if (decisions == 0 && problem_.discount >= 1) return fail("bounds without an end", why, -INFINITY, INFINITY);
+    Truth& truth = truth_of(decisions);
+    within_allowance([&](double seconds) { truth.narrow(exact, decisions, 1e-7 * largest_, seconds / 2); });
+    Bracket bracket = truth.value(exact, decisions);
     bracket = {running * bracket.lower, running * bracket.upper};
     widest_ = std::max(widest_, bracket.gap() / largest_);
     const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
@@ -191,12 +195,14 @@ class Claims {
   }
 
   // Of point-based search: what each action is worth at least.
-  void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running) {
+  void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running,
+                          int decisions) {
+    Truth& truth = truth_of(decisions);
     for (std::size_t i = 0; i < std::min(estimates.size(), most_actions); ++i) {
       const std::size_t action = estimates.size() <= most_actions ? i : choosing_.bits() % estimates.size();
       if (estimates[action].n == 0) continue;
-      within_allowance([&](double seconds) { without_end_->narrow_action(exact, action, 0, 1e-6 * largest_, seconds / 4); });
-      const double upper = running * without_end_->action_value(exact, action, 0).upper;
+      within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-6 * largest_, seconds / 4); });
+      const double upper = running * truth.action_value(exact, action, decisions).upper;
       ++claims_;
       if (estimates[action].q > upper + 1e-8 * (largest_ + std::abs(upper))) {
         fail("lower value of action " + std::to_string(action), number(estimates[action].q), -INFINITY, upper);
@@ -265,7 +271,7 @@ class Claims {
     if (numbers_->move_to({exact.begin(), exact.end()})) {
       numbers_->improve(options_.simulations, [] { return false; });
       const auto [lower, upper] = numbers_->bounds();
-      check_bounds(lower, upper, exact, 1, "between " + number(lower) + " and " + number(upper));
+      check_bounds(lower, upper, exact, 1, 0, "between " + number(lower) + " and " + number(upper));
     }
     who_.clear();
   }
@@ -307,8 +313,7 @@ class Claims {
   aos::Sampler choosing_{1};  // what is looked at where not all can be
   double largest_ = 0;
   double allowance_ = options_.truth_seconds;
-  std::optional<Truth> without_end_;
-  std::map<int, Truth> with_end_;  // by decisions
+  std::map<int, Truth> truths_;  // by decisions; 0 counts none
   std::unique_ptr<aos::point_based::OnlineSarsop> numbers_;
   int claims_ = 0;
   double widest_ = 0;
