@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <regex>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -136,8 +137,8 @@ class Claims {
   void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact, double running,
                            int decisions) {
     Truth& truth = truth_of(decisions);
-    for (std::size_t i = 0; i < std::min(values.size(), most_actions); ++i) {
-      const std::size_t action = values.size() <= most_actions ? i : choosing_.bits() % values.size();
+    for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
+      const std::size_t action = values.size() <= max_actions ? i : choosing_.bits() % values.size();
       within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4); });
       const Bracket bracket = truth.action_value(exact, action, decisions);
       check_within(claim + std::to_string(action), values[action], {running * bracket.lower, running * bracket.upper},
@@ -198,8 +199,8 @@ class Claims {
   void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running,
                           int decisions) {
     Truth& truth = truth_of(decisions);
-    for (std::size_t i = 0; i < std::min(estimates.size(), most_actions); ++i) {
-      const std::size_t action = estimates.size() <= most_actions ? i : choosing_.bits() % estimates.size();
+    for (std::size_t i = 0; i < std::min(estimates.size(), max_actions); ++i) {
+      const std::size_t action = estimates.size() <= max_actions ? i : choosing_.bits() % estimates.size();
       if (estimates[action].n == 0) continue;
       within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-6 * largest_, seconds / 4); });
       const double upper = running * truth.action_value(exact, action, decisions).upper;
@@ -226,7 +227,6 @@ class Claims {
 
   // Point-based search on the tables themselves, without the engine's way to them.
   void start_numbers(const Mass& start) {
-    if (problem_.discount >= 1) return;
     aos::point_based::FlatModel model;
     model.states = flat_.states();
     model.actions = flat_.actions();
@@ -262,16 +262,36 @@ class Claims {
     }
     model.observations = observations.size();
     model.starts.push_back({1, {start.begin(), start.end()}});
-    numbers_ = std::make_unique<aos::point_based::OnlineSarsop>(std::move(model));
+    for (const int decisions : {0, problem_.horizon}) {
+      if (decisions == 0 && problem_.discount >= 1) continue;
+      model.horizon = static_cast<std::size_t>(decisions);
+      try {
+        numbers_[decisions] = std::make_unique<aos::point_based::OnlineSarsop>(model);
+      } catch (const std::length_error&) {
+        continue;
+      }
+    }
   }
 
   void check_numbers(const Mass& exact) {
-    if (!numbers_) return;
-    who_ = "point-based search on the tables";
-    if (numbers_->move_to({exact.begin(), exact.end()})) {
-      numbers_->improve(options_.simulations, [] { return false; });
-      const auto [lower, upper] = numbers_->bounds();
-      check_bounds(lower, upper, exact, 1, 0, "between " + number(lower) + " and " + number(upper));
+    for (const auto& [decisions, search] : numbers_) {
+      who_ = decisions > 0 ? "point-based search on the tables" : "point-based search on the tables, without an end";
+      if (!search->move_to({exact.begin(), exact.end()})) continue;
+      search->improve(1000 * options_.simulations, [] { return false; });
+      const auto [lower, upper] = search->bounds();
+      check_bounds(lower, upper, exact, 1, decisions, "between " + number(lower) + " and " + number(upper));
+      const auto actions = search->action_bounds();
+      Truth& truth = truth_of(decisions);
+      for (std::size_t i = 0; i < std::min(actions.size(), max_actions); ++i) {
+        const std::size_t action = actions.size() <= max_actions ? i : choosing_.bits() % actions.size();
+        const Bracket bracket = truth.action_value(exact, action, decisions);
+        const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
+        ++claims_;
+        if (actions[action].lower > bracket.upper + rounding || actions[action].upper < bracket.lower - rounding) {
+          fail("bounds of action " + std::to_string(action),
+               number(actions[action].lower) + " to " + number(actions[action].upper), bracket.lower, bracket.upper);
+        }
+      }
     }
     who_.clear();
   }
@@ -304,7 +324,7 @@ class Claims {
     return json.text();
   }
 
-  static constexpr std::size_t most_actions = 6;  // that are looked at where there are many
+  static constexpr std::size_t max_actions = 6;  // that are looked at where there are many
 
   const Problem& problem_;
   ClaimOptions options_;
@@ -314,7 +334,7 @@ class Claims {
   double largest_ = 0;
   double allowance_ = options_.truth_seconds;
   std::map<int, Truth> truths_;  // by decisions; 0 counts none
-  std::unique_ptr<aos::point_based::OnlineSarsop> numbers_;
+  std::map<int, std::unique_ptr<aos::point_based::OnlineSarsop>> numbers_;  // by decisions; 0 counts none
   int claims_ = 0;
   double widest_ = 0;
   std::map<std::string, int> planners_;

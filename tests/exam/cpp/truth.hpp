@@ -61,7 +61,7 @@ class Truth {
     while (value(belief, left).gap() > gap) {
       if (processor_seconds() > latest) return false;
       trial(belief, left, gap);
-      if (std::all_of(layers_.begin(), layers_.end(), [](const Layer& layer) { return layer.alphas.size() < most_alphas; })) {
+      if (std::all_of(layers_.begin(), layers_.end(), [](const Layer& layer) { return layer.alphas.size() < max_alphas; })) {
         continue;
       }
       return false;
@@ -82,7 +82,7 @@ class Truth {
   }
 
  private:
-  static constexpr std::size_t most_alphas = 4000;
+  static constexpr std::size_t max_alphas = 4000;
 
   struct Point {
     Mass belief;
@@ -154,8 +154,8 @@ class Truth {
     std::vector<Met> path;
     Mass belief = from;
     double allowed = gap;
-    const std::size_t most_depth = has_end() ? static_cast<std::size_t>(left) : 400;
-    while (path.size() < most_depth && value(belief, left).gap() > allowed) {
+    const std::size_t max_depth = has_end() ? static_cast<std::size_t>(left) : 400;
+    while (path.size() < max_depth && value(belief, left).gap() > allowed) {
       path.push_back({belief, left});
       double best = -std::numeric_limits<double>::infinity();
       std::vector<Reached> chosen;
