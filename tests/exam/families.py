@@ -27,7 +27,7 @@ def _scale(random: Random) -> float:
     return random.choice((0.01, 0.1, 1, 1, 1, 10, 100))
 
 
-def _noisy(random: Random, right: int, count: int, accuracy: float) -> Seen:
+def _noisy(right: int, count: int, accuracy: float) -> Seen:
     """`right` with this probability, else any other observation."""
     if count == 1 or accuracy >= 1:
         return right
@@ -97,11 +97,7 @@ def corridor(random: Random, large: bool) -> World:
         found = []
         for odds, place in ((1 - slip, after), (slip, state[0])):
             is_there = place == goal and way == 1
-            seen = (
-                _noisy(random, place, cells, accuracy)
-                if accuracy in (0, 1)
-                else _edge(place, cells, accuracy)
-            )
+            seen = _noisy(place, cells, accuracy) if accuracy in (0, 1) else _edge(place, cells, accuracy)
             back = 0 if is_there and not ends else place
             found.append(
                 Outcome(
@@ -163,9 +159,7 @@ def grid(random: Random, large: bool) -> World:
 
     starts = [(1.0, (0, 0))]
     if random.random() < 0.4:
-        starts = [
-            (1.0, cell) for cell in random.sample(cells[:-1], min(3, len(cells) - 1)) if cell not in traps
-        ] or starts
+        starts = [(1.0, cell) for cell in random.sample(cells[:-1], min(3, len(cells) - 1)) if cell not in traps] or starts
     horizon = min(2 * (width + height) + random.randint(0, 10), 60)
     return World("grid", _discount(random, horizon), horizon, ("x", "y"), ["e", "n", "w", "s"], starts, step)
 
@@ -252,12 +246,7 @@ def doors(random: Random, large: bool) -> World:
         place = state[0]
         if action == 0:
             return [
-                Outcome(
-                    1 - moves if after == place else moves / (count - 1),
-                    (after,),
-                    cost,
-                    _noisy(random, after, count, accuracy),
-                )
+                Outcome(1 - moves if after == place else moves / (count - 1), (after,), cost, _noisy(after, count, accuracy))
                 for after in range(count)
             ]
         is_right = action - 1 == place
@@ -290,10 +279,8 @@ def late(random: Random, large: bool) -> World:
             colour = (colour + 1) % colours
         elif action >= 2 and place == cells - 1:
             is_right = action - 2 == colour
-            return [
-                Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)
-            ]
-        seen: Seen = _noisy(random, colour, colours, accuracy) if is_seen and place == 0 else NOTHING_SEEN
+            return [Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)]
+        seen: Seen = _noisy(colour, colours, accuracy) if is_seen and place == 0 else NOTHING_SEEN
         return [Outcome(1.0, (place, colour), cost, seen)]
 
     starts = [(odds, (0, colour)) for colour, odds in enumerate(odds_of(random, colours)) if odds > 0]
@@ -324,9 +311,7 @@ def counter(random: Random, large: bool) -> World:
 
     starts = [(1.0, (0,))] if random.random() < 0.6 else [(1.0, (now,)) for now in range(period)]
     horizon = period + random.randint(2, 10)
-    return World(
-        "counter", _discount(random, horizon), horizon, ("clock",), ["wait", "try", "wind"], starts, step
-    )
+    return World("counter", _discount(random, horizon), horizon, ("clock",), ["wait", "try", "wind"], starts, step)
 
 
 def ties(random: Random, large: bool) -> World:
@@ -359,7 +344,7 @@ def exits(random: Random, large: bool) -> World:
     def step(state: State, action: int) -> list[Outcome]:
         room, good = state
         if action == 0:
-            seen = _noisy(random, good, count, accuracy)
+            seen = _noisy(good, count, accuracy)
             lost = Outcome(danger, state, cost, NOTHING_SEEN, FAILURE)
             return [Outcome(1 - danger, (_moved(room, 1, rooms), good), cost, seen), lost]
         value = values[(action - 1 - good) % count]
@@ -376,7 +361,9 @@ def endings(random: Random, large: bool) -> World:
     """Every step may end the mission, with rewards of all signs; ended or not is not always seen."""
     states = random.randint(10, 25) if large else random.randint(2, 5)
     actions = random.randint(2, 4)
-    moves = {key: odds_of(random, states, few=2) for key in product(range(states), range(actions))}
+    moves = {
+        key: odds_of(random, states, few=2) for key in product(range(states), range(actions))
+    }
     hazard = {key: random.choice((0, 0, 0.1, 0.5, 1)) for key in moves}
     prizes = {key: random.choice((-10, -1, 0, 1, 5)) for key in moves}
     rewards = {key: random.choice((-1, -0.1, 0, 0, 0.1)) for key in moves}
@@ -451,11 +438,9 @@ def heaven(random: Random, large: bool) -> World:
         place, side = state
         if action >= 2 and place == fork:
             is_right = action - 2 == side
-            return [
-                Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)
-            ]
+            return [Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)]
         place = _moved(place, (1, -1, 0, 0)[action], fork + 1)
-        seen: Seen = _noisy(random, side, 2, accuracy) if place == 0 else NOTHING_SEEN
+        seen: Seen = _noisy(side, 2, accuracy) if place == 0 else NOTHING_SEEN
         return [Outcome(1.0, (place, side), cost, seen)]
 
     odds = random.choice((0.5, 0.4, 0.2))
@@ -500,7 +485,7 @@ def boxes(random: Random, large: bool) -> World:
     def step(state: State, action: int) -> list[Outcome]:
         place = state[0]
         if action < bits:
-            return [Outcome(1.0, state, cost / 2, _noisy(random, place >> action & 1, 2, accuracy))]
+            return [Outcome(1.0, state, cost / 2, _noisy(place >> action & 1, 2, accuracy))]
         if action - bits == place:
             return [Outcome(1.0, state, prize + cost, 1, GOAL)]
         return [Outcome(1.0, state, cost, 0)]
@@ -534,7 +519,7 @@ def rocks(random: Random, large: bool) -> World:
             return [Outcome(1.0, (place, *good), reward)]
         rock = action - 3
         accuracy = 0.5 + 0.5 * 2 ** (-abs(places[rock] - place) / reach)
-        return [Outcome(1.0, state, 0, _noisy(random, good[rock], 2, accuracy))]
+        return [Outcome(1.0, state, 0, _noisy(good[rock], 2, accuracy))]
 
     horizon = random.randint(8, 20)
     names = ["on", "back", "sample", *(f"check{i}" for i in range(count))]
@@ -555,7 +540,7 @@ def machine(random: Random, large: bool) -> World:
         if action == 2:
             return [Outcome(1.0, (0,), replace)]
         if action == 1:
-            return [Outcome(1.0, state, inspect, _noisy(random, level, levels, accuracy))]
+            return [Outcome(1.0, state, inspect, _noisy(level, levels, accuracy))]
         earned = 1 - level * 3 / levels
         seen = ((1, 0.5 + 0.4 * level / levels), (0, 0.5 - 0.4 * level / levels))
         return [
@@ -583,21 +568,142 @@ def invest(random: Random, large: bool) -> World:
         if done + 1 == length:
             return [Outcome(1.0, (0,), prize, 0)]
         seen = done + 1 if is_seen else NOTHING_SEEN
-        return [
-            Outcome(1 - lapse, (done + 1,), cost, seen),
-            Outcome(lapse, (0,), cost, 0 if is_seen else NOTHING_SEEN),
-        ]
+        return [Outcome(1 - lapse, (done + 1,), cost, seen), Outcome(lapse, (0,), cost, 0 if is_seen else NOTHING_SEEN)]
 
     horizon = min(length + random.randint(2, 20), 60)
     discount = random.choice((1.0, 0.999, 0.99, round(0.7 ** (1 / length), 4)))
     return World("invest", discount, horizon, ("done",), ["rest", "work"], [(1.0, (0,))], step)
 
 
+def pursuit(random: Random, large: bool) -> World:
+    """A robot that has to catch what runs away; it sees it from nearby only, or through noise."""
+    cells = random.randint(7, 12) if large else random.randint(3, 6)
+    is_ring = random.random() < 0.5
+    flees = random.choice((0.3, 0.6, 0.9))
+    reach = random.choice((0, 0, 1))
+    accuracy = random.choice((0.7, 0.9, 1.0))
+    prize, fine, cost = 10, random.choice((-1, -10)), random.choice((-1, -0.1))
+
+    def beside(place: int, by: int) -> int:
+        return (place + by) % cells if is_ring else _moved(place, by, cells)
+
+    def step(state: State, action: int) -> list[Outcome]:
+        robot, target = state
+        if action == 2:
+            if robot == target:
+                return [Outcome(1.0, state, prize, NOTHING_SEEN, GOAL)]
+            return [Outcome(1.0, state, fine, 0)]
+        robot = beside(robot, 1 if action == 0 else -1)
+        away = 1 if target >= robot else -1
+        found = []
+        for odds, by in ((flees, away), ((1 - flees) / 2, 0), ((1 - flees) / 2, -away)):
+            after = beside(target, by)
+            seen = _noisy(int(abs(robot - after) <= reach), 2, accuracy)
+            found.append(Outcome(odds, (robot, after), cost, seen))
+        return found
+
+    horizon = random.randint(8, 25)
+    starts = [(1.0, (0, place)) for place in range(1, cells)]
+    names = ["on", "back", "catch"]
+    return World("pursuit", _discount(random, horizon), horizon, ("robot", "target"), names, starts, step)
+
+
+def search(random: Random, large: bool) -> World:
+    """A thing somewhere in a grid, and a sensor that is the better the nearer; to take it where it is not costs."""
+    width = random.randint(3, 4) if large else 2
+    height = random.randint(2, 3) if large else 2
+    cells = [(x, y) for x in range(width) for y in range(height)]
+    reach = random.choice((0.5, 1, 2))
+    prize, fine, cost = 10, random.choice((-1, -5, -50)), random.choice((0, -0.1, -0.5))
+    moves = ((1, 0), (0, 1), (-1, 0), (0, -1))
+
+    def step(state: State, action: int) -> list[Outcome]:
+        robot, thing = state
+        x, y = cells[robot]
+        if action == 4:
+            if robot == thing:
+                return [Outcome(1.0, state, prize, NOTHING_SEEN, GOAL)]
+            return [Outcome(1.0, state, fine, 2)]
+        by_x, by_y = moves[action]
+        robot = cells.index((_moved(x, by_x, width), _moved(y, by_y, height)))
+        far = abs(cells[robot][0] - cells[thing][0]) + abs(cells[robot][1] - cells[thing][1])
+        beeps = round(0.05 + 0.9 * 2 ** (-far / reach), 3)
+        return [Outcome(1.0, (robot, thing), cost, ((1, beeps), (0, 1 - beeps)))]
+
+    horizon = random.randint(6, 20)
+    starts = [(odds, (0, thing)) for thing, odds in enumerate(odds_of(random, len(cells))) if odds > 0]
+    names = ["e", "n", "w", "s", "take"]
+    return World("search", _discount(random, horizon), horizon, ("robot", "thing"), names, starts, step)
+
+
+def hallway(random: Random, large: bool) -> World:
+    """Where am I: cells that look alike, sensors and motors that err, a goal that has to be declared."""
+    cells = random.randint(10, 25) if large else random.randint(4, 9)
+    looks = [random.randrange(3) for _ in range(cells)]
+    accuracy = random.choice((0.6, 0.8, 0.95))
+    slip = random.choice((0.05, 0.2))
+    goal = random.randrange(cells)
+    fine, cost = random.choice((-1, -10, -50)), random.choice((0, -0.1))
+
+    def step(state: State, action: int) -> list[Outcome]:
+        place = state[0]
+        if action == 2:
+            is_there = place == goal
+            return [Outcome(1.0, state, 10 if is_there else fine, NOTHING_SEEN, GOAL if is_there else FAILURE)]
+        way = 1 if action == 0 else -1
+        return [
+            Outcome(odds, (after,), cost, _noisy(looks[after], 3, accuracy))
+            for odds, after in (
+                (1 - 2 * slip, (place + way) % cells),
+                (slip, place),
+                (slip, (place + 2 * way) % cells),
+            )
+        ]
+
+    horizon = random.randint(10, 30)
+    starts = [(1.0, (place,)) for place in range(cells)]
+    return World("hallway", _discount(random, horizon), horizon, ("cell",), ["on", "back", "here"], starts, step)
+
+
+def machines(random: Random, large: bool) -> World:
+    """Several machines that break unseen: one can be looked at or repaired at a time."""
+    count = random.randint(3, 5) if large else 2
+    breaks = [random.choice((0.02, 0.1, 0.3)) for _ in range(count)]
+    accuracy = random.choice((0.7, 0.9))
+    repair, looking = random.choice((-1, -3)), random.choice((0, -0.2))
+    earned = [random.choice((0.5, 1)) for _ in range(count)]
+
+    def step(state: State, action: int) -> list[Outcome]:
+        reward = sum(value for value, is_broken in zip(earned, state, strict=True) if not is_broken)
+        machine = action % count
+        fixed = list(state)
+        if action < count:
+            reward += repair
+            fixed[machine] = 0
+        elif action < 2 * count:
+            reward += looking
+        found = []
+        for after in product(*((0, 1) if not is_broken else (1,) for is_broken in fixed)):
+            odds = 1.0
+            for broken, was_broken, hazard in zip(after, fixed, breaks, strict=True):
+                odds *= 1.0 if was_broken else hazard if broken else 1 - hazard
+            looks = count <= action < 2 * count
+            seen: Seen = _noisy(after[machine], 2, accuracy) if looks else NOTHING_SEEN
+            found.append(Outcome(odds, after, reward, seen))
+        return found
+
+    horizon = random.randint(6, 20)
+    names = [*(f"repair{i}" for i in range(count)), *(f"look{i}" for i in range(count)), "wait"]
+    discount = random.choice((0.9, 0.95, 0.99))
+    variables = tuple(f"broken{i}" for i in range(count))
+    return World("machines", discount, horizon, variables, names, [(1.0, (0,) * count)], step)
+
+
 FAMILIES: dict[str, Family] = {
     family.__name__: family
     for family in (
         dense, corridor, grid, keys, pushing, doors, late, counter, ties, exits, endings, battery, heaven, lock,
-        boxes, rocks, machine, invest,
+        boxes, rocks, machine, invest, pursuit, search, hallway, machines,
     )
 }  # fmt: skip
 

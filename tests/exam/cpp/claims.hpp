@@ -39,7 +39,7 @@ class Claims {
   using Planner = aos::Planner<TableModel>;
 
   Claims(const Problem& problem, ClaimOptions options)
-      : problem_(problem), options_(options), flat_(problem), random_(options.seed) {
+      : problem_(problem), options_(options), flat_(problem, true), plain_(problem, false), random_(options.seed) {
     TableModel::take(problem);
     largest_ = std::max(flat_.largest_reward(), 1e-9);
   }
@@ -62,7 +62,7 @@ class Claims {
       check_numbers(exact);
       if (step == options_.steps) break;
       const int action = random_.below(TableModel::action_count());
-      std::vector<Reached> reached = flat_.reached(exact, static_cast<std::size_t>(action));
+      std::vector<Reached> reached = plain_.reached(exact, static_cast<std::size_t>(action));
       if (reached.empty()) break;
       const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(reached.size())));
       const int seen = reached[chosen].observation;
@@ -220,7 +220,7 @@ class Claims {
   }
 
   void check_states(std::size_t claimed, const Mass& exact, const std::string& why) {
-    const std::size_t classes = told_apart(flat_, exact);
+    const std::size_t classes = told_apart(plain_, exact);
     ++claims_;
     if (claimed < classes) fail("states that matter", why, static_cast<double>(classes), static_cast<double>(flat_.states()));
   }
@@ -243,7 +243,7 @@ class Claims {
         }
         model.rewards.push_back(flat_.reward(state, action));
         std::map<std::uint32_t, std::map<std::uint32_t, double>> by_next;
-        for (const Branch& branch : flat_.branches(state, action)) {
+        for (const Branch& branch : plain_.branches(state, action)) {
           const auto seen = observations.try_emplace(branch.observation, static_cast<std::uint32_t>(observations.size()));
           by_next[branch.next][seen.first->second] += branch.probability;
         }
@@ -329,6 +329,7 @@ class Claims {
   const Problem& problem_;
   ClaimOptions options_;
   Flat flat_;
+  Flat plain_;  // by single observations
   aos::Sampler random_;
   aos::Sampler choosing_{1};  // what is looked at where not all can be
   double largest_ = 0;

@@ -23,7 +23,7 @@ double number_of(const Options& options, const std::string& name, double otherwi
 
 // The true values of the actions at the start, with a horizon's decisions to go, as brackets.
 std::string values_of(const exam::Problem& problem, double seconds) {
-  const exam::Flat flat{problem};
+  const exam::Flat flat{problem, true};
   exam::Truth truth{flat, problem.horizon};
   const auto [start, running] = flat.start();
   aos::JsonWriter json;

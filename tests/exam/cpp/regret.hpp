@@ -45,7 +45,7 @@ class Regret {
   using Planner = aos::Planner<TableModel>;
 
   Regret(const Problem& problem, RegretOptions options)
-      : problem_(problem), options_(std::move(options)), flat_(problem),
+      : problem_(problem), options_(std::move(options)), flat_(problem, true),
         steps_(options_.steps > 0 ? options_.steps : problem.horizon),
         truth_(flat_, std::max(steps_, problem.horizon)) {
     TableModel::take(problem);
@@ -164,7 +164,7 @@ class Regret {
       hidden = outcome.next;
       if (!problem_.is_running(hidden)) break;
       const auto found = std::find_if(all_reached.begin(), all_reached.end(),
-                                      [&](const Reached& reached) { return reached.observation == seen; });
+                                      [&](const Reached& reached) { return reached.observation == flat_.sight(a, seen); });
       exact = found->belief;
       value = values[static_cast<std::size_t>(found - all_reached.begin())];
       if (planner == nullptr) continue;
