@@ -105,7 +105,9 @@ async def _documents(arguments: argparse.Namespace) -> int:
     texts = [documents(seed) for seed in range(after, after + arguments.texts)]
     misread = [bundle for bundle in texts if left_out(bundle)]
     for bundle in misread:
-        print(f"{bundle.name} ({', '.join(bundle.idioms)}): left out, but they matter: {', '.join(left_out(bundle))}")
+        print(
+            f"{bundle.name} ({', '.join(bundle.idioms)}): left out, but they matter: {', '.join(left_out(bundle))}"
+        )
         _write_bundle(arguments.dump, bundle)
     print(
         f"{arguments.models} bundles compiled, {wrong} with mistakes; {decisions} decisions, the worst loses "

@@ -44,12 +44,16 @@ def left_out(bundle: Documents) -> frozenset[str]:
     return irrelevant_variables(loaded.project) & bundle.relevant
 
 
-async def examined(bundle: Documents, truth: Driver, cache_dir: Path, planner: str, simulations: int) -> Examined:
+async def examined(
+    bundle: Documents, truth: Driver, cache_dir: Path, planner: str, simulations: int
+) -> Examined:
     """Plays one mission, and asks for the exact values and a plan at each of its beliefs."""
     loaded = load_files({name: text.encode() for name, text in bundle.files.items()})
     assert loaded.project is not None, (bundle.name, loaded.diagnostics)
     if wrong := left_out(bundle):
-        return Examined(bundle.name, bundle.idioms, (f"left out, but they matter: {', '.join(sorted(wrong))}",))
+        return Examined(
+            bundle.name, bundle.idioms, (f"left out, but they matter: {', '.join(sorted(wrong))}",)
+        )
     program, diagnostics = lower(loaded.project)
     if program is None:
         return Examined(bundle.name, bundle.idioms, (f"refused: {diagnostics[0].message}",))
@@ -113,4 +117,7 @@ def _following(problem: Problem, action: int) -> Iterator[tuple[int, Problem]]:
                 found[after] = found.get(after, 0.0) + share * odds * likelihood
     for seen, found in weights.items():
         total = sum(found.values())
-        yield seen, dataclasses.replace(problem, starts=[(state, weight / total) for state, weight in found.items()])
+        yield (
+            seen,
+            dataclasses.replace(problem, starts=[(state, weight / total) for state, weight in found.items()]),
+        )

@@ -43,7 +43,10 @@ def documents(seed: int) -> Documents:
     share = source.choice((0.3, 0.4, 0.8))
     moves: dict[str, list[str]] = {"state_": [], "state__": []}
     used = []
-    for before, after in [*zip(registers, registers[1:], strict=False), *((source.choice(registers), d) for d in dead)]:
+    for before, after in [
+        *zip(registers, registers[1:], strict=False),
+        *((source.choice(registers), d) for d in dead),
+    ]:
         state = "state_" if source.random() < 0.25 else "state__"
         name, code = _some_idiom(source, before, after, state)
         used.append(name)
@@ -66,7 +69,11 @@ def _some_idiom(source: random.Random, before: Register, after: Register, state:
 
 
 def _files(
-    registers: Sequence[Register], dead: Sequence[Register], sink: str, share: float, moves: dict[str, list[str]]
+    registers: Sequence[Register],
+    dead: Sequence[Register],
+    sink: str,
+    share: float,
+    moves: dict[str, list[str]],
 ) -> dict[str, str]:
     last = registers[-1]
     extrinsic = list(moves["state_"])
@@ -107,10 +114,18 @@ def _files(
         "available_parameters_code:",
         "for (int i = 0; i < 3; i++) __possibleParameters.push_back(std::make_tuple(i));",
         "",
-        *(["precondition:", f"__meetPrecondition = {value} == 0;", f"violate_penalty: {PENALTY}", ""] if sink == "precondition" else []),
+        *(
+            ["precondition:", f"__meetPrecondition = {value} == 0;", f"violate_penalty: {PENALTY}", ""]
+            if sink == "precondition"
+            else []
+        ),
         "dynamic_model:",
         *moves["state__"],
-        *([f"__moduleResponse = {value} == 1 ? yes : no;"] if sink == "response" else ["__moduleResponse = no;"]),
+        *(
+            [f"__moduleResponse = {value} == 1 ? yes : no;"]
+            if sink == "response"
+            else ["__moduleResponse = no;"]
+        ),
         "__reward = -0.1;",
         f"if (choice > 0) {{ state__.done = 1; __reward = {earned}; }}",
     ]
@@ -122,7 +137,9 @@ def _files(
         "local_variable: said\ntype: string\nfrom_ros_service_response: true\ncode:\nsaid = __input.text",
     ]
     return {
-        "chain.ef": "\n\n".join(environment[:4]) + "\n\n" + "\n".join([environment[4], "", *environment[5:], ""]),
+        "chain.ef": "\n\n".join(environment[:4])
+        + "\n\n"
+        + "\n".join([environment[4], "", *environment[5:], ""]),
         "act.sd": "\n".join([*skill, ""]),
         "act.am": "\n\n".join([*mapping, ""]),
     }

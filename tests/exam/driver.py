@@ -77,7 +77,8 @@ class Driver:
         if line:
             report: dict[str, Any] = json.loads(line)
             return report
-        status = process.wait()
+        process.communicate()
+        status = process.returncode
         self._process = None
         ending = f"no report within {self._patience_s:.0f} s" if is_late else f"ended with status {status}"
         return {"problem": problem.name, "crash": ending}
@@ -86,7 +87,7 @@ class Driver:
         """Ends the process."""
         if self._process is not None:
             self._process.kill()
-            self._process.wait()
+            self._process.communicate()
             self._process = None
 
     def _start(self) -> subprocess.Popen[str]:

@@ -159,7 +159,9 @@ def grid(random: Random, large: bool) -> World:
 
     starts = [(1.0, (0, 0))]
     if random.random() < 0.4:
-        starts = [(1.0, cell) for cell in random.sample(cells[:-1], min(3, len(cells) - 1)) if cell not in traps] or starts
+        starts = [
+            (1.0, cell) for cell in random.sample(cells[:-1], min(3, len(cells) - 1)) if cell not in traps
+        ] or starts
     horizon = min(2 * (width + height) + random.randint(0, 10), 60)
     return World("grid", _discount(random, horizon), horizon, ("x", "y"), ["e", "n", "w", "s"], starts, step)
 
@@ -246,7 +248,12 @@ def doors(random: Random, large: bool) -> World:
         place = state[0]
         if action == 0:
             return [
-                Outcome(1 - moves if after == place else moves / (count - 1), (after,), cost, _noisy(after, count, accuracy))
+                Outcome(
+                    1 - moves if after == place else moves / (count - 1),
+                    (after,),
+                    cost,
+                    _noisy(after, count, accuracy),
+                )
                 for after in range(count)
             ]
         is_right = action - 1 == place
@@ -279,7 +286,9 @@ def late(random: Random, large: bool) -> World:
             colour = (colour + 1) % colours
         elif action >= 2 and place == cells - 1:
             is_right = action - 2 == colour
-            return [Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)]
+            return [
+                Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)
+            ]
         seen: Seen = _noisy(colour, colours, accuracy) if is_seen and place == 0 else NOTHING_SEEN
         return [Outcome(1.0, (place, colour), cost, seen)]
 
@@ -311,7 +320,9 @@ def counter(random: Random, large: bool) -> World:
 
     starts = [(1.0, (0,))] if random.random() < 0.6 else [(1.0, (now,)) for now in range(period)]
     horizon = period + random.randint(2, 10)
-    return World("counter", _discount(random, horizon), horizon, ("clock",), ["wait", "try", "wind"], starts, step)
+    return World(
+        "counter", _discount(random, horizon), horizon, ("clock",), ["wait", "try", "wind"], starts, step
+    )
 
 
 def ties(random: Random, large: bool) -> World:
@@ -361,9 +372,7 @@ def endings(random: Random, large: bool) -> World:
     """Every step may end the mission, with rewards of all signs; ended or not is not always seen."""
     states = random.randint(10, 25) if large else random.randint(2, 5)
     actions = random.randint(2, 4)
-    moves = {
-        key: odds_of(random, states, few=2) for key in product(range(states), range(actions))
-    }
+    moves = {key: odds_of(random, states, few=2) for key in product(range(states), range(actions))}
     hazard = {key: random.choice((0, 0, 0.1, 0.5, 1)) for key in moves}
     prizes = {key: random.choice((-10, -1, 0, 1, 5)) for key in moves}
     rewards = {key: random.choice((-1, -0.1, 0, 0, 0.1)) for key in moves}
@@ -438,7 +447,9 @@ def heaven(random: Random, large: bool) -> World:
         place, side = state
         if action >= 2 and place == fork:
             is_right = action - 2 == side
-            return [Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)]
+            return [
+                Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)
+            ]
         place = _moved(place, (1, -1, 0, 0)[action], fork + 1)
         seen: Seen = _noisy(side, 2, accuracy) if place == 0 else NOTHING_SEEN
         return [Outcome(1.0, (place, side), cost, seen)]
@@ -568,7 +579,10 @@ def invest(random: Random, large: bool) -> World:
         if done + 1 == length:
             return [Outcome(1.0, (0,), prize, 0)]
         seen = done + 1 if is_seen else NOTHING_SEEN
-        return [Outcome(1 - lapse, (done + 1,), cost, seen), Outcome(lapse, (0,), cost, 0 if is_seen else NOTHING_SEEN)]
+        return [
+            Outcome(1 - lapse, (done + 1,), cost, seen),
+            Outcome(lapse, (0,), cost, 0 if is_seen else NOTHING_SEEN),
+        ]
 
     horizon = min(length + random.randint(2, 20), 60)
     discount = random.choice((1.0, 0.999, 0.99, round(0.7 ** (1 / length), 4)))
@@ -649,7 +663,9 @@ def hallway(random: Random, large: bool) -> World:
         place = state[0]
         if action == 2:
             is_there = place == goal
-            return [Outcome(1.0, state, 10 if is_there else fine, NOTHING_SEEN, GOAL if is_there else FAILURE)]
+            return [
+                Outcome(1.0, state, 10 if is_there else fine, NOTHING_SEEN, GOAL if is_there else FAILURE)
+            ]
         way = 1 if action == 0 else -1
         return [
             Outcome(odds, (after,), cost, _noisy(looks[after], 3, accuracy))
@@ -662,7 +678,9 @@ def hallway(random: Random, large: bool) -> World:
 
     horizon = random.randint(10, 30)
     starts = [(1.0, (place,)) for place in range(cells)]
-    return World("hallway", _discount(random, horizon), horizon, ("cell",), ["on", "back", "here"], starts, step)
+    return World(
+        "hallway", _discount(random, horizon), horizon, ("cell",), ["on", "back", "here"], starts, step
+    )
 
 
 def machines(random: Random, large: bool) -> World:

@@ -125,42 +125,96 @@ _text("lambda_value", "{ auto get = [v = READ] { return v; }; WRITE(get()); }")
 _text("function", "{ std::function<int()> get = [&] { return READ; }; WRITE(get()); }")
 _text("table", "{ std::vector<int> table = {0, 1}; WRITE(table[READ]); }")
 _text("table_write", "{ std::vector<int> table = {0, 0}; table[READ] = 1; WRITE(table[1]); }")
-_text("push_back", "{ std::vector<int> items; if (READ == 1) items.push_back(1); WRITE(static_cast<int>(items.size())); }")
+_text(
+    "push_back",
+    "{ std::vector<int> items; if (READ == 1) items.push_back(1); WRITE(static_cast<int>(items.size())); }",
+)
 _text("map", "{ std::map<int, int> m; m[READ] = 1; WRITE(static_cast<int>(m.count(1))); }")
 _text("maximum", "WRITE(std::max(0, static_cast<int>(READ)));")
 _text("draw", "WRITE(AOS.Bernoulli(READ) ? 1 : 0);")
-_text("draw_weights", "{ std::vector<double> odds = {1.0 - READ, 1.0 * READ}; WRITE(AOSUtils::SampleDiscrete(odds)); }")
+_text(
+    "draw_weights",
+    "{ std::vector<double> odds = {1.0 - READ, 1.0 * READ}; WRITE(AOSUtils::SampleDiscrete(odds)); }",
+)
 _text("tuple", "{ auto pair = std::make_pair(READ, 2); WRITE(pair.first); }")
 _text("binding", "{ auto [one, other] = std::make_pair(READ, 2); WRITE(one); }")
 _text("text", '{ std::string s = READ == 1 ? "one" : "none"; WRITE(s.size() == 3 ? 1 : 0); }')
 _text("bits", "WRITE((READ << 1 | 0) >> 1 & 1);")
 _text("try_catch", "try { if (READ == 1) throw 1; WRITE(0); } catch (int v) { WRITE(v); }")
 _text("alias_now", "{ const auto& now = state; int v = READ; WRITE(v); }")
-_text("reference_from", "{ const auto& from = FROM; int v = static_cast<int>(from); WRITE(v); }", needs=lambda x, y: x.is_number)
-_text("pointer_from", "{ const auto* from = &FROM; int v = static_cast<int>(*from); WRITE(v); }", needs=lambda x, y: x.is_number)
-_text("whole_copy", "{ const auto before = NOW; int v = static_cast<int>(before.level); WRITE(v); }", needs=lambda x, y: x.kind == "field")
+_text(
+    "reference_from",
+    "{ const auto& from = FROM; int v = static_cast<int>(from); WRITE(v); }",
+    needs=lambda x, y: x.is_number,
+)
+_text(
+    "pointer_from",
+    "{ const auto* from = &FROM; int v = static_cast<int>(*from); WRITE(v); }",
+    needs=lambda x, y: x.is_number,
+)
+_text(
+    "whole_copy",
+    "{ const auto before = NOW; int v = static_cast<int>(before.level); WRITE(v); }",
+    needs=lambda x, y: x.kind == "field",
+)
 _text("reference_to", "{ auto& to = PLACE; to = READ; }", needs=_to_number)
 _text("pointer_to", "{ auto* to = &PLACE; *to = READ; }", needs=_to_number)
-_text("pointer_chosen", "{ int other = 0; auto* to = &other; auto* real = &PLACE; *real = READ; *to = 1; }", needs=_to_number)
+_text(
+    "pointer_chosen",
+    "{ int other = 0; auto* to = &other; auto* real = &PLACE; *real = READ; *to = 1; }",
+    needs=_to_number,
+)
 _text("add", "{ PLACE = 0; PLACE += READ; }", needs=_to_number)
 _text("increment", "{ PLACE = 0; if (READ == 1) PLACE++; }", needs=_to_number)
 _text("swap", "{ auto v = PLACE; v = READ; std::swap(PLACE, v); }", needs=_to_number)
 _text("tie", "{ int rest; std::tie(PLACE, rest) = std::make_tuple(READ, 3); }", needs=_to_number)
-_text("assign_through_choice", "{ int other = 0; (true ? PLACE : other) = READ; }", needs=lambda x, y: y.kind == "int")
+_text(
+    "assign_through_choice",
+    "{ int other = 0; (true ? PLACE : other) = READ; }",
+    needs=lambda x, y: y.kind == "int",
+)
 _text("compound", "NEXT = NOW;", needs=_both_boxes)
 _text("compound_reference", "{ auto& box = NEXT; box.level = READ; }", needs=lambda x, y: y.kind == "field")
 _text("compound_pointer", "{ auto* box = &NEXT; box->level = READ; }", needs=lambda x, y: y.kind == "field")
 _text("array_copy", "NEXT = NOW;", needs=lambda x, y: x.kind == y.kind == "array")
-_text("range_for", "{ int n = 0; for (const auto& item : NOW) n += item; WRITE(n); }", needs=lambda x, y: x.kind == "array")
-_text("range_for_write", "{ int i = 0; for (auto& item : NEXT) { item = i == 1 ? READ : 0; i++; } }", needs=lambda x, y: y.kind == "array")
-_text("index_loop", "{ int n = 0; for (int i = 0; i < 3; i++) n += NOW[i]; WRITE(n); }", needs=lambda x, y: x.kind == "array")
-_text("accumulate", "WRITE(std::accumulate(NOW.begin(), NOW.end(), 0));", needs=lambda x, y: x.kind == "array")
-_text("copy", "std::copy(NOW.begin(), NOW.end(), NEXT.begin());", needs=lambda x, y: x.kind == y.kind == "array")
+_text(
+    "range_for",
+    "{ int n = 0; for (const auto& item : NOW) n += item; WRITE(n); }",
+    needs=lambda x, y: x.kind == "array",
+)
+_text(
+    "range_for_write",
+    "{ int i = 0; for (auto& item : NEXT) { item = i == 1 ? READ : 0; i++; } }",
+    needs=lambda x, y: y.kind == "array",
+)
+_text(
+    "index_loop",
+    "{ int n = 0; for (int i = 0; i < 3; i++) n += NOW[i]; WRITE(n); }",
+    needs=lambda x, y: x.kind == "array",
+)
+_text(
+    "accumulate", "WRITE(std::accumulate(NOW.begin(), NOW.end(), 0));", needs=lambda x, y: x.kind == "array"
+)
+_text(
+    "copy", "std::copy(NOW.begin(), NOW.end(), NEXT.begin());", needs=lambda x, y: x.kind == y.kind == "array"
+)
 _text("fill", "std::fill(NEXT.begin() + 1, NEXT.begin() + 2, READ);", needs=lambda x, y: y.kind == "array")
-_text("find", "WRITE(std::find(NOW.begin(), NOW.end(), 1) != NOW.end() ? 1 : 0);", needs=lambda x, y: x.kind == "array")
-_text("sort", "{ std::vector<int> v(NOW.begin(), NOW.end()); std::sort(v.begin(), v.end()); WRITE(v[2]); }", needs=lambda x, y: x.kind == "array")
+_text(
+    "find",
+    "WRITE(std::find(NOW.begin(), NOW.end(), 1) != NOW.end() ? 1 : 0);",
+    needs=lambda x, y: x.kind == "array",
+)
+_text(
+    "sort",
+    "{ std::vector<int> v(NOW.begin(), NOW.end()); std::sort(v.begin(), v.end()); WRITE(v[2]); }",
+    needs=lambda x, y: x.kind == "array",
+)
 _text("bytes", "std::memcpy(&PLACE, &FROM, sizeof FROM);", needs=_same_number)
 _text("alias_next", "{ auto& next = INTO; next.TARGET = READ; }", needs=lambda x, y: y.kind == "int")
-_text("alias_both", "{ auto& now = state; auto& next = INTO; next.TARGET = now.SOURCE; }", needs=lambda x, y: x.kind == y.kind == "int")
+_text(
+    "alias_both",
+    "{ auto& now = state; auto& next = INTO; next.TARGET = now.SOURCE; }",
+    needs=lambda x, y: x.kind == y.kind == "int",
+)
 _text("pointer_next", "{ auto* next = &INTO; next->TARGET = READ; }", needs=lambda x, y: y.kind == "int")
 _text("pointer_now", "{ const auto* now = &state; WRITE(now->SOURCE); }", needs=lambda x, y: x.kind == "int")
