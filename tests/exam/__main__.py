@@ -6,11 +6,12 @@
   python -m tests.exam documents --models 40 --texts 2000
   python -m tests.exam show corridor/17
 
-A problem is named by its family and its seed, FAMILY/SEED, or FAMILY+/SEED where it is large, and is always the
-same under its name. `bounds` counts false claims; each is printed with its problem, and with `--dump DIR` the problem
-is written there. `regret` tells per family what planners lose against the optimum, in percent of the range between
-random actions and the optimum. `documents` compiles bundles in which a value goes from one variable to the next
-by idioms of C++, and also looks only for variables that are wrongly left out, in `--texts` more. Exit code 1: a claim was false, or a target was missed.
+A problem is named by its family and its seed, FAMILY/SEED, or FAMILY+/SEED where it is large, and is always
+the same under its name. `bounds` counts false claims; each is printed with its problem, and with `--dump DIR`
+the problem is written there. `regret` tells per family what planners lose against the optimum, in percent of
+the range between random actions and the optimum. `documents` compiles bundles in which a value goes from one
+variable to the next by idioms of C++, and also looks only for variables that are wrongly left out, in `--texts`
+more. Exit code 1: a claim was false, or a target was missed.
 """
 
 from __future__ import annotations
@@ -105,9 +106,8 @@ async def _documents(arguments: argparse.Namespace) -> int:
     texts = [documents(seed) for seed in range(after, after + arguments.texts)]
     misread = [bundle for bundle in texts if left_out(bundle)]
     for bundle in misread:
-        print(
-            f"{bundle.name} ({', '.join(bundle.idioms)}): left out, but they matter: {', '.join(left_out(bundle))}"
-        )
+        wrong_names = ", ".join(left_out(bundle))
+        print(f"{bundle.name} ({', '.join(bundle.idioms)}): left out, but they matter: {wrong_names}")
         _write_bundle(arguments.dump, bundle)
     print(
         f"{arguments.models} bundles compiled, {wrong} with mistakes; {decisions} decisions, the worst loses "

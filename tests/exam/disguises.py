@@ -1,5 +1,5 @@
-"""What may be done to a world without changing what it is worth, or hardly: variables that matter to nobody, other
-units, actions in another order.
+"""What may be done to a world that hardly changes what it is worth: variables that matter to nobody, other
+units, actions in another order, observations that tell nothing.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def _with_label(random: random.Random, world: World) -> World:
 
 
 def _with_chatter(random: random.Random, world: World) -> World:
-    """Every observation comes in several shades, by chance, that tell nothing; trees of observations grow by it."""
+    """Every observation comes in shades, by chance, that tell nothing; trees of observations grow by it."""
     shades = random.randint(2, 4)
 
     def step(state: State, action: int) -> list[Outcome]:

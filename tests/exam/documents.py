@@ -1,5 +1,5 @@
-"""Problems as documents: a hidden value that goes through a chain of registers, one a step, by idioms of C++, until it
-decides about a reward, a response, a precondition or an ending. Every register matters, and the others do not.
+"""Problems as documents: a hidden value goes through a chain of registers, one a step, by idioms of C++, until
+it decides about a reward, a response, a precondition or an ending. All of these registers matter, others do not.
 """
 
 from __future__ import annotations
@@ -7,9 +7,10 @@ from __future__ import annotations
 import dataclasses
 import random
 from collections.abc import Sequence
+from itertools import pairwise
 
 from .idioms import IDIOMS, KINDS, Register
-from .problem import GOAL, NOTHING_SEEN, RUNNING, Outcome, State, World
+from .problem import GOAL, RUNNING, Outcome, State, World
 
 __all__ = ["SINKS", "Documents", "documents"]
 
@@ -44,7 +45,7 @@ def documents(seed: int) -> Documents:
     moves: dict[str, list[str]] = {"state_": [], "state__": []}
     used = []
     for before, after in [
-        *zip(registers, registers[1:], strict=False),
+        *pairwise(registers),
         *((source.choice(registers), d) for d in dead),
     ]:
         state = "state_" if source.random() < 0.25 else "state__"

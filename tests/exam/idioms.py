@@ -1,5 +1,5 @@
-"""Ways in which C++ takes a value from one variable to another, for documents whose variables matter only along a
-chain of them. Whoever decides by the text of code which variables matter has to follow every one.
+"""Ways in which C++ takes a value from one variable to another, for documents whose variables matter only along
+a chain of them. Whoever decides by the text of code which variables matter has to follow every one.
 
 A register is a state variable of some type that holds 0 or 1.
 """
@@ -59,13 +59,13 @@ class Register:
 
 
 Idiom = Callable[[Register, Register, str], str | None]
-"""Code that takes the value of the first in `state` to the second in the named state; None where it does not fit."""
+"""Code that takes the first's value in `state` to the second in the named state; None where it does not fit."""
 
 IDIOMS: dict[str, Idiom] = {}
 
 
 def _text(name: str, code: str, *, needs: Callable[[Register, Register], bool] = lambda x, y: True) -> None:
-    """An idiom as a template: READ a number, WRITE(...) a statement, PLACE and FROM what can be referred to."""
+    """An idiom as a template: READ a number, WRITE(...) a statement, PLACE and FROM places."""
 
     def fill(source: Register, target: Register, state: str) -> str | None:
         if not needs(source, target):

@@ -48,8 +48,8 @@ class Bounds:
         if "claims" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         lines = [
-            f"{problem.name} ({answer['states']} states), {finding['where']}: {_kind(finding)}: {finding['said']}; "
-            f"it is between {_number(finding['lower'])} and {_number(finding['upper'])}"
+            f"{problem.name} ({answer['states']} states), {finding['where']}: {_kind(finding)}: "
+            f"{finding['said']}; it is between {_number(finding['lower'])} and {_number(finding['upper'])}"
             for finding in sorted(answer["false"], key=_is_rounding)[:3]
         ]
         more = len(answer["false"]) - len(lines)
@@ -136,15 +136,15 @@ class Regrets:
         if "optimum" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         head = (
-            f"{problem.name} ({answer['states']} states, {answer['actions']} actions, {answer['steps']} steps): "
-            f"optimum {answer['optimum']:.6g}, random {answer['random']:.6g}"
+            f"{problem.name} ({answer['states']} states, {answer['actions']} actions, "
+            f"{answer['steps']} steps): optimum {answer['optimum']:.6g}, random {answer['random']:.6g}"
         )
         return "\n".join(
             [
                 head,
                 *(
-                    f"  {entry['planner']} loses {100 * entry['regret']:.1f} % +- {100 * entry['standard_error']:.1f}"
-                    f" ({entry['used']}; {entry['why']}) {entry['worst_actions'][:60]} {entry['fault']}"
+                    f"  {entry['planner']} loses {100 * entry['regret']:.1f} % "
+                    f"+- {100 * entry['standard_error']:.1f} ({entry['used']}; {entry['why']}) {entry['worst_actions'][:60]} {entry['fault']}"
                     for entry in answer["planners"]
                 ),
             ]
@@ -176,8 +176,8 @@ class Regrets:
             worst, model = max(found_worst)
             lines.append(
                 f"  {name} beyond look-ahead: mean {100 * fmean(excess for excess, _ in found_worst):.2f} %, "
-                f"worst {100 * worst:.1f} % ({model}); {1000 * fmean(self.seconds[name]):.0f} ms a decision, longest "
-                f"{self.longest[name]:.2f} s; began with "
+                f"worst {100 * worst:.1f} % ({model}); {1000 * fmean(self.seconds[name]):.0f} ms a decision, "
+                f"longest {self.longest[name]:.2f} s; began with "
                 + ", ".join(f"{used} {count}" for used, count in self.used[name].most_common())
             )
         lines += [f"  {count} models left out: {why}" for why, count in self.rejected.items()]

@@ -1,4 +1,4 @@
-"""A share of the exam (tests/exam): random models whose truth is known, bundles of awkward code, and the truth itself."""
+"""A share of the exam (tests/exam): random models whose truth is known, awkward documents, and the truth itself."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def reports(
 
 
 def action_values(problem: Problem, belief: dict[int, float], decisions: int) -> list[float]:
-    """By going through everything that may be observed; weights of a belief are how likely it is to get there."""
+    """By going through all that may be observed; weights of a belief are how likely it is to get there."""
     return [action_value(problem, belief, action, decisions) for action in range(len(problem.world.actions))]
 
 
