@@ -10,8 +10,8 @@ A problem is named by its family and its seed, FAMILY/SEED, or FAMILY+/SEED wher
 the same under its name. `bounds` counts false claims; each is printed with its problem, and with `--dump DIR`
 the problem is written there. `regret` tells per family what planners lose against the optimum, in percent of
 the range between random actions and the optimum. `documents` compiles bundles in which a value goes from one
-variable to the next by idioms of C++, and also looks only for variables that are wrongly left out, in `--texts`
-more. Exit code 1: a claim was false, or a target was missed.
+variable to the next by idioms of C++; in `--texts` more it only looks for variables that are wrongly left
+out. Exit code 1: a claim was false, or a target was missed.
 """
 
 from __future__ import annotations

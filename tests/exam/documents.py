@@ -1,5 +1,6 @@
-"""Problems as documents: a hidden value goes through a chain of registers, one a step, by idioms of C++, until
-it decides about a reward, a response, a precondition or an ending. All of these registers matter, others do not.
+"""Problems as documents: a hidden value goes through a chain of registers, one a step, by idioms of C++.
+
+At last it decides about a reward, a response, a precondition or an ending. These matter, others do not.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from itertools import product
 
-from .chances import moved, noisy, some_discount, odds_of
+from .chances import moved, noisy, odds_of, some_discount
 from .problem import FAILURE, GOAL, NOTHING_SEEN, Outcome, Seen, State, World
 
 __all__ = ["boxes", "doors", "exits", "hallway", "machine", "machines", "pursuit", "rocks", "search"]

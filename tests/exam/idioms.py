@@ -1,5 +1,7 @@
-"""Ways in which C++ takes a value from one variable to another, for documents whose variables matter only along
-a chain of them. Whoever decides by the text of code which variables matter has to follow every one.
+"""Ways in which C++ takes a value from one variable to another.
+
+Documents are made of them whose variables matter only along a chain. Whoever decides by the text of code
+which variables matter has to follow every one.
 
 A register is a state variable of some type that holds 0 or 1.
 """
@@ -59,7 +61,7 @@ class Register:
 
 
 Idiom = Callable[[Register, Register, str], str | None]
-"""Code that takes the first's value in `state` to the second in the named state; None where it does not fit."""
+"""Code that takes the first's value to the second in the named state; None where it does not fit."""
 
 IDIOMS: dict[str, Idiom] = {}
 

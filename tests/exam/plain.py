@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from itertools import product
 
-from .chances import some_discount, some_scale, odds_of
+from .chances import odds_of, some_discount, some_scale
 from .problem import FAILURE, GOAL, NOTHING_SEEN, RUNNING, Outcome, State, World
 
 __all__ = ["counter", "dense", "endings", "ties"]

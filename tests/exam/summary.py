@@ -139,16 +139,12 @@ class Regrets:
             f"{problem.name} ({answer['states']} states, {answer['actions']} actions, "
             f"{answer['steps']} steps): optimum {answer['optimum']:.6g}, random {answer['random']:.6g}"
         )
-        return "\n".join(
-            [
-                head,
-                *(
-                    f"  {entry['planner']} loses {100 * entry['regret']:.1f} % "
-                    f"+- {100 * entry['standard_error']:.1f} ({entry['used']}; {entry['why']}) {entry['worst_actions'][:60]} {entry['fault']}"
-                    for entry in answer["planners"]
-                ),
-            ]
-        )
+        lines = [head]
+        for entry in answer["planners"]:
+            share = f"{100 * entry['regret']:.1f} % +- {100 * entry['standard_error']:.1f}"
+            lines.append(f"  {entry['planner']} loses {share} ({entry['used']}; {entry['why']})")
+            lines.append(f"    {entry['worst_actions'][:80]} {entry['fault']}")
+        return "\n".join(lines)
 
     def line(self) -> str:
         return ", ".join(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from .chances import moved, noisy, some_discount, odds_of
+from .chances import moved, noisy, odds_of, some_discount
 from .problem import FAILURE, GOAL, NOTHING_SEEN, RUNNING, Outcome, Seen, State, World
 
 __all__ = ["battery", "corridor", "grid", "heaven", "invest", "keys", "late", "lock", "pushing"]

@@ -1,4 +1,4 @@
-"""A share of the exam (tests/exam): random models whose truth is known, awkward documents, and the truth itself."""
+"""A share of the exam (tests/exam): random models whose truth is known, awkward documents, and that truth."""
 
 from __future__ import annotations
 

@@ -145,7 +145,8 @@ TEST("Draws by columns have the weights that the columns were made of") {
     aos::Sampler random{11};
     std::map<int, int> counts;
     constexpr int draws = 100'000;
-    for (int i = 0; i < draws; ++i) ++counts[aos::drawn(columns.data(), static_cast<std::uint32_t>(columns.size()), random.bits())];
+    const auto count = static_cast<std::uint32_t>(columns.size());
+    for (int i = 0; i < draws; ++i) ++counts[aos::drawn(columns.data(), count, random.bits())];
     for (std::size_t i = 0; i < weights.size(); ++i) {
       EXPECT_NEAR(counts[static_cast<int>(i)] / double{draws}, weights[i] / total, 0.006);
     }

@@ -71,7 +71,8 @@ class Claims {
       check("posterior", probability, known_running * reached[chosen].probability + ended,
             1e-9 + belief.error_bound());
       if (posterior.particles().empty()) break;
-      known_running = known_running * reached[chosen].probability / (known_running * reached[chosen].probability + ended);
+      const double goes_on = known_running * reached[chosen].probability;
+      known_running = goes_on / (goes_on + ended);
       belief = posterior;
       exact = reached[chosen].belief;
       automatic.move_to(action, seen);
@@ -81,7 +82,7 @@ class Claims {
   }
 
  private:
-  // Claims --------------------------------------------------------------------------------------------------------------
+  // Claims ------------------------------------------------------------
 
   // The belief that the mission has ended keeps its observations to itself: how likely `seen` is with an ending.
   double ended_and_seen(const Belief& belief, const Mass& exact, int action, int seen) const {
@@ -116,7 +117,8 @@ class Claims {
     for (const auto& entry : difference) distance += std::abs(entry.second);
     ++claims_;
     const double claimed = belief.error_bound();
-    if (distance / 2 > claimed + 1e-9) fail("belief", "total variation within " + number(claimed), distance / 2, distance / 2);
+    if (distance / 2 <= claimed + 1e-9) return;
+    fail("belief", "total variation within " + number(claimed), distance / 2, distance / 2);
   }
 
   void check_exact_values(const Belief& belief, const Mass& exact, double running) {
@@ -134,12 +136,14 @@ class Claims {
     }
   }
 
-  void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact, double running,
-                           int decisions) {
+  void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact,
+                           double running, int decisions) {
     Truth& truth = truth_of(decisions);
     for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
       const std::size_t action = values.size() <= max_actions ? i : choosing_.bits() % values.size();
-      within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4); });
+      within_allowance([&](double seconds) {
+        truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4);
+      });
       const Bracket bracket = truth.action_value(exact, action, decisions);
       check_within(claim + std::to_string(action), values[action], {running * bracket.lower, running * bracket.upper},
                    1e-8 * (largest_ + std::abs(bracket.upper)));
@@ -155,13 +159,16 @@ class Claims {
     who_ = asked + " (" + planner.name() + ")";
     planners_[planner.name()] += 1;
     const std::string& why = planner.why();
-    static const std::regex worth{"(?:with ([0-9]+) decisions to go|without a horizon) the belief is worth between (-?[0-9.e+-]+) and (-?[0-9.e+-]+)"};
+    static const std::regex worth{"(?:with ([0-9]+) decisions to go|without a horizon) the belief is worth between "
+                                  "(-?[0-9.e+-]+) and (-?[0-9.e+-]+)"};
     static const std::regex listed{"([0-9]+) states can be listed"};
     std::smatch found;
     if (std::regex_search(why, found, worth)) {
       const int decisions = found[1].matched ? std::stoi(found[1]) : 0;
       check_bounds(std::stod(found[2]), std::stod(found[3]), exact, running, decisions, why);
-      if (planner.name() == std::string{"sarsop"}) check_lower_values(planner.estimates(belief), exact, running, decisions);
+      if (planner.name() == std::string{"sarsop"}) {
+        check_lower_values(planner.estimates(belief), exact, running, decisions);
+      }
     }
     if (std::regex_search(why, found, listed)) check_states(std::stoul(found[1]), exact, why);
     if (planner.name() == std::string{"exact"}) {
@@ -176,7 +183,8 @@ class Claims {
   Truth& truth_of(int decisions) { return truths_.try_emplace(decisions, flat_, decisions).first->second; }
 
   // Of a belief of which `running` has not ended; the rest is worth nothing.
-  void check_bounds(double lower, double upper, const Mass& exact, double running, int decisions, const std::string& why) {
+  void check_bounds(double lower, double upper, const Mass& exact, double running, int decisions,
+                    const std::string& why) {
     if (decisions == 0 && problem_.discount >= 1) return fail("bounds without an end", why, -INFINITY, INFINITY);
     Truth& truth = truth_of(decisions);
     within_allowance([&](double seconds) { truth.narrow(exact, decisions, 1e-7 * largest_, seconds / 2); });
@@ -202,7 +210,9 @@ class Claims {
     for (std::size_t i = 0; i < std::min(estimates.size(), max_actions); ++i) {
       const std::size_t action = estimates.size() <= max_actions ? i : choosing_.bits() % estimates.size();
       if (estimates[action].n == 0) continue;
-      within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-6 * largest_, seconds / 4); });
+      within_allowance([&](double seconds) {
+        truth.narrow_action(exact, action, decisions, 1e-6 * largest_, seconds / 4);
+      });
       const double upper = running * truth.action_value(exact, action, decisions).upper;
       ++claims_;
       if (estimates[action].q > upper + 1e-8 * (largest_ + std::abs(upper))) {
@@ -222,7 +232,8 @@ class Claims {
   void check_states(std::size_t claimed, const Mass& exact, const std::string& why) {
     const std::size_t classes = told_apart(plain_, exact);
     ++claims_;
-    if (claimed < classes) fail("states that matter", why, static_cast<double>(classes), static_cast<double>(flat_.states()));
+    if (claimed >= classes) return;
+    fail("states that matter", why, static_cast<double>(classes), static_cast<double>(flat_.states()));
   }
 
   // Point-based search on the tables themselves, without the engine's way to them.
@@ -244,8 +255,9 @@ class Claims {
         model.rewards.push_back(flat_.reward(state, action));
         std::map<std::uint32_t, std::map<std::uint32_t, double>> by_next;
         for (const Branch& branch : plain_.branches(state, action)) {
-          const auto seen = observations.try_emplace(branch.observation, static_cast<std::uint32_t>(observations.size()));
-          by_next[branch.next][seen.first->second] += branch.probability;
+          const auto number = static_cast<std::uint32_t>(observations.size());
+          const auto seen = observations.try_emplace(branch.observation, number).first->second;
+          by_next[branch.next][seen] += branch.probability;
         }
         for (const auto& [next, seen] : by_next) {
           double total = 0;
@@ -296,7 +308,7 @@ class Claims {
     who_.clear();
   }
 
-  // Findings ------------------------------------------------------------------------------------------------------------
+  // Findings ------------------------------------------------------------
 
   void check(const std::string& claim, double claimed, double truth, double within) {
     ++claims_;

@@ -1,5 +1,5 @@
-// The exam of the engine's planners and bounds: problems come on standard input, and a report of each goes out as a line
-// of JSON. See tests/exam/__main__.py for how it is called.
+// The exam of the engine's planners and bounds: problems come on standard input, and a report of each goes out as a
+// line of JSON. See tests/exam/__main__.py for how it is called.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -82,7 +82,8 @@ int main(int argc, char** argv) {
         report = json.begin_object().member("problem", problem->name).member("fault", fault.text).end_object().text();
       } catch (const aos::NotEnumerable& obstacle) {
         aos::JsonWriter json;
-        report = json.begin_object().member("problem", problem->name).member("fault", obstacle.reason).end_object().text();
+        json.begin_object().member("problem", problem->name).member("fault", obstacle.reason).end_object();
+        report = json.text();
       }
       std::puts(report.c_str());
       std::fflush(stdout);

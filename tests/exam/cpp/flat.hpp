@@ -33,7 +33,8 @@ struct Reached {
 
 class Flat {
  public:
-  // With `takes_together`, observations that tell the same are one, which is what values need; the first stands for all.
+  // With `takes_together`, observations that tell the same are one, which is what values need; the first stands for
+  // all.
   Flat(const Problem& problem, bool takes_together)
       : problem_(problem), rewards_(problem.rows.size()), branches_(problem.rows.size()) {
     for (std::size_t row = 0; row < problem.rows.size(); ++row) {

@@ -1,11 +1,11 @@
-// What a planner loses in missions against the optimum, and beside it what exact look-ahead loses that plans for a whole
-// horizon anew at every step.
+// What a planner loses in missions against the optimum, and beside it what exact look-ahead loses that plans for a
+// whole horizon anew at every step.
 //
 // The return of a mission is estimated without most of its luck: with any function V of beliefs,
 //   V(b0) + sum of discount^t (r(b_t, a_t) + discount * E V(b_t+1) - V(b_t))
-// has the expectation of the return, and where V is nearly the optimum its spread is nearly that of the regret. Here V is
-// the lower bound of the truth. All planners meet the same worlds: what is drawn depends on the seed, the mission and the
-// step only.
+// has the expectation of the return, and where V is nearly the optimum its spread is nearly that of the regret. Here V
+// is the lower bound of the truth. All planners meet the same worlds: what is drawn depends on the seed, the mission
+// and the step only.
 #pragma once
 
 #include <algorithm>
@@ -163,8 +163,9 @@ class Regret {
       const int seen = drawn_from(problem_.sensings[outcome.sensing], seen_drawn).observation;
       hidden = outcome.next;
       if (!problem_.is_running(hidden)) break;
+      const int sight = flat_.sight(a, seen);
       const auto found = std::find_if(all_reached.begin(), all_reached.end(),
-                                      [&](const Reached& reached) { return reached.observation == flat_.sight(a, seen); });
+                                      [&](const Reached& reached) { return reached.observation == sight; });
       exact = found->belief;
       value = values[static_cast<std::size_t>(found - all_reached.begin())];
       if (planner == nullptr) continue;
@@ -180,7 +181,8 @@ class Regret {
   }
 
   Decision searched(Planner& planner, const std::string& name, const Belief& belief, int mission, int step) {
-    aos::Sampler random{mixed(options_.seed, static_cast<std::uint64_t>(mission), 2 + static_cast<std::uint64_t>(step))};
+    const auto use = 2 + static_cast<std::uint64_t>(step);
+    aos::Sampler random{mixed(options_.seed, static_cast<std::uint64_t>(mission), use)};
     aos::Budget budget;
     budget.seconds = options_.seconds;
     budget.simulations = options_.simulations;
@@ -188,8 +190,8 @@ class Regret {
     return {planner.choice(planner.estimates(belief)), planner.name(), planner.why()};
   }
 
-  // The best action with a whole horizon to go. Of equal ones, the one that is better with fewer decisions to go, so that
-  // nothing is put off for ever where nothing is lost by waiting.
+  // The best action with a whole horizon to go. Of equal ones, the one that is better with fewer decisions to go, so
+  // that nothing is put off for ever where nothing is lost by waiting.
   int looked_ahead(const Mass& exact) {
     const double scale = std::max(flat_.largest_reward(), 1e-9);
     truth_.narrow(exact, problem_.horizon, 1e-6 * scale, 0.1);

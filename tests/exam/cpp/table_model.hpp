@@ -1,5 +1,5 @@
-// A model for the engine's templates whose steps are looked up in the tables of the problem at hand, so that thousands of
-// models run through the engine's own headers without being compiled.
+// A model for the engine's templates whose steps are looked up in the tables of the problem at hand, so that thousands
+// of models run through the engine's own headers without being compiled.
 #pragma once
 
 #include <cmath>
