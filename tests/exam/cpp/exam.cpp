@@ -21,23 +21,26 @@ double number_of(const Options& options, const std::string& name, double otherwi
   return found != options.end() ? std::atof(found->second.c_str()) : otherwise;
 }
 
-// The true values of the actions at the start, with a horizon's decisions to go, as brackets.
-std::string values_of(const exam::Problem& problem, double seconds) {
+// The true values of the actions at the start, as brackets: with so many decisions to go, or without an end (0).
+std::string values_of(const exam::Problem& problem, int decisions, double seconds) {
   const exam::Flat flat{problem, true};
-  exam::Truth truth{flat, problem.horizon};
+  exam::Truth truth{flat, decisions};
   const auto [start, running] = flat.start();
   aos::JsonWriter json;
   json.begin_object().member("problem", problem.name).key("values").begin_array();
   for (std::size_t action = 0; action < problem.actions; ++action) {
-    truth.narrow_action(start, action, problem.horizon, 1e-9 * flat.largest_reward(), seconds);
-    const exam::Bracket value = truth.action_value(start, action, problem.horizon);
+    truth.narrow_action(start, action, decisions, 1e-9 * flat.largest_reward(), seconds);
+    const exam::Bracket value = truth.action_value(start, action, decisions);
     json.begin_array().value(running * value.lower).value(running * value.upper).end_array();
   }
   return json.end_array().end_object().text();
 }
 
 std::string report_of(const std::string& what, const exam::Problem& problem, const Options& options) {
-  if (what == "values") return values_of(problem, number_of(options, "truth", 1));
+  if (what == "values") {
+    const auto decisions = static_cast<int>(number_of(options, "decisions", problem.horizon));
+    return values_of(problem, decisions, number_of(options, "truth", 1));
+  }
   if (what == "bounds") {
     exam::ClaimOptions claims;
     claims.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
