@@ -1,5 +1,5 @@
-"""What may be done to a world without changing what it is worth, or hardly: variables that matter to nobody, other
-units, actions in another order.
+"""What may be done to a world that hardly changes what it is worth: variables that matter to nobody, other
+units, actions in another order, observations that tell nothing.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ def disguised(random: random.Random, world: World) -> World:
         world = _in_other_units(random, world)
     if random.random() < 0.3:
         world = random.choice((_with_clock, _with_dice, _with_diary, _with_label))(random, world)
+    if random.random() < 0.15:
+        world = _with_chatter(random, world)
     return world
 
 
@@ -76,6 +78,25 @@ def _with_label(random: random.Random, world: World) -> World:
     values = random.randint(2, 4)
     odds = [(1 / values, value) for value in range(values)]
     return _beside(random, world, "label", odds, lambda value, action: [(1.0, value)])
+
+
+def _with_chatter(random: random.Random, world: World) -> World:
+    """Every observation comes in shades, by chance, that tell nothing; trees of observations grow by it."""
+    shades = random.randint(2, 4)
+
+    def step(state: State, action: int) -> list[Outcome]:
+        found = []
+        for out in world.step(state, action):
+            seen = out.seen if isinstance(out.seen, tuple) else ((out.seen, 1.0),)
+            shaded = tuple(
+                ((observation + 1) * shades + shade, odds / shades)
+                for observation, odds in seen
+                for shade in range(shades)
+            )
+            found.append(dataclasses.replace(out, seen=shaded))
+        return found
+
+    return dataclasses.replace(world, step=step)
 
 
 def _beside(random: random.Random, world: World, name: str, starts: Odds, change: Change) -> World:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import os
 import subprocess
@@ -22,12 +21,8 @@ __all__ = ["Driver", "built_driver"]
 _CPP = Path(__file__).parent / "cpp"
 
 
-def built_driver(cache_dir: Path) -> Path:
+async def built_driver(cache_dir: Path) -> Path:
     """The executable, from the cache or compiled now, which takes about a minute."""
-    return asyncio.run(_built(cache_dir))
-
-
-async def _built(cache_dir: Path) -> Path:
     compiler = await find_compiler()
     sources = [*sorted(_CPP.glob("*")), *sorted(SOURCES.rglob("*.[ch]pp"))]
     name = f"exam-{digest_of([compiler.version, *(path.read_text() for path in sources)])}"
@@ -82,7 +77,8 @@ class Driver:
         if line:
             report: dict[str, Any] = json.loads(line)
             return report
-        status = process.wait()
+        process.communicate()
+        status = process.returncode
         self._process = None
         ending = f"no report within {self._patience_s:.0f} s" if is_late else f"ended with status {status}"
         return {"problem": problem.name, "crash": ending}
@@ -91,7 +87,7 @@ class Driver:
         """Ends the process."""
         if self._process is not None:
             self._process.kill()
-            self._process.wait()
+            self._process.communicate()
             self._process = None
 
     def _start(self) -> subprocess.Popen[str]:

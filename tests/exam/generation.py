@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from contextlib import suppress
 
 from .disguises import disguised
 from .families import FAMILIES
@@ -29,9 +30,7 @@ def problems(families: Sequence[str], count: int, seed: int, large: bool, max_st
         family = families[len(found) % len(families)]
         # Where not all are to be large, every third one is.
         mark = "+" if large or len(found) // len(families) % 3 == 2 else ""
-        try:
+        with suppress(TooLarge):
             found.append(named_problem(f"{family}{mark}/{seed}", 20_000 if large else max_states))
-        except TooLarge:
-            pass
         seed += 1
     return found

@@ -1,7 +1,7 @@
 """Problems as `.pomdp` files, for other solvers.
 
-There an observation depends on the state that an action leads to. Where here it depends on more, such states are
-written once for each sensing that they are reached by.
+There an observation depends on the state that an action leads to. Where here it depends on more, such states
+are written once for each sensing that they are reached by.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def pomdp_text(problem: Problem) -> str:
                 continue
             for seen, odds in problem.sensings[sensings[min(copy, len(sensings) - 1)]]:
                 lines.append(f"O: {action} : {number} : {index[seen]} {odds!r}")
-    for (state, copy), number in copies.items():
+    for (state, _), number in copies.items():
         for action in actions:
             reward = 0.0
             moves: dict[int, float] = {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import random
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
@@ -17,7 +16,6 @@ __all__ = [
     "State",
     "TooLarge",
     "World",
-    "odds_of",
     "tabulate",
 ]
 
@@ -65,7 +63,7 @@ class TooLarge(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Problem:
-    """A world whose states are listed; `rows` have (probability, next, sensing, reward) by state and action."""
+    """A world whose states are listed; `rows` hold (probability, next, sensing, reward)."""
 
     name: str
     world: World
@@ -73,6 +71,10 @@ class Problem:
     sensings: Sequence[tuple[tuple[int, float], ...]]
     starts: Sequence[tuple[int, float]]
     rows: Mapping[tuple[int, int], Sequence[tuple[float, int, int, float]]]
+
+    def with_horizon(self, horizon: int) -> Problem:
+        """The same with so many decisions."""
+        return dataclasses.replace(self, world=dataclasses.replace(self.world, horizon=horizon))
 
     def text(self) -> str:
         """As the driver reads it."""
@@ -150,15 +152,3 @@ def _normalised(seen: tuple[tuple[int, float], ...]) -> tuple[tuple[int, float],
         merged[observation] += odds
     total = sum(merged.values())
     return tuple((observation, odds / total) for observation, odds in sorted(merged.items()) if odds > 0)
-
-
-def odds_of(random: random.Random, count: int, *, few: int = 0) -> list[float]:
-    """A distribution in steps of a hundredth, over `few` of the outcomes where that is given."""
-    weights = [0.0] * count
-    places = random.sample(range(count), few) if 0 < few < count else range(count)
-    for place in places:
-        weights[place] = random.expovariate(1)
-    total = sum(weights)
-    rounded = [round(100 * weight / total) for weight in weights]
-    rounded[max(range(count), key=rounded.__getitem__)] += 100 - sum(rounded)
-    return [weight / 100 for weight in rounded]

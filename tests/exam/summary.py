@@ -14,6 +14,9 @@ __all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets"]
 MEAN_TARGET, WORST_TARGET = 0.01, 0.10
 """How much more of the range than exact look-ahead a planner may lose."""
 
+SOUND_LOOK_AHEAD = 0.02
+"""What look-ahead loses that is near the optimum. Where it loses more, it plans beyond the mission's end."""
+
 
 def _family(problem: Problem) -> str:
     return problem.name.partition("/")[0]
@@ -48,8 +51,8 @@ class Bounds:
         if "claims" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         lines = [
-            f"{problem.name} ({answer['states']} states), {finding['where']}: {_kind(finding)}: {finding['said']}; "
-            f"it is between {_number(finding['lower'])} and {_number(finding['upper'])}"
+            f"{problem.name} ({answer['states']} states), {finding['where']}: {_kind(finding)}: "
+            f"{finding['said']}; it is between {_number(finding['lower'])} and {_number(finding['upper'])}"
             for finding in sorted(answer["false"], key=_is_rounding)[:3]
         ]
         more = len(answer["false"]) - len(lines)
@@ -101,7 +104,8 @@ class Regrets:
         default_factory=lambda: defaultdict(lambda: defaultdict(list))
     )
     worst: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lambda: defaultdict(list))
-    errors: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
+    sound: dict[str, list[tuple[float, str]]] = dataclasses.field(default_factory=lambda: defaultdict(list))
+    by_decisions: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
     seconds: dict[str, list[float]] = dataclasses.field(default_factory=lambda: defaultdict(list))
     longest: dict[str, float] = dataclasses.field(default_factory=lambda: defaultdict(float))
     used: dict[str, Counter[str]] = dataclasses.field(default_factory=lambda: defaultdict(Counter))
@@ -121,7 +125,7 @@ class Regrets:
         is_bad = False
         for name, entry in played.items():
             self.regrets[_family(problem)][name].append(entry["regret"])
-            self.errors[name].append(entry["standard_error"])
+            self.by_decisions[name].append(entry["by_decisions"])
             self.seconds[name].append(entry["seconds"])
             self.longest[name] = max(self.longest[name], entry["longest"])
             self.used[name][entry["used"]] += 1
@@ -129,6 +133,8 @@ class Regrets:
                 # A model in which look-ahead itself goes wrong makes up for no other.
                 excess = max(entry["regret"] - reference, 0.0)
                 self.worst[name].append((excess, problem.name))
+                if reference <= SOUND_LOOK_AHEAD:
+                    self.sound[name].append((excess, problem.name))
                 is_bad |= excess > WORST_TARGET or bool(entry["fault"])
         return is_bad
 
@@ -136,19 +142,16 @@ class Regrets:
         if "optimum" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         head = (
-            f"{problem.name} ({answer['states']} states, {answer['actions']} actions, {answer['steps']} steps): "
-            f"optimum {answer['optimum']:.6g}, random {answer['random']:.6g}"
+            f"{problem.name} ({answer['states']} states, {answer['actions']} actions, "
+            f"{answer['steps']} steps): optimum {answer['optimum']:.6g}, random {answer['random']:.6g}"
         )
-        return "\n".join(
-            [
-                head,
-                *(
-                    f"  {entry['planner']} loses {100 * entry['regret']:.1f} % +- {100 * entry['standard_error']:.1f}"
-                    f" ({entry['used']}; {entry['why']}) {entry['worst_actions'][:60]} {entry['fault']}"
-                    for entry in answer["planners"]
-                ),
-            ]
-        )
+        lines = [head]
+        for entry in answer["planners"]:
+            share = f"{100 * entry['regret']:.1f} % +- {100 * entry['standard_error']:.1f}"
+            decisions = f"{100 * entry['by_decisions']:.1f} % by its decisions"
+            lines.append(f"  {entry['planner']} loses {share}, {decisions} ({entry['used']}; {entry['why']})")
+            lines.append(f"    {entry['worst_actions'][:80]} {entry['fault']}")
+        return "\n".join(lines)
 
     def line(self) -> str:
         return ", ".join(
@@ -172,14 +175,16 @@ class Regrets:
             if all_
         )
         lines.append(f"  {'all':12}{max((len(a) for a in everything.values()), default=0):7}{cells}")
-        for name, found_worst in self.worst.items():
-            worst, model = max(found_worst)
-            lines.append(
-                f"  {name} beyond look-ahead: mean {100 * fmean(excess for excess, _ in found_worst):.2f} %, "
-                f"worst {100 * worst:.1f} % ({model}); {1000 * fmean(self.seconds[name]):.0f} ms a decision, longest "
-                f"{self.longest[name]:.2f} s; began with "
-                + ", ".join(f"{used} {count}" for used, count in self.used[name].most_common())
-            )
+        for name in self.worst:
+            began = ", ".join(f"{used} {count}" for used, count in self.used[name].most_common())
+            lines += [
+                f"  {name} beyond look-ahead: {_mean_and_worst(self.worst[name])}; "
+                f"its decisions by themselves lose {100 * fmean(self.by_decisions[name]):.2f} %",
+                f"    where look-ahead is near the optimum ({len(self.sound[name])} models): "
+                f"{_mean_and_worst(self.sound[name])}",
+                f"    {1000 * fmean(self.seconds[name]):.0f} ms a decision, "
+                f"longest {self.longest[name]:.2f} s; began with {began}",
+            ]
         lines += [f"  {count} models left out: {why}" for why, count in self.rejected.items()]
         lines += [f"  crashed: {', '.join(self.crashes)}"] if self.crashes else []
         return "\n".join(lines)
@@ -200,3 +205,10 @@ class Regrets:
             "rejected": self.rejected,
             "crashes": self.crashes,
         }
+
+
+def _mean_and_worst(excesses: list[tuple[float, str]]) -> str:
+    if not excesses:
+        return "none"
+    worst, model = max(excesses)
+    return f"mean {100 * fmean(excess for excess, _ in excesses):.2f} %, worst {100 * worst:.1f} % ({model})"

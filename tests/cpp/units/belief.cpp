@@ -14,7 +14,9 @@ using Belief = aos::Belief<TableModel>;
 
 double weight_of(const Belief& belief, std::uint32_t state) {
   double weight = 0;
-  for (const auto& particle : belief.particles()) weight += TableModel::number_of(particle.state) == state ? particle.weight : 0;
+  for (const auto& particle : belief.particles()) {
+    if (TableModel::number_of(particle.state) == state) weight += particle.weight;
+  }
   return weight;
 }
 

@@ -39,7 +39,7 @@ TEST("The first bounds of a corridor enclose its value, and trials close them") 
     const double value = 10 * std::pow(0.9, cells - 1);
     const auto before = search.bounds();
     EXPECT(before.first <= value + 1e-12 && value - 1e-12 <= before.second);
-    search.improve(5000, never);
+    search.improve(3'000'000, never);
     const auto after = search.bounds();
     EXPECT(after.first <= value + 1e-12 && value - 1e-12 <= after.second);
     EXPECT(after.second - after.first <= 2e-3);
@@ -50,7 +50,7 @@ TEST("The bounds of the tiger close on the value that other programs give") {
   const Problem tiger = units::tiger();
   point_based::OnlineSarsop search{flat_model(tiger)};
   EXPECT(search.move_to({{0, 0.5}, {1, 0.5}}));
-  search.improve(200'000, never);
+  search.improve(3'000'000, never);
   const auto [lower, upper] = search.bounds();
   EXPECT(lower <= 19.3714 && 19.3713 <= upper);
   EXPECT_NEAR(upper, lower, 0.05);
@@ -74,7 +74,7 @@ TEST("Each action has bounds of its own, of which the best are those of the beli
   const Problem tiger = units::tiger();
   point_based::OnlineSarsop search{flat_model(tiger)};
   search.move_to({{0, 0.5}, {1, 0.5}});
-  search.improve(20'000, never);
+  search.improve(3'000'000, never);
   const auto actions = search.action_bounds();
   EXPECT_EQUAL(actions.size(), 3u);
   EXPECT(actions[0].lower > actions[1].upper);
@@ -145,7 +145,8 @@ TEST("Draws by columns have the weights that the columns were made of") {
     aos::Sampler random{11};
     std::map<int, int> counts;
     constexpr int draws = 100'000;
-    for (int i = 0; i < draws; ++i) ++counts[aos::drawn(columns.data(), static_cast<std::uint32_t>(columns.size()), random.bits())];
+    const auto count = static_cast<std::uint32_t>(columns.size());
+    for (int i = 0; i < draws; ++i) ++counts[aos::drawn(columns.data(), count, random.bits())];
     for (std::size_t i = 0; i < weights.size(); ++i) {
       EXPECT_NEAR(counts[static_cast<int>(i)] / double{draws}, weights[i] / total, 0.006);
     }

@@ -30,7 +30,8 @@ TEST("Few and many observations after an action are all found, also beside those
     }
     for (int known = observation; known >= 0; known -= 37) {
       for (std::uint32_t action = 0; action < 2; ++action) {
-        EXPECT_EQUAL(tree.find_child(action_of(tree, 0, action), known - 100), children[action][static_cast<std::size_t>(known)]);
+        const std::uint32_t child = children[action][static_cast<std::size_t>(known)];
+        EXPECT_EQUAL(tree.find_child(action_of(tree, 0, action), known - 100), child);
       }
     }
   }

@@ -163,16 +163,16 @@ TEST("Exact values are those that can be worked out by hand") {
   EXPECT(space.reach(belief));
   aos::ExactEvaluation<TableModel> evaluation{space, {.beliefs = 1000}};
   const auto one = evaluation.action_values(belief, 1);
-  EXPECT_NEAR(one[0], -1.0, 1e-12);
-  EXPECT_NEAR(one[1], -45.0, 1e-12);
+  EXPECT_NEAR(one[0].value, -1.0, 1e-12);
+  EXPECT_NEAR(one[1].value, -45.0, 1e-12);
   const auto two = evaluation.action_values(belief, 2);
-  EXPECT_NEAR(two[0], -1 - 0.95, 1e-12);
-  EXPECT_NEAR(two[2], -45 - 0.95, 1e-12);
+  EXPECT_NEAR(two[0].value, -1 - 0.95, 1e-12);
+  EXPECT_NEAR(two[2].value, -45 - 0.95, 1e-12);
   // Listen twice; hear the same (0.745) and open the other door, or listen once more.
   const double same = 0.85 * 0.85 + 0.15 * 0.15;
   const double open = (0.85 * 0.85 * 10 - 0.15 * 0.15 * 100) / same;
   const auto three = evaluation.action_values(belief, 3);
-  EXPECT_NEAR(three[0], -1 - 0.95 + 0.95 * 0.95 * (same * open - (1 - same)), 1e-12);
+  EXPECT_NEAR(three[0].value, -1 - 0.95 + 0.95 * 0.95 * (same * open - (1 - same)), 1e-12);
 }
 
 TEST("Exact values that exceed the budget are refused, and no wrong ones given") {

@@ -38,8 +38,8 @@ inline std::vector<exam::Outcome>& row(Problem& problem, std::size_t state, std:
   return problem.rows[state * problem.actions + action];
 }
 
-// The tiger behind one of two doors (Kaelbling, Littman and Cassandra, 1998): listen, open left, open right. It is heard
-// on the left as 0.
+// The tiger behind one of two doors (Kaelbling, Littman and Cassandra, 1998): listen, open left, open right. It is
+// heard on the left as 0.
 inline Problem tiger() {
   Problem problem = world(2, 3, 0.95);
   problem.starts = {{0, 0.5}, {1, 0.5}};

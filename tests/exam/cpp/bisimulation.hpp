@@ -13,8 +13,8 @@
 
 namespace exam {
 
-// The running states that can be reached from a belief, by the coarsest partition whose states earn the same, lead to the
-// same parts by the same observations. Whoever takes fewer apart, changes the model.
+// The running states that can be reached from a belief, by the coarsest partition whose states earn the same, lead to
+// the same parts by the same observations. Whoever takes fewer apart, changes the model.
 inline std::size_t told_apart(const Flat& flat, const Mass& from) {
   std::vector<char> is_reached(flat.states(), 0);
   std::vector<std::uint32_t> found;

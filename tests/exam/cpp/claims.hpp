@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <optional>
 #include <regex>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,7 +39,7 @@ class Claims {
   using Planner = aos::Planner<TableModel>;
 
   Claims(const Problem& problem, ClaimOptions options)
-      : problem_(problem), options_(options), flat_(problem), random_(options.seed) {
+      : problem_(problem), options_(options), flat_(problem, true), plain_(problem, false), random_(options.seed) {
     TableModel::take(problem);
     largest_ = std::max(flat_.largest_reward(), 1e-9);
   }
@@ -50,7 +50,6 @@ class Claims {
     Belief belief = Belief::initial(random_);
     Mass exact = start;
     double known_running = running;
-    if (problem_.discount < 1) without_end_.emplace(flat_, 0);
     Planner automatic;
     Planner point_based;
     start_numbers(start);
@@ -59,11 +58,11 @@ class Claims {
       check_belief(belief, exact, known_running);
       check_exact_values(belief, exact, known_running);
       check_planner(aos::PlannerKind::automatic, automatic, belief, exact, known_running);
-      if (problem_.discount < 1) check_planner(aos::PlannerKind::sarsop, point_based, belief, exact, known_running);
+      check_planner(aos::PlannerKind::sarsop, point_based, belief, exact, known_running);
       check_numbers(exact);
       if (step == options_.steps) break;
       const int action = random_.below(TableModel::action_count());
-      std::vector<Reached> reached = flat_.reached(exact, static_cast<std::size_t>(action));
+      std::vector<Reached> reached = plain_.reached(exact, static_cast<std::size_t>(action));
       if (reached.empty()) break;
       const auto chosen = static_cast<std::size_t>(random_.below(static_cast<int>(reached.size())));
       const int seen = reached[chosen].observation;
@@ -72,7 +71,8 @@ class Claims {
       check("posterior", probability, known_running * reached[chosen].probability + ended,
             1e-9 + belief.error_bound());
       if (posterior.particles().empty()) break;
-      known_running = known_running * reached[chosen].probability / (known_running * reached[chosen].probability + ended);
+      const double goes_on = known_running * reached[chosen].probability;
+      known_running = goes_on / (goes_on + ended);
       belief = posterior;
       exact = reached[chosen].belief;
       automatic.move_to(action, seen);
@@ -82,7 +82,7 @@ class Claims {
   }
 
  private:
-  // Claims --------------------------------------------------------------------------------------------------------------
+  // Claims ------------------------------------------------------------
 
   // The belief that the mission has ended keeps its observations to itself: how likely `seen` is with an ending.
   double ended_and_seen(const Belief& belief, const Mass& exact, int action, int seen) const {
@@ -117,7 +117,8 @@ class Claims {
     for (const auto& entry : difference) distance += std::abs(entry.second);
     ++claims_;
     const double claimed = belief.error_bound();
-    if (distance / 2 > claimed + 1e-9) fail("belief", "total variation within " + number(claimed), distance / 2, distance / 2);
+    if (distance / 2 <= claimed + 1e-9) return;
+    fail("belief", "total variation within " + number(claimed), distance / 2, distance / 2);
   }
 
   void check_exact_values(const Belief& belief, const Mass& exact, double running) {
@@ -135,12 +136,14 @@ class Claims {
     }
   }
 
-  void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact, double running,
-                           int decisions) {
-    Truth& truth = with_end_.try_emplace(decisions, flat_, decisions).first->second;
-    for (std::size_t i = 0; i < std::min(values.size(), most_actions); ++i) {
-      const std::size_t action = values.size() <= most_actions ? i : choosing_.bits() % values.size();
-      within_allowance([&](double seconds) { truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4); });
+  void check_action_values(const std::string& claim, const std::vector<double>& values, const Mass& exact,
+                           double running, int decisions) {
+    Truth& truth = truth_of(decisions);
+    for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
+      const std::size_t action = values.size() <= max_actions ? i : choosing_.bits() % values.size();
+      within_allowance([&](double seconds) {
+        truth.narrow_action(exact, action, decisions, 1e-7 * largest_, seconds / 4);
+      });
       const Bracket bracket = truth.action_value(exact, action, decisions);
       check_within(claim + std::to_string(action), values[action], {running * bracket.lower, running * bracket.upper},
                    1e-8 * (largest_ + std::abs(bracket.upper)));
@@ -156,12 +159,16 @@ class Claims {
     who_ = asked + " (" + planner.name() + ")";
     planners_[planner.name()] += 1;
     const std::string& why = planner.why();
-    static const std::regex worth{"worth between (-?[0-9.e+-]+) and (-?[0-9.e+-]+)"};
+    static const std::regex worth{"(?:with ([0-9]+) decisions to go|without a horizon) the belief is worth between "
+                                  "(-?[0-9.e+-]+) and (-?[0-9.e+-]+)"};
     static const std::regex listed{"([0-9]+) states can be listed"};
     std::smatch found;
-    if (std::regex_search(why, found, worth) && without_end_) {
-      check_bounds(std::stod(found[1]), std::stod(found[2]), exact, running, why);
-      if (planner.name() == std::string{"sarsop"}) check_lower_values(planner.estimates(belief), exact, running);
+    if (std::regex_search(why, found, worth)) {
+      const int decisions = found[1].matched ? std::stoi(found[1]) : 0;
+      check_bounds(std::stod(found[2]), std::stod(found[3]), exact, running, decisions, why);
+      if (planner.name() == std::string{"sarsop"}) {
+        check_lower_values(planner.estimates(belief), exact, running, decisions);
+      }
     }
     if (std::regex_search(why, found, listed)) check_states(std::stoul(found[1]), exact, why);
     if (planner.name() == std::string{"exact"}) {
@@ -172,10 +179,16 @@ class Claims {
     who_.clear();
   }
 
+  // The truth with so many decisions to go; 0 counts none.
+  Truth& truth_of(int decisions) { return truths_.try_emplace(decisions, flat_, decisions).first->second; }
+
   // Of a belief of which `running` has not ended; the rest is worth nothing.
-  void check_bounds(double lower, double upper, const Mass& exact, double running, const std::string& why) {
-    within_allowance([&](double seconds) { without_end_->narrow(exact, 0, 1e-7 * largest_, seconds / 2); });
-    Bracket bracket = without_end_->value(exact, 0);
+  void check_bounds(double lower, double upper, const Mass& exact, double running, int decisions,
+                    const std::string& why) {
+    if (decisions == 0 && problem_.discount >= 1) return fail("bounds without an end", why, -INFINITY, INFINITY);
+    Truth& truth = truth_of(decisions);
+    within_allowance([&](double seconds) { truth.narrow(exact, decisions, 1e-7 * largest_, seconds / 2); });
+    Bracket bracket = truth.value(exact, decisions);
     bracket = {running * bracket.lower, running * bracket.upper};
     widest_ = std::max(widest_, bracket.gap() / largest_);
     const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
@@ -191,12 +204,16 @@ class Claims {
   }
 
   // Of point-based search: what each action is worth at least.
-  void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running) {
-    for (std::size_t i = 0; i < std::min(estimates.size(), most_actions); ++i) {
-      const std::size_t action = estimates.size() <= most_actions ? i : choosing_.bits() % estimates.size();
+  void check_lower_values(const std::vector<aos::ActionEstimate>& estimates, const Mass& exact, double running,
+                          int decisions) {
+    Truth& truth = truth_of(decisions);
+    for (std::size_t i = 0; i < std::min(estimates.size(), max_actions); ++i) {
+      const std::size_t action = estimates.size() <= max_actions ? i : choosing_.bits() % estimates.size();
       if (estimates[action].n == 0) continue;
-      within_allowance([&](double seconds) { without_end_->narrow_action(exact, action, 0, 1e-6 * largest_, seconds / 4); });
-      const double upper = running * without_end_->action_value(exact, action, 0).upper;
+      within_allowance([&](double seconds) {
+        truth.narrow_action(exact, action, decisions, 1e-6 * largest_, seconds / 4);
+      });
+      const double upper = running * truth.action_value(exact, action, decisions).upper;
       ++claims_;
       if (estimates[action].q > upper + 1e-8 * (largest_ + std::abs(upper))) {
         fail("lower value of action " + std::to_string(action), number(estimates[action].q), -INFINITY, upper);
@@ -213,14 +230,14 @@ class Claims {
   }
 
   void check_states(std::size_t claimed, const Mass& exact, const std::string& why) {
-    const std::size_t classes = told_apart(flat_, exact);
+    const std::size_t classes = told_apart(plain_, exact);
     ++claims_;
-    if (claimed < classes) fail("states that matter", why, static_cast<double>(classes), static_cast<double>(flat_.states()));
+    if (claimed >= classes) return;
+    fail("states that matter", why, static_cast<double>(classes), static_cast<double>(flat_.states()));
   }
 
   // Point-based search on the tables themselves, without the engine's way to them.
   void start_numbers(const Mass& start) {
-    if (problem_.discount >= 1) return;
     aos::point_based::FlatModel model;
     model.states = flat_.states();
     model.actions = flat_.actions();
@@ -237,9 +254,10 @@ class Claims {
         }
         model.rewards.push_back(flat_.reward(state, action));
         std::map<std::uint32_t, std::map<std::uint32_t, double>> by_next;
-        for (const Branch& branch : flat_.branches(state, action)) {
-          const auto seen = observations.try_emplace(branch.observation, static_cast<std::uint32_t>(observations.size()));
-          by_next[branch.next][seen.first->second] += branch.probability;
+        for (const Branch& branch : plain_.branches(state, action)) {
+          const auto number = static_cast<std::uint32_t>(observations.size());
+          const auto seen = observations.try_emplace(branch.observation, number).first->second;
+          by_next[branch.next][seen] += branch.probability;
         }
         for (const auto& [next, seen] : by_next) {
           double total = 0;
@@ -256,21 +274,41 @@ class Claims {
     }
     model.observations = observations.size();
     model.starts.push_back({1, {start.begin(), start.end()}});
-    numbers_ = std::make_unique<aos::point_based::OnlineSarsop>(std::move(model));
+    for (const int decisions : {0, problem_.horizon}) {
+      if (decisions == 0 && problem_.discount >= 1) continue;
+      model.horizon = static_cast<std::size_t>(decisions);
+      try {
+        numbers_[decisions] = std::make_unique<aos::point_based::OnlineSarsop>(model);
+      } catch (const std::length_error&) {
+        continue;
+      }
+    }
   }
 
   void check_numbers(const Mass& exact) {
-    if (!numbers_) return;
-    who_ = "point-based search on the tables";
-    if (numbers_->move_to({exact.begin(), exact.end()})) {
-      numbers_->improve(options_.simulations, [] { return false; });
-      const auto [lower, upper] = numbers_->bounds();
-      check_bounds(lower, upper, exact, 1, "between " + number(lower) + " and " + number(upper));
+    for (const auto& [decisions, search] : numbers_) {
+      who_ = decisions > 0 ? "point-based search on the tables" : "point-based search on the tables, without an end";
+      if (!search->move_to({exact.begin(), exact.end()})) continue;
+      search->improve(1000 * options_.simulations, [] { return false; });
+      const auto [lower, upper] = search->bounds();
+      check_bounds(lower, upper, exact, 1, decisions, "between " + number(lower) + " and " + number(upper));
+      const auto actions = search->action_bounds();
+      Truth& truth = truth_of(decisions);
+      for (std::size_t i = 0; i < std::min(actions.size(), max_actions); ++i) {
+        const std::size_t action = actions.size() <= max_actions ? i : choosing_.bits() % actions.size();
+        const Bracket bracket = truth.action_value(exact, action, decisions);
+        const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
+        ++claims_;
+        if (actions[action].lower > bracket.upper + rounding || actions[action].upper < bracket.lower - rounding) {
+          fail("bounds of action " + std::to_string(action),
+               number(actions[action].lower) + " to " + number(actions[action].upper), bracket.lower, bracket.upper);
+        }
+      }
     }
     who_.clear();
   }
 
-  // Findings ------------------------------------------------------------------------------------------------------------
+  // Findings ------------------------------------------------------------
 
   void check(const std::string& claim, double claimed, double truth, double within) {
     ++claims_;
@@ -298,18 +336,18 @@ class Claims {
     return json.text();
   }
 
-  static constexpr std::size_t most_actions = 6;  // that are looked at where there are many
+  static constexpr std::size_t max_actions = 6;  // that are looked at where there are many
 
   const Problem& problem_;
   ClaimOptions options_;
   Flat flat_;
+  Flat plain_;  // by single observations
   aos::Sampler random_;
   aos::Sampler choosing_{1};  // what is looked at where not all can be
   double largest_ = 0;
   double allowance_ = options_.truth_seconds;
-  std::optional<Truth> without_end_;
-  std::map<int, Truth> with_end_;  // by decisions
-  std::unique_ptr<aos::point_based::OnlineSarsop> numbers_;
+  std::map<int, Truth> truths_;  // by decisions; 0 counts none
+  std::map<int, std::unique_ptr<aos::point_based::OnlineSarsop>> numbers_;  // by decisions; 0 counts none
   int claims_ = 0;
   double widest_ = 0;
   std::map<std::string, int> planners_;

@@ -1,5 +1,5 @@
-// The exam of the engine's planners and bounds: problems come on standard input, and a report of each goes out as a line
-// of JSON. See tests/exam/__main__.py for how it is called.
+// The exam of the engine's planners and bounds: problems come on standard input, and a report of each goes out as a
+// line of JSON. See tests/exam/__main__.py for how it is called.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -10,6 +10,7 @@
 #include "aos/model/support.hpp"
 #include "claims.hpp"
 #include "regret.hpp"
+#include "truth.hpp"
 
 namespace {
 
@@ -20,7 +21,26 @@ double number_of(const Options& options, const std::string& name, double otherwi
   return found != options.end() ? std::atof(found->second.c_str()) : otherwise;
 }
 
+// The true values of the actions at the start, as brackets: with so many decisions to go, or without an end (0).
+std::string values_of(const exam::Problem& problem, int decisions, double seconds) {
+  const exam::Flat flat{problem, true};
+  exam::Truth truth{flat, decisions};
+  const auto [start, running] = flat.start();
+  aos::JsonWriter json;
+  json.begin_object().member("problem", problem.name).key("values").begin_array();
+  for (std::size_t action = 0; action < problem.actions; ++action) {
+    truth.narrow_action(start, action, decisions, 1e-9 * flat.largest_reward(), seconds);
+    const exam::Bracket value = truth.action_value(start, action, decisions);
+    json.begin_array().value(running * value.lower).value(running * value.upper).end_array();
+  }
+  return json.end_array().end_object().text();
+}
+
 std::string report_of(const std::string& what, const exam::Problem& problem, const Options& options) {
+  if (what == "values") {
+    const auto decisions = static_cast<int>(number_of(options, "decisions", problem.horizon));
+    return values_of(problem, decisions, number_of(options, "truth", 1));
+  }
   if (what == "bounds") {
     exam::ClaimOptions claims;
     claims.seed = static_cast<std::uint64_t>(number_of(options, "seed", 1));
@@ -51,8 +71,8 @@ int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
   Options options;
   for (int i = 2; i + 1 < argc; i += 2) options[argv[i]] = argv[i + 1];
-  if (what != "bounds" && what != "regret") {
-    std::fprintf(stderr, "usage: %s bounds|regret [NAME VALUE]... < PROBLEMS\n", argv[0]);
+  if (what != "bounds" && what != "regret" && what != "values") {
+    std::fprintf(stderr, "usage: %s bounds|regret|values [NAME VALUE]... < PROBLEMS\n", argv[0]);
     return 2;
   }
   try {
@@ -65,7 +85,8 @@ int main(int argc, char** argv) {
         report = json.begin_object().member("problem", problem->name).member("fault", fault.text).end_object().text();
       } catch (const aos::NotEnumerable& obstacle) {
         aos::JsonWriter json;
-        report = json.begin_object().member("problem", problem->name).member("fault", obstacle.reason).end_object().text();
+        json.begin_object().member("problem", problem->name).member("fault", obstacle.reason).end_object();
+        report = json.text();
       }
       std::puts(report.c_str());
       std::fflush(stdout);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -32,7 +33,10 @@ struct Reached {
 
 class Flat {
  public:
-  explicit Flat(const Problem& problem) : problem_(problem), rewards_(problem.rows.size()), branches_(problem.rows.size()) {
+  // With `takes_together`, observations that tell the same are one, which is what values need; the first stands for
+  // all.
+  Flat(const Problem& problem, bool takes_together)
+      : problem_(problem), rewards_(problem.rows.size()), branches_(problem.rows.size()) {
     for (std::size_t row = 0; row < problem.rows.size(); ++row) {
       std::map<std::pair<int, std::uint32_t>, double> merged;
       for (const Outcome& outcome : problem.rows[row]) {
@@ -45,6 +49,7 @@ class Flat {
       }
       for (const auto& [key, probability] : merged) branches_[row].push_back({key.first, key.second, probability});
     }
+    if (takes_together) take_together();
   }
 
   const Problem& problem() const { return problem_; }
@@ -80,6 +85,11 @@ class Flat {
     }
     return result;
   }
+  // The observation that stands for this one.
+  int sight(std::size_t action, int observation) const {
+    const auto found = sights_.find({action, observation});
+    return found != sights_.end() ? found->second : observation;
+  }
 
   // The running part of the start, and how likely it is.
   std::pair<Mass, double> start() const {
@@ -102,7 +112,37 @@ class Flat {
   }
 
  private:
+  // Two observations tell the same if each is as likely as the other, times a constant, wherever they are possible.
+  void take_together() {
+    for (std::size_t action = 0; action < actions(); ++action) {
+      std::map<int, std::vector<std::pair<std::uint64_t, double>>> likelihoods;
+      for (std::size_t state = 0; state < states(); ++state) {
+        for (const Branch& branch : branches(state, action)) {
+          likelihoods[branch.observation].emplace_back(state << 32 | branch.next, branch.probability);
+        }
+      }
+      std::map<std::vector<std::int64_t>, int> known;
+      for (const auto& [observation, entries] : likelihoods) {
+        std::vector<std::int64_t> shape;
+        for (const auto& [from_to, probability] : entries) {
+          shape.push_back(static_cast<std::int64_t>(from_to));
+          shape.push_back(std::llround(1e11 * probability / entries.front().second));
+        }
+        sights_[{action, observation}] = known.try_emplace(shape, observation).first->second;
+      }
+      if (known.size() == likelihoods.size()) continue;
+      for (std::size_t state = 0; state < states(); ++state) {
+        std::map<std::pair<int, std::uint32_t>, double> merged;
+        auto& row = branches_[state * actions() + action];
+        for (const Branch& branch : row) merged[{sight(action, branch.observation), branch.next}] += branch.probability;
+        row.clear();
+        for (const auto& [key, probability] : merged) row.push_back({key.first, key.second, probability});
+      }
+    }
+  }
+
   const Problem& problem_;
+  std::map<std::pair<std::size_t, int>, int> sights_;  // by action and observation
   std::vector<double> rewards_;
   std::vector<std::vector<Branch>> branches_;
 };

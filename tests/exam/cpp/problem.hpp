@@ -56,7 +56,9 @@ struct Problem {
 
   std::size_t states() const { return endings.size(); }
   bool is_running(std::size_t state) const { return endings[state] == 0; }
-  const std::vector<Outcome>& row(std::size_t state, std::size_t action) const { return rows[state * actions + action]; }
+  const std::vector<Outcome>& row(std::size_t state, std::size_t action) const {
+    return rows[state * actions + action];
+  }
 };
 
 namespace detail {

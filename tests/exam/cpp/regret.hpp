@@ -1,11 +1,11 @@
-// What a planner loses in missions against the optimum, and beside it what exact look-ahead loses that plans for a whole
-// horizon anew at every step.
+// What a planner loses in missions against the optimum, and beside it what exact look-ahead loses that plans for a
+// whole horizon anew at every step.
 //
 // The return of a mission is estimated without most of its luck: with any function V of beliefs,
 //   V(b0) + sum of discount^t (r(b_t, a_t) + discount * E V(b_t+1) - V(b_t))
-// has the expectation of the return, and where V is nearly the optimum its spread is nearly that of the regret. Here V is
-// the lower bound of the truth. All planners meet the same worlds: what is drawn depends on the seed, the mission and the
-// step only.
+// has the expectation of the return, and where V is nearly the optimum its spread is nearly that of the regret. Here V
+// is the lower bound of the truth. All planners meet the same worlds: what is drawn depends on the seed, the mission
+// and the step only.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class Regret {
   using Planner = aos::Planner<TableModel>;
 
   Regret(const Problem& problem, RegretOptions options)
-      : problem_(problem), options_(std::move(options)), flat_(problem),
+      : problem_(problem), options_(std::move(options)), flat_(problem, true),
         steps_(options_.steps > 0 ? options_.steps : problem.horizon),
         truth_(flat_, std::max(steps_, problem.horizon)) {
     TableModel::take(problem);
@@ -88,11 +88,13 @@ class Regret {
   };
   struct Played {
     double value = 0;
+    double by_decisions = 0;  // what its decisions lose, each with a whole horizon to go
     std::string actions;
   };
 
   void play_all(aos::JsonWriter& json, const std::string& name, const Mass& start, double optimum, double range) {
     std::vector<double> regrets;
+    double by_decisions = 0;
     Played worst;
     double highest = -INFINITY;
     double seconds = 0;
@@ -116,6 +118,7 @@ class Regret {
       };
       const Played played = play(start, mission, planner ? &*planner : nullptr, decide, fault);
       regrets.push_back((optimum - played.value) / range);
+      by_decisions += played.by_decisions / range / options_.missions;
       if (regrets.back() > highest) {
         highest = regrets.back();
         worst = played;
@@ -127,6 +130,7 @@ class Regret {
     for (const double regret : regrets) squares += (regret - mean) * (regret - mean);
     const double count = static_cast<double>(regrets.size());
     json.begin_object().member("planner", name).member("regret", mean);
+    json.member("by_decisions", by_decisions);
     json.member("standard_error", count > 1 ? std::sqrt(squares / (count - 1) / count) : 0.0);
     json.member("used", first.name).member("why", first.why).member("decisions", decisions);
     json.member("seconds", seconds / std::max(decisions, 1)).member("longest", longest);
@@ -141,7 +145,7 @@ class Regret {
     Mass exact = start;
     std::uint32_t hidden = drawn(exact, world.uniform());
     double value = truth_.value(exact, steps_).lower;
-    Played played{value, ""};
+    Played played{value, 0, ""};
     double discount = 1;
     for (int step = 0; step < steps_; ++step) {
       const int action = decide(exact, belief, step);
@@ -155,6 +159,7 @@ class Regret {
         later += reached.probability * values.back();
       }
       played.value += discount * (flat_.expected_reward(exact, a) + flat_.discount() * later - value);
+      played.by_decisions += discount * lost_by(exact, a);
       discount *= flat_.discount();
       // One number for where the world goes, one for what is seen of it, whatever was decided.
       const double outcome_drawn = world.uniform();
@@ -163,8 +168,9 @@ class Regret {
       const int seen = drawn_from(problem_.sensings[outcome.sensing], seen_drawn).observation;
       hidden = outcome.next;
       if (!problem_.is_running(hidden)) break;
+      const int sight = flat_.sight(a, seen);
       const auto found = std::find_if(all_reached.begin(), all_reached.end(),
-                                      [&](const Reached& reached) { return reached.observation == seen; });
+                                      [&](const Reached& reached) { return reached.observation == sight; });
       exact = found->belief;
       value = values[static_cast<std::size_t>(found - all_reached.begin())];
       if (planner == nullptr) continue;
@@ -180,7 +186,8 @@ class Regret {
   }
 
   Decision searched(Planner& planner, const std::string& name, const Belief& belief, int mission, int step) {
-    aos::Sampler random{mixed(options_.seed, static_cast<std::uint64_t>(mission), 2 + static_cast<std::uint64_t>(step))};
+    const auto use = 2 + static_cast<std::uint64_t>(step);
+    aos::Sampler random{mixed(options_.seed, static_cast<std::uint64_t>(mission), use)};
     aos::Budget budget;
     budget.seconds = options_.seconds;
     budget.simulations = options_.simulations;
@@ -188,8 +195,17 @@ class Regret {
     return {planner.choice(planner.estimates(belief)), planner.name(), planner.why()};
   }
 
-  // The best action with a whole horizon to go. Of equal ones, the one that is better with fewer decisions to go, so that
-  // nothing is put off for ever where nothing is lost by waiting.
+  // Against the best action, with a whole horizon to go.
+  double lost_by(const Mass& exact, std::size_t action) {
+    const double scale = std::max(flat_.largest_reward(), 1e-9);
+    truth_.narrow(exact, problem_.horizon, 1e-5 * scale, 0.05);
+    truth_.narrow_action(exact, action, problem_.horizon, 1e-5 * scale, 0.05);
+    const double best = truth_.value(exact, problem_.horizon).lower;
+    return std::max(best - truth_.action_value(exact, action, problem_.horizon).lower, 0.0);
+  }
+
+  // The best action with a whole horizon to go. Of equal ones, the one that is better with fewer decisions to go, so
+  // that nothing is put off for ever where nothing is lost by waiting.
   int looked_ahead(const Mass& exact) {
     const double scale = std::max(flat_.largest_reward(), 1e-9);
     truth_.narrow(exact, problem_.horizon, 1e-6 * scale, 0.1);

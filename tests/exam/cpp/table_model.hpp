@@ -1,5 +1,5 @@
-// A model for the engine's templates whose steps are looked up in the tables of the problem at hand, so that thousands of
-// models run through the engine's own headers without being compiled.
+// A model for the engine's templates whose steps are looked up in the tables of the problem at hand, so that thousands
+// of models run through the engine's own headers without being compiled.
 #pragma once
 
 #include <cmath>
@@ -25,10 +25,10 @@
 namespace exam {
 
 struct TableModel {
-  static constexpr std::size_t most_variables = 15;
+  static constexpr std::size_t max_variables = 15;
 
   struct State {
-    std::int16_t variables[most_variables]{};
+    std::int16_t variables[max_variables]{};
     aos::Ending ending = aos::Ending::running;
     std::uint8_t unused = 0;
 
@@ -155,7 +155,7 @@ struct TableModel {
 
   static State listed_state(const Problem& problem, std::uint32_t number) {
     State state{};
-    if (problem.variables > most_variables) throw std::runtime_error("a problem has too many variables");
+    if (problem.variables > max_variables) throw std::runtime_error("a problem has too many variables");
     for (std::size_t i = 0; i < problem.variables; ++i) {
       state.variables[i] = static_cast<std::int16_t>(problem.values[number * problem.variables + i]);
     }

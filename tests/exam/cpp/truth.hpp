@@ -1,8 +1,8 @@
 // Brackets of what a belief is worth, as narrow as they are asked for: with so many decisions to go, or without an end.
 //
-// It is heuristic search value iteration (Smith and Simmons, 2004), by layers where the decisions are counted. Below are
-// alpha vectors, each the value of a policy that could be followed. Above are the fast informed bound (Hauskrecht, 2000)
-// and beliefs where a better one was found, joined by the sawtooth. Both hold at every moment, for all beliefs.
+// It is heuristic search value iteration (Smith and Simmons, 2004), by layers where the decisions are counted. Below
+// are alpha vectors, each the value of a policy that could be followed. Above are the fast informed bound (Hauskrecht,
+// 2000) and beliefs where a better one was found, joined by the sawtooth. Both hold at every moment, for all beliefs.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <ctime>
+#include <functional>
 #include <limits>
 #include <map>
 #include <utility>
@@ -61,10 +62,8 @@ class Truth {
     while (value(belief, left).gap() > gap) {
       if (processor_seconds() > latest) return false;
       trial(belief, left, gap);
-      if (std::all_of(layers_.begin(), layers_.end(), [](const Layer& layer) { return layer.alphas.size() < most_alphas; })) {
-        continue;
-      }
-      return false;
+      const auto is_full = [](const Layer& layer) { return layer.alphas.size() >= max_alphas; };
+      if (std::any_of(layers_.begin(), layers_.end(), is_full)) return false;
     }
     return true;
   }
@@ -82,7 +81,7 @@ class Truth {
   }
 
  private:
-  static constexpr std::size_t most_alphas = 4000;
+  static constexpr std::size_t max_alphas = 4000;
 
   struct Point {
     Mass belief;
@@ -154,8 +153,8 @@ class Truth {
     std::vector<Met> path;
     Mass belief = from;
     double allowed = gap;
-    const std::size_t most_depth = has_end() ? static_cast<std::size_t>(left) : 400;
-    while (path.size() < most_depth && value(belief, left).gap() > allowed) {
+    const std::size_t max_depth = has_end() ? static_cast<std::size_t>(left) : 400;
+    while (path.size() < max_depth && value(belief, left).gap() > allowed) {
       path.push_back({belief, left});
       double best = -std::numeric_limits<double>::infinity();
       std::vector<Reached> chosen;
@@ -201,7 +200,9 @@ class Truth {
   void add_alpha(const Mass& belief, std::size_t action, int left) {
     std::map<int, const std::vector<double>*> later;
     if (!(has_end() && left == 1)) {
-      for (const Reached& reached : flat_.reached(belief, action)) later[reached.observation] = &best_alpha(reached.belief, left - 1);
+      for (const Reached& reached : flat_.reached(belief, action)) {
+        later[reached.observation] = &best_alpha(reached.belief, left - 1);
+      }
     }
     const std::vector<double>* const usual =
         has_end() && left == 1 ? nullptr : &layer(left - 1).alphas.front();
@@ -235,7 +236,7 @@ class Truth {
     std::vector<std::vector<double>> kept;
     for (auto alpha = bounds.alphas.rbegin(); alpha != bounds.alphas.rend(); ++alpha) {
       const bool is_dominated = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
-        return std::equal(alpha->begin(), alpha->end(), other.begin(), [](double one, double more) { return one <= more; });
+        return std::equal(alpha->begin(), alpha->end(), other.begin(), std::less_equal<>{});
       });
       if (!is_dominated) kept.push_back(std::move(*alpha));
     }
@@ -270,7 +271,8 @@ class Truth {
       const double corners = expected(point.belief, bounds.corners);
       double known = corners;
       for (const Point& other : bounds.points) {
-        if (other.below_corners > 0) known = std::min(known, corners - share(point.belief, other) * other.below_corners);
+        if (other.below_corners <= 0) continue;
+        known = std::min(known, corners - share(point.belief, other) * other.below_corners);
       }
       if (known <= point.value) continue;
       point.below_corners = corners - point.value;
@@ -280,7 +282,7 @@ class Truth {
     bounds.kept_points = std::max<std::size_t>(bounds.points.size(), 32);
   }
 
-  // Bounds to begin with -----------------------------------------------------------------------------------------------
+  // Bounds to begin with ------------------------------------------------------------
 
   void begin_layers() {
     rounding_ = 1e-13 * flat_.largest_reward() * decisions_;
@@ -386,7 +388,8 @@ class Truth {
     return best;
   }
   // The state is seen now, and from the next step on only by observations.
-  double informed_once_more(std::size_t state, std::size_t action, const std::vector<std::vector<double>>& later) const {
+  double informed_once_more(std::size_t state, std::size_t action,
+                            const std::vector<std::vector<double>>& later) const {
     double value = flat_.reward(state, action);
     const auto& branches = flat_.branches(state, action);
     for (std::size_t first = 0; first < branches.size();) {

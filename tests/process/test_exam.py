@@ -1,0 +1,110 @@
+"""A share of the exam (tests/exam): random models whose truth is known, awkward documents, and that truth."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from exam.compiled import examined, left_out
+from exam.documents import documents
+from exam.driver import Driver, built_driver
+from exam.families import FAMILIES, NEEDLES
+from exam.generation import named_problem, problems
+from exam.problem import RUNNING, Problem
+from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
+
+PATIENCE_S = 60
+
+
+@pytest.fixture(scope="module")
+def executable(cache_dir: Path) -> Path:
+    return asyncio.run(built_driver(cache_dir))
+
+
+@pytest.fixture
+def truth(executable: Path) -> Iterator[Driver]:
+    driver = Driver(executable, "values", {"truth": 5}, PATIENCE_S)
+    yield driver
+    driver.close()
+
+
+@pytest.mark.parametrize("name", ["dense/3", "doors/2", "endings/5", "heaven/1", "late/4"])
+def test_the_truth_is_what_all_histories_add_up_to(name: str, truth: Driver) -> None:
+    problem = named_problem(name, 200)
+    decisions = 3
+    brackets = truth.report(problem.with_horizon(decisions))["values"]
+    for (lower, upper), value in zip(
+        brackets, action_values(problem, dict(problem.starts), decisions), strict=True
+    ):
+        assert lower == pytest.approx(value, abs=1e-7)
+        assert upper == pytest.approx(value, abs=1e-7)
+
+
+def test_no_claim_about_random_models_is_false(executable: Path) -> None:
+    found = Bounds()
+    options = {"seed": 1, "simulations": 200, "truth": 0.05, "steps": 2}
+    for problem, answer in reports(
+        executable, "bounds", options, problems(list(FAMILIES), 88, 1, False, 100)
+    ):
+        assert not found.add(problem, answer), found.told(problem, answer)
+    assert found.claims > 3000
+
+
+def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path) -> None:
+    found = Regrets()
+    options = {"simulations": 2000, "missions": 1, "planners": "auto,look-ahead", "truth": 1}
+    asked = [*problems(list(FAMILIES), 22, 300, False, 100), *problems(NEEDLES, 6, 400, True, 200)]
+    for problem, answer in reports(executable, "regret", options, asked):
+        assert not found.add(problem, answer), found.told(problem, answer)
+    excesses = [excess for excess, _ in found.worst["auto"]]
+    assert len(excesses) >= 20
+    assert sum(excesses) / len(excesses) <= MEAN_TARGET
+    assert max(excesses) <= WORST_TARGET
+
+
+def test_no_variable_is_left_out_that_matters() -> None:
+    wrong = {bundle.name: left_out(bundle) for bundle in map(documents, range(150)) if left_out(bundle)}
+    assert not wrong
+
+
+@pytest.mark.parametrize("seed", range(4))
+async def test_compiled_documents_mean_what_they_say(seed: int, truth: Driver, cache_dir: Path) -> None:
+    found = await examined(documents(seed), truth, cache_dir, "auto", simulations=500)
+    assert not found.false
+    assert found.decisions > 0
+    assert found.worst <= 100 * WORST_TARGET
+
+
+def reports(
+    executable: Path, what: str, options: dict[str, object], asked: list[Problem]
+) -> Iterator[tuple[Problem, dict[str, object]]]:
+    driver = Driver(executable, what, options, PATIENCE_S)
+    try:
+        yield from ((problem, driver.report(problem)) for problem in asked)
+    finally:
+        driver.close()
+
+
+def action_values(problem: Problem, belief: dict[int, float], decisions: int) -> list[float]:
+    """By going through all that may be observed; weights of a belief are how likely it is to get there."""
+    return [action_value(problem, belief, action, decisions) for action in range(len(problem.world.actions))]
+
+
+def action_value(problem: Problem, belief: dict[int, float], action: int, decisions: int) -> float:
+    value = 0.0
+    following: dict[int, dict[int, float]] = {}
+    for state, weight in belief.items():
+        for odds, after, sensing, reward in problem.rows[state, action]:
+            value += weight * odds * reward
+            if problem.states[after][1] != RUNNING:
+                continue
+            for seen, likelihood in problem.sensings[sensing]:
+                part = following.setdefault(seen, {})
+                part[after] = part.get(after, 0.0) + weight * odds * likelihood
+    if decisions > 1:
+        value += problem.world.discount * sum(
+            max(action_values(problem, part, decisions - 1)) for part in following.values()
+        )
+    return value
