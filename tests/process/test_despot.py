@@ -59,17 +59,17 @@ async def test_the_same_seed_and_simulations_give_the_same_decision(bundles: Pat
     plans = []
     for _ in range(2):
         async with engine_of(built) as engine:
-            plans.append(await engine.plan(simulations=20_000, seed=3, planner="despot"))
+            plans.append(await engine.plan(simulations=1_000, seed=3, planner="despot"))
     assert plans[0].actions == plans[1].actions
     assert plans[0].planner == "despot"
 
 
 async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path, cache_dir: Path) -> None:
     async with engine_of(await built_bundle(bundles / "bench" / "tiger", cache_dir)) as engine:
-        first = await engine.plan(simulations=100_000, seed=1, planner="despot")
+        first = await engine.plan(simulations=5_000, seed=1, planner="despot")
         for _ in range(3):
             await engine.update("listen", "tiger_left")
-        later = await engine.plan(simulations=100_000, seed=2, planner="despot")
+        later = await engine.plan(simulations=5_000, seed=2, planner="despot")
     assert first.best.action == "listen"
     assert -20 < first.best.q < 19.4  # what always listening and what the best policy earn
     assert later.best.action == "open(door=right_door)"
@@ -77,7 +77,7 @@ async def test_the_tiger_is_listened_for_and_not_flattered(bundles: Path, cache_
 
 async def test_an_opponent_that_flees_is_tagged(bundles: Path, cache_dir: Path) -> None:
     async with engine_of(await built_bundle(bundles / "bench" / "tag", cache_dir)) as engine:
-        search = Search(simulations=20_000, seed=1, planner="despot")
+        search = Search(simulations=500, seed=1, planner="despot")
         limits = MissionLimits(goal_probability=0.999, step_limit=90)
         run = await simulate_mission(engine, search, limits)
     assert run.ending == "goal"
@@ -86,7 +86,7 @@ async def test_an_opponent_that_flees_is_tagged(bundles: Path, cache_dir: Path) 
 
 async def test_a_model_that_cannot_be_enumerated_is_planned_by_rollouts(cache_dir: Path) -> None:
     async with engine_of(await built_text(COUNTER, cache_dir)) as engine:
-        plan = await engine.plan(simulations=20_000, seed=1, planner="despot")
+        plan = await engine.plan(simulations=5_000, seed=1, planner="despot")
         other = [await engine.plan(simulations=2_000, seed=1, planner=name) for name in ("auto", "sarsop")]
     assert plan.best.action == "stop"
     assert [chosen.planner for chosen in other] == ["pomcp", "pomcp"]

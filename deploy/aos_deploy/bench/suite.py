@@ -68,7 +68,7 @@ class Suite:
 
     @property
     def steps(self) -> int:
-        """How often `on_step` is called at most: missions may have to be run without rollout policies, too."""
+        """How often `on_step` is called at most: missions may be run without rollout policies, too."""
         planners = len(self._effort.planners)
         return sum(3 + 2 * planners * self._effort.runs_of(problem) for problem in self._problems)
 

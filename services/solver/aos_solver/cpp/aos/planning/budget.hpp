@@ -1,24 +1,49 @@
 // What a planner may spend on a decision, and what it says about each action.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace aos {
 
 inline constexpr std::uint32_t no_node = 0xffffffffu;
 inline constexpr int most_search_threads = 32;
 
+// A simulation is one way down from the belief of up to `horizon` steps of the model. POMCP counts its descents with their
+// rollouts; DESPOT counts the steps of scenarios, of default policies and of rollouts, and divides them by the horizon.
 struct Budget {
   std::uint64_t simulations = 0;  // 0: no limit
   double seconds = 0;             // 0: no limit
   int threads = 1;                // 1 to `most_search_threads`
 };
 
-// An action's value, from how many simulations (0: unknown), and the standard error of their mean.
+// An action's value, from how many simulations (0: unknown), the standard error of their mean, and what it earns at once.
 struct ActionEstimate {
   double q = 0;
   std::uint32_t n = 0;
   double standard_error = 0;
+  double reward = 0;
 };
+
+// The action with the highest value of those that count; of actions that cannot be told apart, the one that earns most at
+// once. The value of waiting is that of the best of many later choices, and so is estimated too high rather than too low:
+// who did not prefer what comes sooner would put off for ever what is as good later. Values cannot be told apart that
+// differ by less than their standard error, and by no more than a delay by one of `horizon` steps can be worth.
+template <class Counts>
+int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, Counts&& counts) {
+  const ActionEstimate* best = nullptr;
+  for (const ActionEstimate& estimate : estimates) {
+    if (counts(estimate) && (best == nullptr || estimate.q > best->q)) best = &estimate;
+  }
+  if (best == nullptr) return 0;
+  const ActionEstimate* soonest = best;
+  for (const ActionEstimate& estimate : estimates) {
+    if (!counts(estimate) || estimate.reward <= soonest->reward) continue;
+    const double error = std::hypot(estimate.standard_error, best->standard_error);
+    if (best->q - estimate.q <= std::fmin(error, std::abs(best->q) / horizon)) soonest = &estimate;
+  }
+  return static_cast<int>(soonest - estimates.data());
+}
 
 }  // namespace aos

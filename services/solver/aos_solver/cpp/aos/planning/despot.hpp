@@ -49,8 +49,7 @@ class Despot {
         actions_(most_node_bytes / sizeof(ActionNode)),
         scenarios_(most_scenario_bytes / scenario_bytes()) {}
 
-  // Runs the search and returns how many simulations it took: a simulation is a step of a scenario with the evaluation of
-  // what it leads to.
+  // Runs the search and returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
     using Seconds = std::chrono::duration<double>;
     // Up to some seconds for the first decision, which no budget counts, and next to nothing later.
@@ -60,15 +59,16 @@ class Despot {
                   ? PlanningClock::now() + std::chrono::duration_cast<PlanningClock::duration>(Seconds{budget.seconds})
                   : PlanningClock::time_point::max();
     horizon_ = horizon;
-    simulations_ = 0;
+    steps_ = 0;
     nodes_.clear();
     actions_.clear();
     scenarios_.clear();
     deviations_.clear();
+    rewards_.clear();
     if (action_count() == 0 || !plant(belief, random)) return 0;
     while (may_go_on() && explore()) {
     }
-    return simulations_;
+    return simulations();
   }
 
   // For each action; values are over the whole belief, so that its ended part counts as nothing to gain. The standard
@@ -79,7 +79,7 @@ class Despot {
     const double running = belief.probability_of(Ending::running);
     for (std::size_t a = 0; a < deviations_.size(); ++a) {
       const ActionNode& action = actions_[nodes_[0].first_action + a];
-      result[a] = {running * (origin_ + action.lower), action.trials, running * deviations_[a]};
+      result[a] = {running * (origin_ + action.lower), action.trials, running * deviations_[a], running * rewards_[a]};
     }
     return result;
   }
@@ -114,8 +114,10 @@ class Despot {
   };
   static std::size_t action_count() { return static_cast<std::size_t>(Model::action_count()); }
   bool may_go_on() const {
-    return (budget_.simulations == 0 || simulations_ < budget_.simulations) && PlanningClock::now() < latest_;
+    return (budget_.simulations == 0 || simulations() < budget_.simulations) && PlanningClock::now() < latest_;
   }
+  std::uint64_t simulations() const { return all_steps() / static_cast<std::uint64_t>(std::max(horizon_, 1)); }
+  std::uint64_t all_steps() const { return steps_ + evaluation_.steps(); }
 
   // --- the root --------------------------------------------------------------------------------------
 
@@ -151,14 +153,17 @@ class Despot {
     scenario_count_ = outcomes_.size();
   }
 
-  // By how long it took to evaluate the fewest.
+  // By how long it took to evaluate the fewest, or how many steps.
   std::size_t affordable_scenarios(PlanningClock::duration spent) const {
     double share = 1;  // of the most
+    const auto affordable_share = [&](double budget, double spent_on_fewest) {
+      return share_of_first_look * budget * fewest_scenarios / (spent_on_fewest * action_count() * most_evaluated);
+    };
     if (budget_.simulations > 0) {
-      share = share_of_first_look * static_cast<double>(budget_.simulations) / (2.0 * action_count() * most_scenarios);
+      const double budget = static_cast<double>(budget_.simulations) * horizon_;
+      share = affordable_share(budget, static_cast<double>(std::max<std::uint64_t>(all_steps(), 1)));
     } else if (budget_.seconds > 0) {
-      const double seconds = std::chrono::duration<double>(spent).count() / fewest_scenarios;
-      share = share_of_first_look * budget_.seconds / (seconds * action_count() * most_evaluated);
+      share = affordable_share(budget_.seconds, std::chrono::duration<double>(spent).count());
     }
     const auto affordable = static_cast<std::size_t>(std::min(share, 1.0) * most_scenarios);
     const std::size_t room = std::min(most_node_bytes / sizeof(Node), most_scenario_bytes / scenario_bytes());
@@ -177,7 +182,6 @@ class Despot {
       sum.lower += bounds[i].lower;
       sum.upper += bounds[i].upper;
     }
-    simulations_ += last - first;
     const double lower = weight_at(depth) * sum.lower;
     const double upper = weight_at(depth) * std::max(sum.upper, sum.lower);
     nodes_.push_back({static_cast<std::uint32_t>(first_scenario), static_cast<std::uint32_t>(last - first),
@@ -210,6 +214,7 @@ class Despot {
     const auto depth = static_cast<int>(node.depth);
     double reward = 0;
     double squares = 0;
+    double immediate = 0;
     outcomes_.clear();
     for (std::size_t i = node.first_scenario; i < node.first_scenario + node.scenarios; ++i) {
       Observed<Model> outcome{scenarios_[i], default_observation};
@@ -218,7 +223,8 @@ class Despot {
       const double earned = evaluation_.earned(scenarios_[i].seen, a, depth, step.reward);
       reward += earned;
       squares += earned * earned;
-      ++simulations_;
+      ++steps_;
+      immediate += step.reward;
       outcome.observation = step.observation;
       if (Model::ending(outcome.scenario.state) != Ending::running || depth + 1 == horizon_) continue;
       outcome.scenario.seen = evaluation_.seen_next(outcome.scenario.seen, a, outcome.scenario.state);
@@ -240,6 +246,7 @@ class Despot {
       const auto count = static_cast<double>(node.scenarios);
       const double variance = std::max(squares / count - (reward / count) * (reward / count), 0.0);
       deviations_.push_back(std::sqrt(variance / count));
+      rewards_.push_back(immediate / count);
     }
   }
 
@@ -335,7 +342,7 @@ class Despot {
   Budget budget_;
   PlanningClock::time_point latest_;
   int horizon_ = 0;
-  std::uint64_t simulations_ = 0;
+  std::uint64_t steps_ = 0;  // of scenarios
   std::size_t scenario_count_ = 0;
   double origin_ = 0;  // what values are counted from
   double penalty_ = 0;
@@ -344,6 +351,7 @@ class Despot {
   Arena<Scenario<Model>> scenarios_;
   std::vector<Observed<Model>> outcomes_;  // of the action that is being tried
   std::vector<double> deviations_;  // standard errors of the root's actions that were tried
+  std::vector<double> rewards_;     // what these earn at once, on average
 };
 
 }  // namespace aos

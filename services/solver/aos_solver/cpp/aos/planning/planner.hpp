@@ -40,6 +40,7 @@ class Planner {
  public:
   // See Pomcp, Despot, PointBased and ExactSearch.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
+    horizon_ = horizon;
     used_ = chosen_kind(kind, belief, budget, horizon);
     switch (used_) {
       case PlannerKind::exact: return exact_.simulations();
@@ -77,13 +78,9 @@ class Planner {
     if (used_ == PlannerKind::exact) return exact_.best();
     std::uint32_t most = 0;
     for (const ActionEstimate& estimate : estimates) most = std::max(most, estimate.n);
-    int best = -1;
-    for (int action = 0; action < static_cast<int>(estimates.size()); ++action) {
-      const ActionEstimate& candidate = estimates[static_cast<std::size_t>(action)];
-      const bool counts = used_ == PlannerKind::pomcp ? is_well_visited(candidate.n, most) : candidate.n > 0;
-      if (counts && (best < 0 || candidate.q > estimates[static_cast<std::size_t>(best)].q)) best = action;
-    }
-    return std::max(best, 0);
+    return preferred_action(estimates, horizon_, [&](const ActionEstimate& estimate) {
+      return used_ == PlannerKind::pomcp ? is_well_visited(estimate.n, most) : estimate.n > 0;
+    });
   }
 
   // Looks ahead below the action that is carried out, if the last search was one that can use it.
@@ -170,6 +167,7 @@ class Planner {
   PointBased<Model> point_based_{space_};
   std::unique_ptr<Despot<Model>> despot_;
   PlannerKind used_ = PlannerKind::pomcp;
+  int horizon_ = 1;  // of the last search
   std::string why_;
 };
 

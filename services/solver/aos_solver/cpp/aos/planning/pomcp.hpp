@@ -4,7 +4,11 @@
 // - Where the states that matter are few enough, returns are counted from what a state is worth to somebody who sees it
 //   (bounds.hpp): a step earns its reward and the change of that worth. Nothing changes in which action is best, but luck
 //   of the state no longer blurs the returns, and what is left to find is the cost of not seeing. A new history starts at
-//   0, as if all were seen from there on. Where there are too many states it starts with a rollout.
+//   0, as if all were seen from there on.
+// - Where there are too many states, and no rollout policy, the same is done with an estimate of that worth, learned before
+//   the first decision (learned_values.hpp); what each action is worth on average over the belief, to somebody who sees the
+//   state after it (Littman, Cassandra and Kaelbling, 1995), then is the order in which actions are tried everywhere in
+//   the tree. Where no estimate is good enough, or there is a rollout policy, a new history starts with a rollout.
 // - Where the states are few, told apart by all that is in them, simulations step by a table of the model and not by the
 //   documents' code (step_table.hpp).
 // - The exploration bonus of an action follows the spread of its own returns: immediate rewards say little about it, and a
@@ -21,6 +25,7 @@
 // - A budget in time is not used up once the choice cannot change; see TreeSearch::is_decided.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -37,6 +42,7 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/bounds.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/learned_values.hpp"
 #include "aos/planning/simulated_state.hpp"
 #include "aos/planning/tree_search.hpp"
 
@@ -44,6 +50,7 @@ namespace aos {
 
 inline constexpr std::size_t most_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
 inline constexpr double least_time_share = 0.1;  // of a budget in time that is always used
+inline constexpr std::size_t max_prior_steps = 20'000;
 
 template <class Model>
 class Pomcp {
@@ -72,15 +79,18 @@ class Pomcp {
       double n = 0;
       double q = 0;
       double squares = 0;
+      double reward = 0;
       for (const auto& tree : trees_) {
         const auto known = tree->known(a);
         n += known.n;
+        reward += known.n * known.reward;
         q += known.n * known.q;
         squares += known.n * known.variance;
       }
       if (n == 0) continue;
       const double value = running * (q / n + seen_worth_);
-      result[static_cast<std::size_t>(a)] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n};
+      result[static_cast<std::size_t>(a)] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n,
+                                             running * reward / n};
     }
     return result;
   }
@@ -114,21 +124,26 @@ class Pomcp {
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, int first,
                        IsOver&& is_over) {
     const bool has_values = values_.prepare(belief, horizon);
+    const SeenValues<Model>* const values = has_values ? &values_ : nullptr;
+    const bool may_estimate = !has_values && !Model::has_rollout_policy;
+    const LearnedValues<Model>* const estimates =
+        may_estimate && estimates_.prepare(belief, horizon, random) ? &estimates_ : nullptr;
     const auto start = PlanningClock::now();
-    seen_worth_ = has_values ? seen_worth(belief, horizon) : 0;
+    const auto worth = [&](const State& state) { return ComputedState<Model>{state, values, estimates}.value(horizon); };
+    seen_worth_ = has_values || estimates != nullptr ? mean_worth(belief, worth) : 0;
     const auto threads = static_cast<std::size_t>(budget.threads);
     if (trees_.size() != threads) {
       trees_.clear();
       for (std::size_t i = 0; i < threads; ++i) trees_.push_back(std::make_unique<Tree>(most_search_bytes / threads));
     }
     if (belief.probability_of(Ending::running) <= 0) return 0;
-    for (const auto& tree : trees_) tree->begin(horizon);
+    const std::vector<double> prior = estimates != nullptr ? prior_of(belief, horizon, random) : std::vector<double>{};
+    for (const auto& tree : trees_) tree->begin(horizon, prior);
     if (has_values && steps_.prepare(space_, belief)) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
       return simulate_all(start_state, budget, start, random, first, is_over);
     }
-    const SeenValues<Model>* const values = has_values ? &values_ : nullptr;
-    const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), values}; };
+    const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), values, estimates}; };
     return simulate_all(start_state, budget, start, random, first, is_over);
   }
 
@@ -198,22 +213,42 @@ class Pomcp {
     return tree.is_decided(static_cast<double>(simulations) * (seconds / spent - 1));
   }
 
-  // What the running part of a belief is worth, on average, to somebody who sees the state.
-  double seen_worth(const Belief<Model>& belief, int horizon) const {
-    double worth = 0;
+  // What the running part of a belief is worth on average.
+  template <class Worth>
+  static double mean_worth(const Belief<Model>& belief, Worth&& worth) {
+    double sum = 0;
     double running = 0;
     for (const auto& [state, weight] : belief.particles()) {
       if (Model::ending(state) != Ending::running) continue;
-      worth += weight * values_.value(values_.number_of(state), horizon);
+      sum += weight * worth(state);
       running += weight;
     }
-    return running > 0 ? worth / running : 0;
+    return running > 0 ? sum / running : 0;
+  }
+
+  // How much less each action is worth than the best one, on average over some states of the belief, each with the same
+  // luck for all actions.
+  std::vector<double> prior_of(const Belief<Model>& belief, int horizon, Sampler& random) const {
+    std::vector<double> prior(static_cast<std::size_t>(Model::action_count()));
+    const auto states = std::clamp<std::size_t>(max_prior_steps / prior.size(), 20, 500);
+    for (std::size_t i = 0; i < states; ++i) {
+      const State& state = belief.sample(random);
+      const Sampler luck{random.bits()};
+      if (Model::ending(state) != Ending::running) continue;
+      for (int a = 0; a < Model::action_count(); ++a) {
+        prior[static_cast<std::size_t>(a)] += estimates_.action_value(state, a, horizon, luck) / static_cast<double>(states);
+      }
+    }
+    const double best = *std::max_element(prior.begin(), prior.end());
+    for (double& worth : prior) worth = best - worth;
+    return prior;
   }
 
   std::vector<std::unique_ptr<Tree>> trees_;
   const StateSpace<Model>& space_;
   SeenValues<Model>& values_;
   StepTable<Model> steps_;
+  LearnedValues<Model> estimates_;
   double seen_worth_ = 0;
 };
 

@@ -108,7 +108,10 @@ class ScenarioEvaluation {
   }
 
   // New luck for all scenarios.
-  void start(std::uint64_t seed) { seed_ = seed; }
+  void start(std::uint64_t seed) {
+    seed_ = seed;
+    steps_ = 0;
+  }
 
   Sampler draws(std::uint32_t scenario, int depth) const {
     return Sampler{mixed(mixed(seed_, scenario), static_cast<std::uint64_t>(depth))};
@@ -138,6 +141,8 @@ class ScenarioEvaluation {
     });
     return bounds_;
   }
+  // How many steps of the model evaluations have taken since `start`; a rollout counts as what it may take.
+  std::uint64_t steps() const { return steps_; }
   // How far what scenarios earned lies apart, of the history evaluated last.
   double deviation() const { return best_.deviation(); }
 
@@ -172,11 +177,12 @@ class ScenarioEvaluation {
     return std::max<std::size_t>((last - first) / most_evaluated, 1);
   }
 
-  void roll_out(const Scenario<Model>& scenario, int depth, Earnings& earnings) const {
+  void roll_out(const Scenario<Model>& scenario, int depth, Earnings& earnings) {
     const int count = has_values_ ? 1 : rollouts_per_scenario;
     double sum = 0;
     double most = -std::numeric_limits<double>::infinity();
     Sampler random = draws(scenario.number, depth + horizon_);
+    steps_ += static_cast<std::uint64_t>(count) * static_cast<std::uint64_t>(horizon_ - depth);
     for (int i = 0; i < count; ++i) {
       State state = scenario.state;
       const double found = Model::rollout(state, horizon_ - depth, random);
@@ -207,6 +213,7 @@ class ScenarioEvaluation {
   void follow(std::size_t first, std::size_t last, int depth, double discount) {
     if (first == last || depth == horizon_) return;
     const int action = best_on_average(first, last);
+    steps_ += last - first;
     for (std::size_t i = first; i < last;) {
       Follower& follower = followers_[i];
       State& state = follower.scenario.state;
@@ -234,6 +241,7 @@ class ScenarioEvaluation {
   bool has_values_ = false;
   int horizon_ = 0;
   std::uint64_t seed_ = 0;
+  std::uint64_t steps_ = 0;
   std::vector<ScenarioBounds> bounds_;
   std::vector<double> earned_;  // by scenario
   Earnings best_;

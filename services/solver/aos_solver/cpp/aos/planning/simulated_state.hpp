@@ -7,6 +7,7 @@
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/bounds.hpp"
+#include "aos/planning/learned_values.hpp"
 #include "aos/planning/step_table.hpp"
 
 namespace aos {
@@ -16,25 +17,32 @@ class ComputedState {
  public:
   using State = typename Model::State;
 
-  // `values` are what states are worth to somebody who sees them; null where they are not known.
-  ComputedState(const State& state, const SeenValues<Model>* values) : state_(state), values_(values) {}
+  // What states are worth to somebody who sees them, by value iteration or as an estimate; null where that is not known.
+  ComputedState(const State& state, const SeenValues<Model>* values, const LearnedValues<Model>* estimates)
+      : state_(state), values_(values), estimates_(estimates) {}
 
   Step step(int action, Sampler& random) { return Model::step(state_, action, random); }
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
   // With `left` decisions to go; 0 where values are not known.
-  double value(int left) const { return values_ != nullptr ? values_->value(values_->number_of(state_), left) : 0; }
+  double value(int left) const {
+    if (values_ != nullptr) return values_->value(values_->number_of(state_), left);
+    return estimates_ != nullptr ? estimates_->value(state_, left) : 0;
+  }
   // What a new history starts with, beyond the value.
-  double leaf(int left, Sampler& random) const { return values_ != nullptr ? 0 : Model::rollout(state_, left, random); }
+  double leaf(int left, Sampler& random) const { return is_valued() ? 0 : Model::rollout(state_, left, random); }
   // With which probability a rollout takes each action first, into `odds`. False where new histories start with no rollout.
   bool rollout_odds(double* odds, Sampler& random) const {
-    if (values_ != nullptr) return false;
+    if (is_valued()) return false;
     Model::rollout_odds(state_, odds, random);
     return true;
   }
 
  private:
+  bool is_valued() const { return values_ != nullptr || estimates_ != nullptr; }
+
   State state_;
   const SeenValues<Model>* values_;
+  const LearnedValues<Model>* estimates_;
 };
 
 template <class Model>

@@ -41,9 +41,12 @@ class TreeSearch {
     forget();
   }
 
-  // Begins a decision.
-  void begin(int horizon) {
+  // Begins a decision. `prior` is how much less each action is worth than the best one, as far as can be said before; empty
+  // where nothing can.
+  void begin(int horizon, const std::vector<double>& prior) {
     horizon_ = horizon;
+    prior_ = prior;
+    rewards_.assign(action_count(), {});
     lowest_ = std::numeric_limits<double>::infinity();
     highest_ = -lowest_;
   }
@@ -71,11 +74,13 @@ class TreeSearch {
     double q = 0;
     std::uint32_t n = 0;
     double variance = 0;
+    double reward = 0;  // earned at once, in this decision's simulations
   };
   Known known(int action) const {
     if (tree_.history(0).first_action == no_node) return {};
     const ActionNode& node = tree_.actions(tree_.history(0))[action];
-    return {node.q, node.n, node.n > 1 ? std::max(node.squares / (node.n - 1), 0.0) : 0};
+    const auto& [sum, n] = rewards_[static_cast<std::size_t>(action)];
+    return {node.q, node.n, node.n > 1 ? std::max(node.squares / (node.n - 1), 0.0) : 0, n > 0 ? sum / n : 0};
   }
 
   std::uint32_t known_simulations() const { return tree_.history(0).n; }
@@ -153,6 +158,7 @@ class TreeSearch {
     ObservationCells::Drawn drawn{random};
     while (true) {
       const Step step = step_of(state, static_cast<int>(a), random, drawn);
+      if (visits_.empty()) add_reward(a, step.reward);
       const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
       value = goes_on ? state.value(left) : 0;
@@ -249,9 +255,16 @@ class TreeSearch {
     if (is_better && is_well_visited(actions[a].n, parent.most_visits)) parent.best = a;
   }
 
-  // The highest upper confidence bound; every action with a usual share once first, at the root every one. An action's
-  // spread is its own, and as if `prior_visits` more had the spread of all actions here, which is in the same way
-  // filled up with the root's. What was never tried counts as what its history is worth, seen once.
+  void add_reward(std::uint32_t a, double reward) {
+    auto& [sum, n] = rewards_[a];
+    sum += reward;
+    n += 1;
+  }
+
+  // The highest upper confidence bound. Without a prior, every action with a usual share comes once first, at the root every
+  // one. An action's spread is its own, and as if `prior_visits` more had the spread of all actions here, which is in
+  // the same way filled up with the root's. What was never tried counts as what its history is worth, less what the
+  // prior says, seen once.
   [[gnu::always_inline]] std::uint32_t choose(std::uint32_t number) const {
     const HistoryNode& history = tree_.history(number);
     const ActionNode* const actions = tree_.actions(history);
@@ -261,10 +274,11 @@ class TreeSearch {
     double best_bound = -std::numeric_limits<double>::infinity();
     for (std::uint32_t a = 0; a < action_count(); ++a) {
       const ActionNode& node = actions[a];
-      if (node.n == 0 && (node.share >= usual_share || number == 0)) return a;
+      if (node.n == 0 && prior_.empty() && (node.share >= usual_share || number == 0)) return a;
       const double n = std::max<double>(node.n, 1);
       const double squares = (node.squares + prior) * node.share;
-      const double bound = (node.n > 0 ? node.q : history.v) + std::sqrt(squares * root_n / ((n + prior_visits) * n));
+      const double value = node.n > 0 ? node.q : history.v - (prior_.empty() ? 0 : prior_[a]);
+      const double bound = value + std::sqrt(squares * root_n / ((n + prior_visits) * n));
       if (bound > best_bound) {
         best_bound = bound;
         best = a;
@@ -280,6 +294,8 @@ class TreeSearch {
   int horizon_ = 0;
   std::vector<Visit> visits_;
   std::vector<double> odds_;
+  std::vector<double> prior_;
+  std::vector<std::pair<double, double>> rewards_;  // of the root's actions in this decision: their sum, and how many
   std::uint64_t simulations_ = 0;
   double mean_ = 0;  // of all returns, with their
   double squares_ = 0;

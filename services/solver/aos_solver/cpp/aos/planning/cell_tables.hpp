@@ -1,0 +1,272 @@
+// A function of the state as a sum of tables over few variables each, fitted to examples.
+//
+// A state is described by a row of cells: each single value is a cell, or a range of values where they are many. Which
+// variables have a table, alone or with up to two others, is chosen by what a table explains of the examples beyond what
+// chance would. Weights are fitted by ridge regression, table by table; how much a table is shrunk follows from the noise.
+// Each half of the examples has weights of its own, so that a choice made by the one can be valued by the other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "aos/model/values.hpp"
+
+namespace aos {
+
+// A single value of the state as one of few cells. Cell 0 is for values that no example had.
+class CellVariable {
+ public:
+  CellVariable(const Leaf& leaf, std::size_t offset) : leaf_(leaf), offset_(offset) {}
+
+  double number(const void* state) const {
+    Leaf leaf = leaf_;
+    leaf.place = static_cast<const std::byte*>(state) + offset_;
+    double number = 0;
+    with_number(leaf, [&](auto value) { number = static_cast<double>(value); });
+    return number;
+  }
+
+  // Makes the cells by the numbers of the examples; returns whether these differ.
+  bool divide(std::vector<double>& numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    lowest_ = numbers.front();
+    const double range = numbers.back() - lowest_;
+    if (!(range > 0 && std::isfinite(range))) return false;
+    has_ranges_ = leaf_.kind == Leaf::Kind::real || range >= max_values;
+    if (has_ranges_) {
+      for (std::size_t i = 1; i < max_ranges; ++i) {
+        const double limit = numbers[i * numbers.size() / max_ranges];
+        if (limits_.empty() || limit > limits_.back()) limits_.push_back(limit);
+      }
+    }
+    cells_ = 2 + static_cast<std::uint32_t>(has_ranges_ ? static_cast<double>(limits_.size()) : range);
+    return true;
+  }
+
+  std::uint32_t cells() const { return cells_; }
+  std::uint16_t cell(const void* state) const {
+    const double value = number(state);
+    if (has_ranges_) {
+      const auto limit = std::upper_bound(limits_.begin(), limits_.end(), value);
+      return static_cast<std::uint16_t>(1 + (limit - limits_.begin()));
+    }
+    const double above = value - lowest_;
+    return above >= 0 && above < cells_ - 1 ? static_cast<std::uint16_t>(above + 1) : 0;
+  }
+
+ private:
+  static constexpr double max_values = 255;
+  static constexpr std::size_t max_ranges = 24;
+
+  Leaf leaf_;
+  std::size_t offset_;
+  double lowest_ = 0;
+  bool has_ranges_ = false;
+  std::vector<double> limits_;
+  std::uint32_t cells_ = 0;
+};
+
+class CellTables {
+ public:
+  using Row = const std::uint16_t*;
+
+  static constexpr std::size_t max_tables = 24;
+
+  explicit CellTables(const std::vector<CellVariable>& variables = {}) {
+    for (const CellVariable& variable : variables) cells_.push_back(variable.cells());
+  }
+
+  double value(Row row) const {
+    double sum = mean_;
+    for (const Table& table : tables_) sum += (weights_[0][table.place(row)] + weights_[1][table.place(row)]) / 2;
+    return sum;
+  }
+  // By each half of the examples.
+  std::array<double, 2> values(Row row) const {
+    std::array<double, 2> sums{mean_, mean_};
+    for (const Table& table : tables_) {
+      const std::uint32_t place = table.place(row);
+      sums[0] += weights_[0][place];
+      sums[1] += weights_[1][place];
+    }
+    return sums;
+  }
+  // In ascending order: the variables that have a table.
+  std::vector<std::uint32_t> used_variables() const {
+    std::vector<std::uint32_t> used;
+    for (const Table& table : tables_) used.insert(used.end(), table.variables, table.variables + table.order);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    return used;
+  }
+
+  // Fits the weights to the targets of the examples, one after the other in `rows`; then adds a table where one explains
+  // enough of what is left.
+  void fit(const std::vector<std::uint16_t>& rows, const std::vector<double>& targets) {
+    rows_ = rows.data();
+    if (tables_.empty()) mean_ = mean_of(targets);
+    left_.resize(targets.size());
+    for (std::size_t i = 0; i < targets.size(); ++i) left_[i] = targets[i] - values(row(i))[i % 2];
+    for (int pass = 0; pass < 2; ++pass) {
+      for (const Table& table : tables_) fit(table);
+      const double more = mean_of(left_);
+      mean_ += more;
+      for (double& left : left_) left -= more;
+    }
+    if (tables_.size() < max_tables) add_table(max_unexplained * squares_around_mean(targets));
+  }
+
+ private:
+  static constexpr int max_order = 3;
+  static constexpr std::uint32_t max_cells = 1 << 16;
+  static constexpr std::size_t max_tried = 6'000'000;  // lookups of a search for a new table
+  static constexpr double max_unexplained = 2e-4;      // of the targets' squares, that nobody looks for a table for
+  static constexpr double chance = 3;                  // what a cell has to explain, in variances of what is left
+
+  struct Table {
+    int order = 0;
+    std::uint32_t variables[max_order]{};
+    std::uint32_t strides[max_order]{};
+    std::uint32_t size = 1;
+    std::uint32_t first = 0;  // of the weights
+
+    std::uint32_t place(Row row) const {
+      std::uint32_t place = first;
+      for (int i = 0; i < order; ++i) place += row[variables[i]] * strides[i];
+      return place;
+    }
+    bool has(std::uint32_t variable) const {
+      return std::find(variables, variables + order, variable) != variables + order;
+    }
+  };
+  struct Sum {
+    double left = 0;
+    double count = 0;
+  };
+
+  Row row(std::size_t example) const { return rows_ + example * cells_.size(); }
+
+  static double mean_of(const std::vector<double>& numbers) {
+    double sum = 0;
+    for (const double number : numbers) sum += number;
+    return sum / static_cast<double>(numbers.size());
+  }
+  static double squares_around_mean(const std::vector<double>& numbers) {
+    const double mean = mean_of(numbers);
+    double sum = 0;
+    for (const double number : numbers) sum += (number - mean) * (number - mean);
+    return sum;
+  }
+
+  // Takes the table's weights anew from what all others leave, shrunk by the ratio of the noise within cells to what the
+  // cells differ by.
+  void fit(const Table& table) {
+    for (std::size_t half = 0; half < 2; ++half) {
+      float* const weights = &weights_[half][table.first];
+      sums_.assign(table.size, {});
+      double squares = 0;
+      double count = 0;
+      for (std::size_t i = half; i < left_.size(); i += 2) {
+        Sum& sum = sums_[table.place(row(i)) - table.first];
+        left_[i] += weights[table.place(row(i)) - table.first];
+        sum.left += left_[i];
+        squares += left_[i] * left_[i];
+        ++sum.count;
+        ++count;
+      }
+      double explained = 0;
+      double cells = 0;
+      for (const Sum& sum : sums_) {
+        if (sum.count == 0) continue;
+        explained += sum.left * sum.left / sum.count;
+        ++cells;
+      }
+      const double noise = count > cells ? std::max(squares - explained, 0.0) / (count - cells) : squares / count;
+      const double signal = std::max((explained - cells * noise) / count, 1e-3 * noise + 1e-12);
+      for (std::uint32_t c = 0; c < table.size; ++c) {
+        weights[c] = sums_[c].count > 0 ? static_cast<float>(sums_[c].left / (sums_[c].count + noise / signal)) : 0;
+      }
+      for (std::size_t i = half; i < left_.size(); i += 2) left_[i] -= weights[table.place(row(i)) - table.first];
+    }
+  }
+
+  Table grown(Table table, std::uint32_t variable) const {
+    table.variables[table.order] = variable;
+    table.strides[table.order] = table.size;
+    table.size *= cells_[variable];
+    table.first = 0;
+    ++table.order;
+    return table;
+  }
+
+  // The table that explains most: of one variable, of two where all pairs can be tried, or one that is there and one more
+  // variable.
+  void add_table(double least) {
+    const auto count = static_cast<std::uint32_t>(cells_.size());
+    const bool tries_pairs = count <= max_pairs_of;
+    const std::size_t candidates = count * (1 + tables_.size() + (tries_pairs ? count / 2 : 0));
+    const std::size_t stride = std::max<std::size_t>(candidates * left_.size() / max_tried, 1);
+    double squares = 0;
+    for (const double left : left_) squares += left * left;
+    const double variance = squares / static_cast<double>(left_.size());
+    Table best;
+    double most = least / static_cast<double>(stride);
+    const auto consider = [&](const Table& table) {
+      if (table.size > max_cells || is_there(table)) return;
+      const double found = gain(table, variance, stride);
+      if (found <= most) return;
+      most = found;
+      best = table;
+    };
+    for (std::uint32_t a = 0; a < count; ++a) {
+      consider(grown({}, a));
+      for (std::uint32_t b = 0; tries_pairs && b < a; ++b) consider(grown(grown({}, b), a));
+      for (const Table& table : tables_) {
+        if (table.order < max_order && !table.has(a)) consider(grown(table, a));
+      }
+    }
+    if (best.order == 0) return;
+    best.first = static_cast<std::uint32_t>(weights_[0].size());
+    for (auto& weights : weights_) weights.resize(best.first + best.size, 0);
+    tables_.push_back(best);
+    fit(best);
+  }
+
+  // Of every `stride`-th example.
+  double gain(const Table& table, double variance, std::size_t stride) {
+    sums_.assign(table.size, {});
+    for (std::size_t i = 0; i < left_.size(); i += stride) {
+      Sum& sum = sums_[table.place(row(i))];
+      sum.left += left_[i];
+      ++sum.count;
+    }
+    double gain = 0;
+    for (const Sum& sum : sums_) {
+      if (sum.count > 0) gain += sum.left * sum.left / (sum.count + 1) - chance * variance;
+    }
+    return gain;
+  }
+
+  bool is_there(const Table& table) const {
+    return std::any_of(tables_.begin(), tables_.end(), [&](const Table& other) {
+      return other.order == table.order && std::all_of(table.variables, table.variables + table.order,
+                                                       [&](std::uint32_t variable) { return other.has(variable); });
+    });
+  }
+
+  static constexpr std::uint32_t max_pairs_of = 40;
+
+  std::vector<std::uint32_t> cells_;  // of each variable
+  std::vector<Table> tables_;
+  std::array<std::vector<float>, 2> weights_;
+  double mean_ = 0;
+  const std::uint16_t* rows_ = nullptr;  // while fitting
+  std::vector<double> left_;             // of the targets, while fitting
+  std::vector<Sum> sums_;
+};
+
+}  // namespace aos

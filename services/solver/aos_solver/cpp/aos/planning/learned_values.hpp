@@ -1,0 +1,241 @@
+// An estimate of what a state is worth to somebody who sees it, for models whose states are too many to list: tables over
+// few variables (cell_tables.hpp), learned from simulations by fitted value iteration. It is a guess, and never a bound.
+//
+// Examples are states of walks that begin in the belief: at first at random, later half of them by the values. Each action
+// is simulated once from each example, all of them under the same luck. A sweep values each example by its best action,
+// as chosen by one half of the examples and valued by the other, since the best of many estimates is too high.
+//
+// What was learned is tested before it is used: somebody who sees the state and goes by the values has to earn at least
+// half of what they promise beyond what play at random earns. Where values count the same income twice, which is how they
+// fail, nothing like it is earned.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/reflection.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/values.hpp"
+#include "aos/planning/cell_tables.hpp"
+
+namespace aos {
+
+template <class Model>
+class LearnedValues {
+ public:
+  using State = typename Model::State;
+
+  // Learns once, from the first belief; returns whether the values can be used. The work is limited in steps, not in time,
+  // so that decisions can be repeated.
+  bool prepare(const Belief<Model>& belief, int horizon, Sampler& random) {
+    if (has_tried_) return is_usable_;
+    if (Model::action_count() == 0 || belief.probability_of(Ending::running) <= 0) return false;
+    has_tried_ = true;
+    horizon_ = horizon;
+    learn(belief, random);
+    examples_ = {};
+    rows_ = {};
+    successors_ = {};
+    return is_usable_;
+  }
+  bool is_usable() const { return is_usable_; }
+
+  // With so many decisions to go, of which only none at all counts.
+  double value(const State& state, int left) const {
+    if (left <= 0) return 0;
+    thread_local std::vector<std::uint16_t> row;
+    row.resize(variables_.size());
+    for (const std::uint32_t variable : used_) row[variable] = variables_[variable].cell(&state);
+    return std::clamp(tables_.value(row.data()), lowest_, highest_);
+  }
+
+  // What an action is worth with so many decisions to go, under given luck.
+  double action_value(State state, int action, int left, Sampler luck) const {
+    const Step step = Model::step(state, action, luck);
+    const bool goes_on = Model::ending(state) == Ending::running;
+    return step.reward + (goes_on ? Model::discount * value(state, left - 1) : 0);
+  }
+
+ private:
+  static constexpr std::size_t max_successors = 100'000;  // simulated in a round
+  static constexpr std::size_t max_cells = 20'000'000;    // of all rows
+  static constexpr int rounds = 2;
+  static constexpr int sweeps = 30;
+  static constexpr int max_compared = 24;  // actions, of which a walk takes the best
+  static constexpr int tests = 64;
+
+  struct Successor {
+    float reward;
+    std::int32_t row;  // or -1 for an end
+  };
+
+  static std::size_t action_count() { return static_cast<std::size_t>(Model::action_count()); }
+
+  void learn(const Belief<Model>& belief, Sampler& random) {
+    for (int round = 0; round < rounds; ++round) {
+      walk(belief, random, round > 0);
+      if (examples_.empty() || (round == 0 && !find_variables())) return;
+      simulate_all_actions(random);
+      for (int sweep = 0; sweep < std::min(sweeps, horizon_); ++sweep) improve();
+      used_ = tables_.used_variables();
+    }
+    is_usable_ = keeps_its_promise(belief, random);
+  }
+
+  // --- examples --------------------------------------------------------------------------------------
+
+  // One example of each walk, since states of the same walk have too much in common.
+  void walk(const Belief<Model>& belief, Sampler& random, bool has_values) {
+    const std::size_t wanted = examples_.size() + std::max<std::size_t>(max_successors / action_count(), 100);
+    for (std::size_t walks = 0; examples_.size() < wanted && walks < 4 * wanted; ++walks) {
+      State state = belief.sample(random);
+      const int stop = random.below(horizon_);
+      const int at_random = has_values && walks % 2 == 1 ? random.below(stop + 1) : stop;
+      int action = 0;
+      int repeats = 0;
+      for (int i = 0; i < stop && Model::ending(state) == Ending::running; ++i) {
+        if (i >= at_random) {
+          action = best_action(state, horizon_ - i, random);
+        } else if (repeats-- <= 0 || !is_possible(state, action, random)) {
+          // For a while, as walks that turn at every step stay where they are (Dabney, Ostrovski and Barreto, 2021).
+          action = any_action(state, random);
+          repeats = (1 << random.below(4)) - 1;
+        }
+        Model::step(state, action, random);
+      }
+      if (Model::ending(state) == Ending::running) examples_.push_back(state);
+    }
+  }
+
+  bool is_possible(const State& state, int action, Sampler& random) {
+    odds_.resize(action_count());
+    Model::rollout_odds(state, odds_.data(), random);
+    return odds_[static_cast<std::size_t>(action)] > 0;
+  }
+  int any_action(const State& state, Sampler& random) {
+    odds_.resize(action_count());
+    Model::rollout_odds(state, odds_.data(), random);
+    return random.choose(odds_.data(), Model::action_count(), 1);
+  }
+  int best_action(const State& state, int left, Sampler& random) const {
+    const Sampler luck{random.bits()};
+    const bool compares_all = Model::action_count() <= max_compared;
+    int best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (int i = 0; i < std::min(Model::action_count(), max_compared); ++i) {
+      const int action = compares_all ? i : random.below(Model::action_count());
+      const double worth = action_value(state, action, left, luck);
+      if (worth <= most) continue;
+      most = worth;
+      best = action;
+    }
+    return best;
+  }
+
+  // Those that differ among the examples.
+  bool find_variables() {
+    std::vector<double> numbers;
+    const State& any = examples_.front();
+    const auto add = [&](const std::string&, const Leaf& leaf) {
+      const auto offset = static_cast<const std::byte*>(leaf.place) - reinterpret_cast<const std::byte*>(&any);
+      if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
+      CellVariable variable{leaf, static_cast<std::size_t>(offset)};
+      numbers.clear();
+      for (const State& example : examples_) numbers.push_back(variable.number(&example));
+      if (variable.divide(numbers)) variables_.push_back(variable);
+    };
+    NamedLeavesCall visitor{add};
+    Model::visit_values(any, visitor);
+    tables_ = CellTables{variables_};
+    return !variables_.empty();
+  }
+
+  void simulate_all_actions(Sampler& random) {
+    const std::size_t room = max_cells / (variables_.size() * (action_count() + 1));
+    if (examples_.size() > room) examples_.resize(std::max<std::size_t>(room, 2));
+    rows_.clear();
+    successors_.clear();
+    for (const State& example : examples_) add_row(example);
+    auto next_row = static_cast<std::int32_t>(examples_.size());
+    for (const State& example : examples_) {
+      const Sampler luck{random.bits()};
+      for (int action = 0; action < Model::action_count(); ++action) {
+        State state = example;
+        Sampler draws = luck;
+        const Step step = Model::step(state, action, draws);
+        const bool goes_on = Model::ending(state) == Ending::running;
+        successors_.push_back({static_cast<float>(step.reward), goes_on ? next_row++ : -1});
+        if (goes_on) add_row(state);
+      }
+    }
+  }
+  void add_row(const State& state) {
+    for (const CellVariable& variable : variables_) rows_.push_back(variable.cell(&state));
+  }
+
+  // --- values ----------------------------------------------------------------------------------------
+
+  // One decision more.
+  void improve() {
+    targets_.resize(examples_.size());
+    for (std::size_t i = 0; i < examples_.size(); ++i) {
+      const std::size_t own = i % 2;
+      double most = -std::numeric_limits<double>::infinity();
+      for (std::size_t a = 0; a < action_count(); ++a) {
+        const Successor& next = successors_[i * action_count() + a];
+        std::array<double, 2> later{};
+        if (next.row >= 0) later = tables_.values(&rows_[static_cast<std::size_t>(next.row) * variables_.size()]);
+        const double worth = next.reward + Model::discount * std::clamp(later[own], lowest_, highest_);
+        if (worth <= most) continue;
+        most = worth;
+        targets_[i] = next.reward + Model::discount * std::clamp(later[1 - own], lowest_, highest_);
+      }
+    }
+    const auto [lowest, highest] = std::minmax_element(targets_.begin(), targets_.end());
+    lowest_ = std::min(*lowest, 0.0);
+    highest_ = std::max(*highest, 0.0);
+    tables_.fit(rows_, targets_);
+  }
+
+  bool keeps_its_promise(const Belief<Model>& belief, Sampler& random) const {
+    double promised = 0;
+    double earned = 0;
+    double at_random = 0;
+    for (int test = 0; test < tests; ++test) {
+      State state = belief.sample(random);
+      if (Model::ending(state) != Ending::running) continue;
+      promised += value(state, horizon_);
+      at_random += Model::rollout(state, horizon_, random);
+      double discount = 1;
+      for (int left = horizon_; left > 0 && Model::ending(state) == Ending::running; --left) {
+        earned += discount * Model::step(state, best_action(state, left, random), random).reward;
+        discount *= Model::discount;
+      }
+    }
+    return earned > at_random && earned >= (promised + at_random) / 2;
+  }
+
+  bool has_tried_ = false;
+  bool is_usable_ = false;
+  int horizon_ = 0;
+  std::vector<CellVariable> variables_;
+  std::vector<std::uint32_t> used_;
+  CellTables tables_;
+  double lowest_ = 0;
+  double highest_ = 0;
+  std::vector<double> odds_;
+  // While learning:
+  std::vector<State> examples_;
+  std::vector<std::uint16_t> rows_;    // of the examples, then of all successors
+  std::vector<Successor> successors_;  // by example and action
+  std::vector<double> targets_;
+};
+
+}  // namespace aos
