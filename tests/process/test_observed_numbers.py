@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from models import built_text, engine_of
+from numpy.typing import NDArray
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.engine import Engine
@@ -183,17 +184,28 @@ async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Pat
     async with engine_of(await built_text(files, cache_dir)) as engine:
         mean, variance = 0.0, 1.0
         expected = told = 0.0
-        for sight in (0.1, 0.9, 0.5, 1.4, 2.0, 1.6):
+        for sight in (0.1, 0.9, 0.5, 1.4, 2.0, 1.6, 3.4, 3.0, 3.9, 3.6):
             mean, variance = mean + 0.3, variance + 0.16
             expected += math.log(normal(sight, mean, math.sqrt(variance + 0.25)))
             gain = variance / (variance + 0.25)
             mean, variance = mean + gain * (sight - mean), (1 - gain) * variance
             update = await engine.update("look", "read", numbers={"sight": sight})
             told += update.log_probability
+            weights, places = await places_of(engine)
+            assert update.summary.effective_states >= 100
+            assert np.average(places, weights=weights) == pytest.approx(mean, abs=0.08)
+            spread = np.average((places - mean) ** 2, weights=weights)
+            assert spread == pytest.approx(variance, rel=0.25)
         assert not update.summary.is_exact
-        assert told == pytest.approx(expected, abs=0.15)
-        belief = await engine.export_belief()
-        assert belief.states > 1000
+        assert told == pytest.approx(expected, abs=0.3)
+
+
+async def places_of(engine: Engine) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The weights and the places of a belief: the first number of a saved state is the bits of its place."""
+    belief = await engine.export_belief()
+    weights = np.array([weight for weight, _ in belief.particles])
+    bits = np.array([int(state.split()[0]) for _, state in belief.particles], dtype=np.int64)
+    return weights, bits.view(np.float64)
 
 
 async def test_other_numbers_than_the_model_reports_leave_the_response_alone(cache_dir: Path) -> None:
