@@ -37,7 +37,7 @@ inline constexpr double nearly_all = 1 - 1e-8;
 inline constexpr std::size_t pilot_count = 200;
 inline constexpr double rare_observation = 0.25;            // in that share of steps
 inline constexpr double few_effective = 0.2 * particle_count;
-inline constexpr double few_origins = 100;
+inline constexpr double few_origins = 250;
 inline constexpr double too_few_effective = 50;
 inline constexpr int max_rescues = 3;
 
@@ -85,7 +85,7 @@ class ParticleFilter {
     const bool is_worth_moving = !before.history.steps().empty() || before.history.begins_with_the_documents();
     for (int rescue = 0; rescue < max_rescues && step.is_observed && is_worth_moving; ++rescue) {
       if (updated.cloud.effective() >= too_few_effective) break;
-      before = Moves<Model>{before.history, random_}.moved(before, particle_count);
+      before = Moves<Model>{before.history, random_}.moved(before);
       Updated again = propagated(before, step);
       if (again.cloud.effective() >= updated.cloud.effective()) updated = std::move(again);
     }
@@ -151,9 +151,9 @@ class ParticleFilter {
     const bool is_few = cloud.effective() < few_effective;
     if (!is_few && cloud.effective_origins() >= few_origins) return;
     if (!cloud.history.is_time_to_move()) return;
-    Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud, particle_count);
+    Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud);
     const bool have_helped = is_few ? moved.effective() > 1.1 * cloud.effective()
-                                    : moved.effective_origins() > 1.5 * cloud.effective_origins();
+                                    : moved.effective_origins() > 1.1 * cloud.effective_origins();
     if (have_helped) cloud = std::move(moved);
     cloud.history.note_moves(have_helped);
   }
