@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import subprocess
 from pathlib import Path
 
@@ -11,8 +12,8 @@ from aos_solver.building.compiler import find_compiler
 CHECKS = Path(__file__).parent.parent / "cpp" / "belief_checks.cpp"
 
 
-async def test_beliefs_are_what_probability_theory_says(tmp_path: Path) -> None:
-    compiler = await find_compiler()
+def test_beliefs_are_what_probability_theory_says(tmp_path: Path) -> None:
+    compiler = asyncio.run(find_compiler())
     checks = tmp_path / "checks"
     command = [*compiler.command, "-std=c++20", "-O1", f"-I{SOURCES}", str(CHECKS), "-o", str(checks)]
     subprocess.run(command, check=True, timeout=300)
