@@ -1,4 +1,4 @@
-"""Loops that draw until a condition holds: in either order, nested, without an end. Draws from many weights."""
+"""Loops that draw until a condition holds: in either order, nested, endless. Draws from many weights."""
 
 from __future__ import annotations
 

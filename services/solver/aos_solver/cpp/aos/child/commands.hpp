@@ -288,18 +288,20 @@ class Engine {
   }
 
  private:
-  // By walks of more and more steps, for so long.
+  // By walks of more and more steps, none of which takes long, for so long.
   template <class Walk>
   static void count_samples(JsonWriter& json, double seconds, Walk&& walk) {
     const auto start = std::chrono::steady_clock::now();
     const auto processor_start = processor_time();
     std::chrono::duration<double> spent{};
     Walked all;
-    for (std::uint64_t steps = 64; spent.count() < seconds; steps = std::min<std::uint64_t>(2 * steps, 1 << 16)) {
+    for (std::uint64_t steps = 64; spent.count() < seconds;) {
       const Walked walked = walk(steps);
       all.steps += walked.steps;
       all.rewards += walked.rewards;
+      const std::chrono::duration<double> before = spent;
       spent = std::chrono::steady_clock::now() - start;
+      if ((spent - before).count() < 0.05) steps = std::min<std::uint64_t>(2 * steps, 1 << 16);
     }
     write_samples(json, all, spent.count(), seconds_since(processor_start));
   }
