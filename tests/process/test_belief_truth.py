@@ -119,6 +119,24 @@ async def test_a_random_chain_is_followed_as_bayes_rule_says(seed: int, cache_di
             assert [found.get(str(state), 0.0) for state in range(STATES)] == pytest.approx(belief, abs=1e-9)
 
 
+@pytest.mark.parametrize("seed", [4, 5])
+async def test_particles_follow_a_random_chain_closely(seed: int, cache_dir: Path) -> None:
+    model, dice = RandomModel(seed), random.Random(seed)
+    belief = model.start
+    async with engine_of(await built_text(model.documents(), cache_dir)) as engine:
+        assert (await engine.draw_belief()).error_bound == 1
+        for _ in range(20):
+            action = dice.randrange(ACTIONS)
+            odds = [model.updated(belief, action, response)[1] for response in range(RESPONSES)]
+            response = dice.choices(range(RESPONSES), odds)[0]
+            belief, _ = model.updated(belief, action, response)
+            summary = (await engine.update(f"act{action}", f"r{response}")).summary
+            found = summary.marginals[0].values
+            distance = sum(abs(found.get(str(state), 0.0) - belief[state]) for state in range(STATES)) / 2
+            assert distance < 0.05
+            assert summary.effective_states >= 100
+
+
 def row_of_bools(name: str, count: int, odds: str) -> str:
     """An environment of `count` bools; bool `i` is true with probability `odds`, each for itself."""
     return f"""project: {name}

@@ -12,9 +12,9 @@
 //
 // Of discrete draws all that is promising is followed, up to 16 branches in all; else one trial, drawn in proportion to
 // probability times promise, and weighted by what makes up for that. Once in 10,000 draws what promises nothing is followed
-// all the same, and counts by so much more. Only where it is certain that nothing can come, nothing is expected: so the weights estimate the probability of the observation, and of all that comes with it, without
-// bias, whatever the code does. (A document may assign its text anew after it began another one; then a promise misleads,
-// and costs precision only.)
+// all the same, and counts by so much more. Only where it is certain that nothing can come, nothing is expected: so the
+// weights estimate the probability of the observation, and of all that comes with it, without bias, whatever the code does.
+// (A document may assign its text anew after it began another one; then a promise misleads, and costs precision only.)
 //
 // The strata of a continuous draw are found before, at eleven points and by bisection between those that agree and those that
 // do not: long ones where all points tell the same, short ones between. They are other points than those of the trials,

@@ -23,7 +23,9 @@
 
 namespace aos {
 
-inline constexpr std::size_t max_moving_steps = 200'000;  // of one update
+inline constexpr std::size_t max_moving_steps = 600'000;  // of one update
+inline constexpr std::size_t min_copies = 500;
+inline constexpr std::size_t max_copies = 5000;
 inline constexpr std::size_t proposals_that_tell = 500;
 inline constexpr std::size_t least_accepted = 1;          // of them; else there is little to be gained
 
@@ -34,8 +36,10 @@ class Moves {
 
   Moves(const History<Model>& history, Sampler& random) : history_(history), random_(random) {}
 
-  // About so many copies of a cloud's particles, after moves; the cloud as it is where moves lead nowhere.
-  Cloud<Model> moved(const Cloud<Model>& cloud, std::size_t copies) {
+  // Copies of a cloud's particles, after moves; the cloud as it is where moves lead nowhere. The longer the history, the
+  // fewer copies, so that each has enough of them.
+  Cloud<Model> moved(const Cloud<Model>& cloud) {
+    const std::size_t copies = std::clamp(max_moving_steps / (20 * (1 + cloud.history.steps().size())), min_copies, max_copies);
     copy(cloud, copies);
     std::size_t proposed = 0;
     std::size_t accepted = 0;
@@ -46,7 +50,7 @@ class Moves {
         if (steps_ >= max_moving_steps) break;
       }
     }
-    return accepted > 0 ? gathered(cloud, copies) : cloud;
+    return accepted > 0 ? gathered(cloud, copies_.size()) : cloud;
   }
 
  private:
@@ -58,11 +62,16 @@ class Moves {
     bool is_moved;
   };
 
-  // In proportion to the weights, and each particle once at least, so that none is lost.
+  // In proportion to the weights, and where there are not too many particles each of them once at least.
   void copy(const Cloud<Model>& cloud, std::size_t copies) {
     const double unit = cloud.total() / static_cast<double>(copies);
-    for (std::size_t i = 0; i < cloud.particles.size(); ++i) {
-      const auto& [state, weight] = cloud.particles[i];
+    std::vector<double> weights;
+    for (const auto& particle : cloud.particles) weights.push_back(particle.weight);
+    thin_out(weights, copies, random_);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (weights[i] <= 0) continue;
+      const auto& state = cloud.particles[i].state;
+      const double weight = weights[i];
       const long count = std::max(1L, std::lround(weight / unit));
       for (long copy = 0; copy < count; ++copy) {
         copies_.push_back({i, state, weight / static_cast<double>(count), cloud.lineages[i].trace, false});
@@ -78,8 +87,9 @@ class Moves {
     for (std::size_t i = 0; i < unmoved.size(); ++i) {
       if (unmoved[i] == 0) continue;
       const auto& [state, weight] = cloud.particles[i];
-      const double share = unmoved[i] / weight;
-      gathered.add(state, unmoved[i], cloud.lineages[i].squares * share * share, cloud.lineages[i].trace, random_);
+      const double squares = unmoved[i] < weight ? cloud.lineages[i].squares * std::pow(unmoved[i] / weight, 2)
+                                                 : cloud.lineages[i].grown_squares(weight, unmoved[i]);
+      gathered.add(state, unmoved[i], squares, cloud.lineages[i].trace, random_);
     }
     for (Copy& copy : copies_) {
       if (copy.is_moved) gathered.add(copy.state, copy.weight, copy.weight * copy.weight, std::move(copy.trace), random_);
@@ -87,23 +97,22 @@ class Moves {
     return gathered.thinned(max_particles, cloud.history, random_);
   }
 
-  // One proposal. A change that leads to the same state is none.
+  // One proposal, at one of all the draws of the trace. A change that leads to the same state is none.
   bool move(Copy& copy) {
     const std::vector<const Block*> blocks = blocks_of(copy.trace);
-    const std::size_t last = blocks.size() - 1;
-    const std::size_t place = last == 0 || random_.flag(0.5) ? 0 : 1 + static_cast<std::size_t>(random_.below(static_cast<int>(last)));
+    const auto [place, first] = random_draw(blocks);
     ++steps_;
-    if (blocks[place]->draws == 0) return false;
+    if (place == blocks.size()) return false;
     State state{};
     for (std::size_t i = 0; i < place; ++i) repeat(i, *blocks[i], state);
     State before = state;
     std::vector<Block> proposed;
     double ratio = is_guided(place) ? guided(place, *blocks[place], state, proposed)
-                                    : changed(place, *blocks[place], state, proposed);
+                                    : changed(place, first, *blocks[place], state, proposed);
     if (ratio <= 0) return false;
     repeat(place, *blocks[place], before);
     if (state == before) return false;
-    for (std::size_t i = place + 1; i <= last; ++i) {
+    for (std::size_t i = place + 1; i < blocks.size(); ++i) {
       if (is_guided(i)) {
         ratio *= guided(i, *blocks[i], state, proposed);
       } else {
@@ -114,11 +123,39 @@ class Moves {
       }
       if (ratio <= 0) return false;
     }
+    ratio *= way_back(blocks, proposed, place);
     if (ratio < 1 && !random_.flag(ratio)) return false;
     copy.state = state;
     copy.trace = replaced(copy.trace, blocks.size() - place, proposed);
     copy.is_moved = true;
     return true;
+  }
+
+  struct DrawPlace {
+    std::size_t block;
+    std::size_t draw;
+  };
+  // After the last block where nothing was drawn.
+  DrawPlace random_draw(const std::vector<const Block*>& blocks) {
+    std::size_t left = 0;
+    for (const Block* block : blocks) left += block->draws;
+    if (left == 0) return {blocks.size(), 0};
+    left = static_cast<std::size_t>(random_.below(static_cast<int>(left)));
+    std::size_t place = 0;
+    while (left >= blocks[place]->draws) left -= blocks[place++]->draws;
+    return {place, left};
+  }
+  // How much likelier it is to choose the same place from the proposed trace than it was from this one: the same draw, or
+  // any of a guided block.
+  double way_back(const std::vector<const Block*>& blocks, const std::vector<Block>& proposed, std::size_t place) const {
+    double before = 0;
+    double after = 0;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      before += blocks[i]->draws;
+      after += i < place ? blocks[i]->draws : proposed[i - place].draws;
+    }
+    const double shares = is_guided(place) ? static_cast<double>(proposed[0].draws) / blocks[place]->draws : 1;
+    return after > 0 ? shares * before / after : 0;
   }
 
   bool is_guided(std::size_t place) const { return place > 0 && history_.steps()[place - 1].is_guided; }
@@ -142,29 +179,25 @@ class Moves {
     return step.agrees(History<Model>::run(state, step, replay_)) ? replay_.weight() : 0;
   }
 
-  // A block with some draws changed, and what that makes of the ratio: by the number of draws the way back is likelier; 0
-  // where it does not bring what was observed.
-  double changed(std::size_t place, const Block& block, State& state, std::vector<Block>& proposed) {
+  // A block with some draws changed from one on, and what that makes of the ratio; 0 where it does not bring what was
+  // observed.
+  double changed(std::size_t place, std::size_t first, const Block& block, State& state, std::vector<Block>& proposed) {
     std::vector<double> values;
     State old = state;
     Sampler later{block.seed};
     run(place, block.values, later, old, &values);
-    const auto count = static_cast<double>(values.size());
-    perturb(values);
+    perturb(values, first);
     std::vector<double> used;
     const double likelihood = run(place, values, random_, state, &used);
-    if (likelihood <= 0 || used.empty()) return 0;
-    const double ratio = count / static_cast<double>(used.size()) * likelihood / block.likelihood;
     const auto draws = static_cast<std::uint32_t>(used.size());
     proposed.push_back({std::move(used), 0, likelihood, draws});
-    return ratio;
+    return likelihood / block.likelihood;
   }
 
-  // From one of the draws on, a few in a row are drawn anew, or turned by a little: both are as likely there as back.
-  void perturb(std::vector<double>& values) {
-    const auto first = static_cast<std::size_t>(random_.below(static_cast<int>(values.size())));
-    const std::size_t length = random_.flag(0.02) ? values.size() : 1 + static_cast<std::size_t>(random_.below(4));
-    const bool is_turned = random_.flag(0.4);
+  // A few in a row are drawn anew, or turned by a little: both are as likely there as back.
+  void perturb(std::vector<double>& values, std::size_t first) {
+    const std::size_t length = random_.flag(0.5) ? 1 : random_.flag(0.05) ? values.size() : 2 + random_.below(3);
+    const bool is_turned = random_.flag(0.3);
     const double reach = is_turned ? std::exp(std::log(0.5) - random_.uniform() * std::log(500.0)) : 0;
     for (std::size_t i = first; i < std::min(values.size(), first + length); ++i) {
       if (is_turned) {

@@ -13,7 +13,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -27,17 +26,17 @@
 
 namespace aos {
 
-inline constexpr double max_guided_runs = 80'000;           // of one update, about
-inline constexpr std::size_t max_guesses = 500; 
+inline constexpr std::size_t pilot_count = 200;         // steps that tell how likely an observation is
+inline constexpr double rare_observation = 0.25;        // in that share of steps
+inline constexpr std::size_t few_particles = 300;       // more are not guessed at, as far as each can have a trial
+inline constexpr std::size_t max_guesses = 500;         // about
 inline constexpr std::size_t max_guessing_runs = 500'000;
-inline constexpr std::size_t price_count = 50;
-inline constexpr std::size_t few_particles = 300;           // more are not guessed at, as far as each can have a trial
-inline constexpr double max_covering_runs = 2'000'000;      // where many particles are to be covered
-inline constexpr double nearly_all = 1 - 1e-8;
-inline constexpr std::size_t pilot_count = 200;
-inline constexpr double rare_observation = 0.25;            // in that share of steps
+inline constexpr std::size_t price_count = 50;          // trials that tell how many runs one takes
+inline constexpr double max_guided_runs = 80'000;       // of an update where few particles are to be covered
+inline constexpr double max_covering_runs = 2'000'000;  // where many are
+inline constexpr double nearly_all = 1 - 1e-8;          // of the weight is covered
 inline constexpr double few_effective = 0.2 * particle_count;
-inline constexpr double few_origins = 100;
+inline constexpr double few_origins = 250;
 inline constexpr double too_few_effective = 50;
 inline constexpr int max_rescues = 3;
 
@@ -85,7 +84,7 @@ class ParticleFilter {
     const bool is_worth_moving = !before.history.steps().empty() || before.history.begins_with_the_documents();
     for (int rescue = 0; rescue < max_rescues && step.is_observed && is_worth_moving; ++rescue) {
       if (updated.cloud.effective() >= too_few_effective) break;
-      before = Moves<Model>{before.history, random_}.moved(before, particle_count);
+      before = Moves<Model>{before.history, random_}.moved(before);
       Updated again = propagated(before, step);
       if (again.cloud.effective() >= updated.cloud.effective()) updated = std::move(again);
     }
@@ -151,9 +150,9 @@ class ParticleFilter {
     const bool is_few = cloud.effective() < few_effective;
     if (!is_few && cloud.effective_origins() >= few_origins) return;
     if (!cloud.history.is_time_to_move()) return;
-    Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud, particle_count);
+    Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud);
     const bool have_helped = is_few ? moved.effective() > 1.1 * cloud.effective()
-                                    : moved.effective_origins() > 1.5 * cloud.effective_origins();
+                                    : moved.effective_origins() > 1.1 * cloud.effective_origins();
     if (have_helped) cloud = std::move(moved);
     cloud.history.note_moves(have_helped);
   }

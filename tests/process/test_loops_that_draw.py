@@ -1,0 +1,106 @@
+"""Loops that draw until a condition holds: in either order, nested, endless. Draws from many weights."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+from test_belief_truth import reading
+
+from aos_protocol.errors import ModelError
+
+LOOPS = {
+    "exit_first": ("while (AOS.Bernoulli(0.5)) rounds++;", 0.5),
+    "exit_last": ("while (AOS.Bernoulli(0.5) ? false : true) rounds++;", 0.5),
+    "rare_exit_first": ("while (AOS.Bernoulli(0.1) ? false : true) rounds++;", 0.1),
+    "rare_exit_last": ("while (AOS.Bernoulli(0.9) ? true : false) rounds++;", 0.1),
+    "broken": ("while (true) { if (AOS.Bernoulli(0.7)) break; rounds++; }", 0.7),
+    "of_three": ("while (AOS.SampleDiscrete({0.3, 0.3, 0.4}) != 1) rounds++;", 0.3),
+    "nested": (
+        "while (true) { while (AOS.Bernoulli(0.5)) rounds++; if (AOS.Bernoulli(0.5)) break; rounds++; }",
+        0.25,
+    ),
+    "continuous": ("while (AOS.SampleUniform(0, 1) > 0.4) rounds++;", 0.4),
+}
+"""Code, and the probability that it does not go round."""
+
+ENVIRONMENT = """project: loops
+horizon: 5
+discount: 0.95
+
+state_variable: int rounds
+
+initial_belief:
+while (true) {
+    int across = AOS.Bernoulli(0.5), up = AOS.Bernoulli(0.5);
+    if (across && up) continue;
+    state.rounds = across + up;
+    break;
+}
+"""
+SKILL = """project: loops
+
+dynamic_model:
+int rounds = 0;
+{loop}
+state__.rounds = rounds;
+__moduleResponse = rounds == 0 ? yes : no;
+"""
+MANY_WEIGHTS = """project: loops
+
+dynamic_model:
+state__.rounds = AOS.SampleDiscrete(vector<double>(2000, 1.0 / 2000));
+__moduleResponse = state__.rounds < 500 ? yes : no;
+"""
+ENDLESS = """project: loops
+
+dynamic_model:
+state__.rounds = 1;
+while (true) {{
+    {body}
+}}
+__moduleResponse = yes;
+"""
+
+
+async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir: Path) -> None:
+    files = {"loops.ef": ENVIRONMENT}
+    for name, (loop, _) in LOOPS.items():
+        files |= {f"{name}.sd": SKILL.format(loop=loop), f"{name}.am": reading("loops")}
+    files |= {"weights.sd": MANY_WEIGHTS, "weights.am": reading("loops")}
+    async with engine_of(await built_text(files, cache_dir)) as engine:
+        names = [action.name for action in engine.description.actions]
+        start = await engine.summary()
+        assert start.marginals[0].values == {"1": pytest.approx(2 / 3), "0": pytest.approx(1 / 3)}
+        assert 0 < start.error_bound < 1e-6
+        for name, (_, probability) in LOOPS.items():
+            await engine.reset_belief()
+            prediction = await engine.predict(names.index(name))
+            stays = {seen.response: seen.probability for seen in prediction.predicted}
+            assert stays["yes"] == pytest.approx(probability, abs=0.03), name
+            update = await engine.update(name, "no")
+            assert not update.is_impossible, name
+            rounds = update.summary.marginals[0].values
+            assert "0" not in rounds, name
+            if name != "nested":
+                assert rounds["1"] == pytest.approx(probability, abs=0.03), name
+        await engine.reset_belief()
+        update = await engine.update("weights", "yes")
+        assert update.probability == pytest.approx(0.25)
+        assert update.summary.states == 500
+
+
+@pytest.mark.parametrize("body", ["", "if (AOS.SampleUniform(0, 1) > 2) break;"])
+async def test_a_loop_without_an_end_is_told_at_its_line(body: str, cache_dir: Path) -> None:
+    files = {
+        "loops.ef": ENVIRONMENT,
+        "turn.sd": ENDLESS.format(body=body),
+        "turn.am": reading("loops"),
+    }
+    with pytest.raises(ModelError) as raised:
+        async with engine_of(await built_text(files, cache_dir)) as engine:
+            await engine.update("turn", "yes")
+    assert raised.value.code == "AOS211"
+    (diagnostic,) = raised.value.diagnostics
+    assert (diagnostic.span.file, diagnostic.span.line) == ("turn.sd", 5)
