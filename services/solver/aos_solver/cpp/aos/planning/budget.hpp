@@ -29,7 +29,8 @@ struct ActionEstimate {
 // The action with the highest value of those that count; of actions that cannot be told apart, the one that earns most at
 // once. The value of waiting is that of the best of many later choices, and so is estimated too high rather than too low:
 // who did not prefer what comes sooner would put off for ever what is as good later. Values cannot be told apart that
-// differ by less than their standard error, and by no more than a delay by one of `horizon` steps can be worth.
+// differ by no more than the best of `horizon` values of the same error exceeds their mean, sqrt(2 ln horizon) errors, and
+// by no more than a delay by one of `horizon` steps can be worth.
 template <class Counts>
 int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, Counts&& counts) {
   const ActionEstimate* best = nullptr;
@@ -40,7 +41,7 @@ int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, 
   const ActionEstimate* soonest = best;
   for (const ActionEstimate& estimate : estimates) {
     if (!counts(estimate) || estimate.reward <= soonest->reward) continue;
-    const double error = std::hypot(estimate.standard_error, best->standard_error);
+    const double error = std::hypot(estimate.standard_error, best->standard_error) * std::sqrt(2 * std::log(horizon));
     if (best->q - estimate.q <= std::fmin(error, std::abs(best->q) / horizon)) soonest = &estimate;
   }
   return static_cast<int>(soonest - estimates.data());

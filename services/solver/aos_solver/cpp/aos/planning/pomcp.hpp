@@ -6,9 +6,10 @@
 //   of the state no longer blurs the returns, and what is left to find is the cost of not seeing. A new history starts at
 //   0, as if all were seen from there on.
 // - Where there are too many states, and no rollout policy, the same is done with an estimate of that worth, learned before
-//   the first decision (learned_values.hpp); what each action is worth on average over the belief, to somebody who sees the
+//   the first decision (learned_values.hpp). What each action is worth on average over the belief, to somebody who sees the
 //   state after it (Littman, Cassandra and Kaelbling, 1995), then is the order in which actions are tried everywhere in
-//   the tree. Where no estimate is good enough, or there is a rollout policy, a new history starts with a rollout.
+//   the tree, and a history stays a leaf until it has been visited as often as there are actions. Where no estimate is good
+//   enough, or there is a rollout policy, a new history starts with a rollout.
 // - Where the states are few, told apart by all that is in them, simulations step by a table of the model and not by the
 //   documents' code (step_table.hpp).
 // - The exploration bonus of an action follows the spread of its own returns: immediate rewards say little about it, and a

@@ -170,7 +170,7 @@ class TreeSearch {
       std::uint32_t child = tree_.find_child(action, seen);
       const bool is_new = child == no_node;
       if (is_new) child = tree_.add_child(action, seen);
-      if (is_new || !give_actions(child, state, random)) {
+      if (is_new || stays_leaf(child) || !give_actions(child, state, random)) {
         later = state.leaf(left, random);
         change = child == no_node ? later : add_return(tree_.history(child), later);
         break;
@@ -192,6 +192,14 @@ class TreeSearch {
     drawn.clear();
     const ReportingTo reporting{random, drawn};
     return state.step(action, random);
+  }
+
+  // With a prior a history stays a leaf until it has been visited as often as there are actions. What states are worth to
+  // somebody who sees them is too much, and less so the deeper the tree: few visits below each of many actions would
+  // tell them apart by how deep these happened to go.
+  bool stays_leaf(std::uint32_t number) const {
+    const HistoryNode& history = tree_.history(number);
+    return !prior_.empty() && history.first_action == no_node && history.n < action_count();
   }
 
   // Returns false where there is no room for them. Where play-outs value new histories, actions that these would take from
