@@ -52,7 +52,7 @@ class LearnedValues {
     if (left <= 0) return 0;
     thread_local std::vector<std::uint16_t> row;
     row.resize(variables_.size());
-    for (const std::uint32_t variable : used_) row[variable] = variables_[variable].cell(&state);
+    for (const std::uint32_t variable : used_) row[variable] = variables_[variable].cell(Model::bytes_of(state));
     return std::clamp(tables_.value(row.data()), lowest_, highest_);
   }
 
@@ -144,11 +144,11 @@ class LearnedValues {
     std::vector<double> numbers;
     const State& any = examples_.front();
     const auto add = [&](const std::string&, const Leaf& leaf) {
-      const auto offset = static_cast<const std::byte*>(leaf.place) - reinterpret_cast<const std::byte*>(&any);
+      const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(any);
       if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
       CellVariable variable{leaf, static_cast<std::size_t>(offset)};
       numbers.clear();
-      for (const State& example : examples_) numbers.push_back(variable.number(&example));
+      for (const State& example : examples_) numbers.push_back(variable.number(Model::bytes_of(example)));
       if (variable.divide(numbers)) variables_.push_back(variable);
     };
     NamedLeavesCall visitor{add};
@@ -177,7 +177,7 @@ class LearnedValues {
     }
   }
   void add_row(const State& state) {
-    for (const CellVariable& variable : variables_) rows_.push_back(variable.cell(&state));
+    for (const CellVariable& variable : variables_) rows_.push_back(variable.cell(Model::bytes_of(state)));
   }
 
   // --- values ----------------------------------------------------------------------------------------
