@@ -187,15 +187,16 @@ class Sarsop {
   bool improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
     has_learnt_ = false;
     path_.clear();
-    if (persisted_ < model_.actions) {
+    const bool persists = persisted_ < model_.actions;
+    if (persists) {
       persist(number, persisted_++, is_over);
     } else {
       sample(number, precision, is_over);
     }
     for (auto step = path_.rbegin(); step != path_.rend(); ++step) backup(*step);
     if (vectors_added_ > std::max<std::size_t>(200, vectors() / 4)) prune();
-    idle_ = has_learnt_ ? 0 : idle_ + 1;
-    return idle_ < 3 || persisted_ < model_.actions;
+    idle_ = has_learnt_ || persists ? 0 : idle_ + 1;
+    return idle_ < 3;
   }
 
   // Outwards, by more than rounding can have moved it inwards.
