@@ -328,3 +328,14 @@ def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(
         [tmp_path / "walk"], input=" ".join(map(str, seen)), capture_output=True, text=True, check=True
     )
     assert [int(line) for line in walked.stdout.split()] == expected
+
+
+async def test_bounds_that_contradict_each_other_are_an_error_and_never_a_result(cache_dir: Path) -> None:
+    always = Ragged(np.array([0, 1], np.int64), np.zeros(1, np.int64), np.ones(1))
+    no_number = ExplicitModel(
+        name="no number", discount=0.9, states=("here",), actions=("wait",), observations=("none",),
+        rewards=np.full((1, 1), np.nan), outcomes=always, sensings=np.zeros(1, np.int64), readings=always,
+        starts=(StartBelief(1.0, np.zeros(1, np.int64), np.ones(1)),),
+    )  # fmt: skip
+    with pytest.raises(ModelError, match="AOS216"):
+        await solve(no_number, SolvingLimits(cpu_s=0.1), cache_dir=cache_dir)
