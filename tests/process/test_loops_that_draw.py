@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 from models import built_text, engine_of
-from test_belief_truth import reading
 
 from aos_protocol.errors import ModelError
 
@@ -25,6 +24,22 @@ LOOPS = {
 }
 """Code, and the probability that it does not go round."""
 
+MAPPING = """project: loops
+
+response: yes
+response_rule: is_on
+response: no
+response_rule: True
+
+module_activation: skill
+path: /turn
+
+local_variable: is_on
+type: bool
+from_ros_service_response: true
+code:
+is_on = __input.is_on
+"""
 ENVIRONMENT = """project: loops
 horizon: 5
 discount: 0.95
@@ -67,8 +82,8 @@ __moduleResponse = yes;
 async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir: Path) -> None:
     files = {"loops.ef": ENVIRONMENT}
     for name, (loop, _) in LOOPS.items():
-        files |= {f"{name}.sd": SKILL.format(loop=loop), f"{name}.am": reading("loops")}
-    files |= {"weights.sd": MANY_WEIGHTS, "weights.am": reading("loops")}
+        files |= {f"{name}.sd": SKILL.format(loop=loop), f"{name}.am": MAPPING}
+    files |= {"weights.sd": MANY_WEIGHTS, "weights.am": MAPPING}
     async with engine_of(await built_text(files, cache_dir)) as engine:
         names = [action.name for action in engine.description.actions]
         start = await engine.summary()
@@ -96,7 +111,7 @@ async def test_a_loop_without_an_end_is_told_at_its_line(body: str, cache_dir: P
     files = {
         "loops.ef": ENVIRONMENT,
         "turn.sd": ENDLESS.format(body=body),
-        "turn.am": reading("loops"),
+        "turn.am": MAPPING,
     }
     with pytest.raises(ModelError) as raised:
         async with engine_of(await built_text(files, cache_dir)) as engine:

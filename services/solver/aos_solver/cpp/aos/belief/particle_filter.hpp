@@ -32,13 +32,14 @@ inline constexpr std::size_t few_particles = 300;       // more are not guessed 
 inline constexpr std::size_t max_guesses = 500;         // about
 inline constexpr std::size_t max_guessing_runs = 500'000;
 inline constexpr std::size_t price_count = 50;          // trials that tell how many runs one takes
-inline constexpr double max_guided_runs = 80'000;       // of an update where few particles are to be covered
+inline constexpr double max_guided_runs = 150'000;      // of an update where few particles are to be covered
 inline constexpr double max_covering_runs = 2'000'000;  // where many are
+inline constexpr double dear_trial = 50;                // in runs; of cheap ones there can be many
 inline constexpr double nearly_all = 1 - 1e-8;          // of the weight is covered
 inline constexpr double few_effective = 0.2 * particle_count;
 inline constexpr double few_origins = 250;
 inline constexpr double too_few_effective = 50;
-inline constexpr int max_rescues = 3;
+inline constexpr int max_rescues = 2;
 
 template <class Model>
 class ParticleFilter {
@@ -51,11 +52,11 @@ class ParticleFilter {
 
   explicit ParticleFilter(Sampler& random) : random_(random) {}
 
-  // The documents' initial belief.
+  // The documents' initial belief. Where it has few states more of it is drawn, which takes no more room.
   Cloud<Model> initial() {
     GatheredCloud<Model> gathered;
     State state{};
-    for (std::size_t i = 0; i < particle_count; ++i) {
+    for (std::size_t i = 0; i < 10 * particle_count && gathered.size() < particle_count; ++i) {
       Block block = free_block();
       Model::initial(state, replay_);
       block.draws = static_cast<std::uint32_t>(replay_.draws());
@@ -193,7 +194,10 @@ class ParticleFilter {
     if (before.particles.size() > few_particles) {
       draw_evenly<Model>(before.particles, price_count, random_, [&](const State& drawn) { guided.from(drawn, nothing); });
       const double price = static_cast<double>(guided.runs()) / price_count;
-      if (price * static_cast<double>(before.particles.size()) <= max_covering_runs) return by_weight(before, few_particles);
+      const bool are_dear = price > dear_trial;
+      if (are_dear && price * static_cast<double>(before.particles.size()) <= max_covering_runs) {
+        return by_weight(before, few_particles);
+      }
     }
     const std::size_t guesses = std::clamp<std::size_t>(max_guesses / before.particles.size(), 1, 8);
     std::vector<double> trials;
@@ -225,8 +229,9 @@ class ParticleFilter {
     std::vector<Particle<Model>> promising;
     for (std::size_t i = 0; i < shares.size(); ++i) promising.push_back({before.particles[i].state, shares[i]});
     const std::size_t runs_before = guided.runs();
+    double outcomes = 1;
     draw_evenly<Model>(promising, price_count, random_, [&](const State& drawn) {
-      guided.from(drawn, [](const State&, double, const std::vector<double>&) {});
+      guided.from(drawn, [&](const State&, double, const std::vector<double>&) { ++outcomes; });
     });
     const double price = static_cast<double>(guided.runs() - runs_before) / price_count;
     std::vector<double> sorted = shares;
@@ -236,7 +241,7 @@ class ParticleFilter {
     while (covered > 0 && (light -= sorted[covered - 1]) > 0) --covered;
     covered = std::min(covered, static_cast<std::size_t>(max_covering_runs / price));
     const double least = covered > 0 ? sorted[covered - 1] : 1;
-    const double all = std::min(max_guided_runs / price, 1.0 * particle_count);
+    const double all = std::min(max_guided_runs / price, particle_count * price_count / outcomes);
     for (double& share : shares) share = std::max(all * share, share >= least ? 1.0 : 0.0);
     return shares;
   }
