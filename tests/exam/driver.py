@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import subprocess
@@ -28,13 +29,9 @@ async def built_driver(cache_dir: Path) -> Path:
     name = f"exam-{digest_of([compiler.version, *(path.read_text() for path in sources)])}"
 
     async def make(staging: Path) -> None:
-        options = [f"-I{SOURCES}"]
-        for source, output, more in (
-            (_CPP / "exam.cpp", "exam.o", options),
-            (SOURCES / "point_based.cpp", "point_based.o", ["-O3"]),
-        ):
-            include = str(_CPP if output == "exam.o" else SOURCES)
-            _run(compiler.compilation(str(source), output, include, *more), staging)
+        exam = compiler.compilation(str(_CPP / "exam.cpp"), "exam.o", str(_CPP), f"-I{SOURCES}")
+        numbers = compiler.compilation(str(SOURCES / "point_based.cpp"), "point_based.o", str(SOURCES), "-O3")
+        await asyncio.gather(*(asyncio.to_thread(_run, command, staging) for command in (exam, numbers)))
         _run(_linking(compiler), staging)
 
     return await BuildCache(cache_dir).fill(name, make) / "exam"

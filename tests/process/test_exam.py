@@ -17,6 +17,8 @@ from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
 
 PATIENCE_S = 60
 
+pytestmark = pytest.mark.timeout(480)  # to compile the driver takes half a minute of an idle processor
+
 
 @pytest.fixture(scope="module")
 def executable(cache_dir: Path) -> Path:
