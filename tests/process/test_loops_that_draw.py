@@ -118,4 +118,6 @@ async def test_a_loop_without_an_end_is_told_at_its_line(body: str, cache_dir: P
             await engine.update("turn", "yes")
     assert raised.value.code == "AOS211"
     (diagnostic,) = raised.value.diagnostics
-    assert (diagnostic.span.file, diagnostic.span.line) == ("turn.sd", 5)
+    assert diagnostic.span.file == "turn.sd"
+    # Of the loop or of its body, whichever ran.
+    assert diagnostic.span.line in ((5, 6) if body else (5,))

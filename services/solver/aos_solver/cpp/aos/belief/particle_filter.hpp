@@ -29,6 +29,7 @@ namespace aos {
 inline constexpr std::size_t pilot_count = 200;         // steps that tell how likely an observation is
 inline constexpr double rare_observation = 0.25;        // in that share of steps
 inline constexpr std::size_t few_particles = 300;       // more are not guessed at, as far as each can have a trial
+inline constexpr std::size_t few_states = 500;
 inline constexpr std::size_t max_guesses = 500;         // about
 inline constexpr std::size_t max_guessing_runs = 500'000;
 inline constexpr std::size_t price_count = 50;          // trials that tell how many runs one takes
@@ -159,7 +160,7 @@ class ParticleFilter {
   }
 
   Plan plan_of(const Cloud<Model>& before, const HistoryStep& step) {
-    if (!step.is_observed) return {false, 0, by_weight(before, particle_count)};
+    if (!step.is_observed) return {false, 0, by_weight(before, wanted(before))};
     Look look;
     std::vector<std::size_t> first_guided;
     std::size_t agreed = 0;
@@ -172,8 +173,13 @@ class ParticleFilter {
     std::nth_element(first_guided.begin(), first_guided.begin() + pilot_count / 2, first_guided.end());
     const double share = static_cast<double>(agreed) / pilot_count;
     const std::size_t by_chance = first_guided[pilot_count / 2];
-    if (by_chance > 0 && share >= rare_observation) return {false, 0, by_weight(before, particle_count / share)};
+    if (by_chance > 0 && share >= rare_observation) return {false, 0, by_weight(before, wanted(before) / share)};
     return {true, by_chance, by_promise(before, step, by_chance)};
+  }
+
+  // As many trials that agree as are wanted. Where there are few states, more of them take no more room.
+  static double wanted(const Cloud<Model>& before) {
+    return before.particles.size() <= few_states ? 4.0 * particle_count : particle_count;
   }
 
   // In proportion to the weights, at least one each.
@@ -241,7 +247,7 @@ class ParticleFilter {
     while (covered > 0 && (light -= sorted[covered - 1]) > 0) --covered;
     covered = std::min(covered, static_cast<std::size_t>(max_covering_runs / price));
     const double least = covered > 0 ? sorted[covered - 1] : 1;
-    const double all = std::min(max_guided_runs / price, particle_count * price_count / outcomes);
+    const double all = std::min(max_guided_runs / price, wanted(before) * price_count / outcomes);
     for (double& share : shares) share = std::max(all * share, share >= least ? 1.0 : 0.0);
     return shares;
   }

@@ -199,7 +199,7 @@ class StateSpace {
 
   // The distribution of what is observed on paths with the same next state. Most have been met before.
   std::uint32_t sensing_of(std::size_t first, std::size_t last, double total) {
-    constexpr double unit = 1e14;  // probabilities that are closer are the same
+    constexpr double unit = 0x1p51;  // what rounding tells apart by less is the same
     readings_.clear();
     key_.clear();
     for (std::size_t i = first; i < last; ++i) {
