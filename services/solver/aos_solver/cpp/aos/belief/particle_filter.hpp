@@ -57,7 +57,11 @@ class ParticleFilter {
   Cloud<Model> initial() {
     GatheredCloud<Model> gathered;
     State state{};
-    for (std::size_t i = 0; i < 10 * particle_count && gathered.size() < particle_count; ++i) {
+    const auto wants_more = [&](std::size_t drawn) {
+      return drawn < 10 * particle_count ? gathered.size() < particle_count
+                                         : drawn < 40 * particle_count && gathered.size() <= few_states;
+    };
+    for (std::size_t drawn = 0; wants_more(drawn); ++drawn) {
       Block block = free_block();
       Model::initial(state, replay_);
       block.draws = static_cast<std::uint32_t>(replay_.draws());
