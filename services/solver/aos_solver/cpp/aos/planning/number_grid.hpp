@@ -82,7 +82,7 @@ class NumberGrid {
  private:
   static constexpr std::size_t max_cells = 256;  // of the small ones
   static constexpr std::size_t max_sources = 1000;
-  static constexpr double negligible_share = 0.01;
+  static constexpr double negligible_share = 0.001;
   static constexpr double negligible_loss = 1e-12;
 
   static std::vector<double> first_edges(const std::vector<Source>& sources) {
