@@ -358,7 +358,7 @@ DOCUMENTS_OF_DOORS = {
 
 
 async def endings_of_doors(engine: Engine, planner: Planner) -> list[Ending]:
-    """Of 30 missions, all of which begin with listening: a door that is opened at once earns -45 on average."""
+    """Of 30 missions, all of which begin with listening: a door opened at once earns -45 on average."""
     limits = MissionLimits(goal_probability=0.9, step_limit=20)
     searches = [Search(planner=planner, simulations=2000, seed=k) for k in range(30)]
     runs = [await simulate_mission(engine, search, limits) for search in searches]
@@ -381,16 +381,14 @@ async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path) -> None:
 async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_cells(
     planner: Planner, cache_dir: Path
 ) -> None:
-    """What it earns over cells the robot can earn, and cells lose little here. Nothing bounds it from above."""
+    """What is earned over cells the robot can earn. Cells lose little here; there is no upper bound."""
     best = value_of_listening()
     async with engine_of(await built_text(DOCUMENTS_OF_DOORS, cache_dir)) as engine:
         plan = await engine.plan(seed=1, simulations=20_000, planner=planner)
         assert (plan.planner, plan.best.action) == ("sarsop", "listen")
         assert 0.95 * best <= plan.best.q <= best
-        assert re.search(
-            r"with 20 decisions to go the belief is worth at least 5\.\d+, telling numbers by \d+ cells",
-            plan.why,
-        )
+        told = r"with 20 decisions to go the belief is worth at least 5\.\d+, telling numbers by \d+ cells"
+        assert re.search(told, plan.why)
         assert "between" not in plan.why
         assert (await endings_of_doors(engine, planner)).count(Ending.GOAL) >= 27
 

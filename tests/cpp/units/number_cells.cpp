@@ -110,8 +110,8 @@ TEST("Too many numbers at once are refused, and say so") {
   EXPECT(NumberCells{}.choose(reports).starts_with("9 numbers are observed at once"));
 }
 
-// A tiger is behind one of two doors; what is heard of it is a number of normal noise around -1 or 1. Listening costs 1,
-// the door of the tiger 100; the other earns 10. Doors end the mission.
+// A tiger is behind one of two doors; what is heard of it is a number of normal noise around -1 or 1. Listening costs
+// 1, the door of the tiger 100; the other earns 10. Doors end the mission.
 point_based::FlatModel doors(NumberReports& reports) {
   point_based::FlatModel model;
   model.states = 2;
@@ -165,7 +165,9 @@ double value_of_numbers() {
         const double noise = -6 + 12.0 * step / (steps - 1);
         const double weight = std::exp(-0.5 * noise * noise);
         total += weight;
-        later += weight * (right * at(odds_of(point) + 2 * (noise + 1)) + (1 - right) * at(odds_of(point) + 2 * (noise - 1)));
+        const double if_right = at(odds_of(point) + 2 * (noise + 1));
+        const double if_left = at(odds_of(point) + 2 * (noise - 1));
+        later += weight * (right * if_right + (1 - right) * if_left);
       }
       listened[static_cast<std::size_t>(point)] = -1 + 0.95 * later / total;
     }

@@ -1,5 +1,5 @@
-// A distribution of reported numbers by its own numbers: what it takes to tell it from others, and to work out how likely
-// its draws are to fall somewhere.
+// A distribution of reported numbers by its own numbers: what it takes to tell it from others, and to work out how
+// likely its draws are to fall somewhere.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ struct DescribedDistribution {
   enum class Kind : std::uint8_t { normal, uniform, discrete };
 
   Kind kind = Kind::normal;
-  // Mean and deviation; the lower and the upper bound; or the first value and the probabilities of it and the next ones.
+  // Mean and deviation; the lower and the upper bound; or the first value, with the probabilities of it and of the next.
   std::vector<double> numbers{};
 
   bool operator==(const DescribedDistribution&) const = default;
@@ -27,7 +27,8 @@ struct DescribedDistribution {
       default: break;
     }
     double sum = 0;
-    for (std::size_t i = 1; i < numbers.size() && numbers[0] + static_cast<double>(i - 1) < value; ++i) sum += numbers[i];
+    const auto value_of = [&](std::size_t place) { return numbers[0] + static_cast<double>(place - 1); };
+    for (std::size_t i = 1; i < numbers.size() && value_of(i) < value; ++i) sum += numbers[i];
     return std::min(sum, 1.0);
   }
 

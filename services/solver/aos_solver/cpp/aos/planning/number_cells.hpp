@@ -1,8 +1,8 @@
-// What a robot observes if it tells numbers only by the cells of a grid that they fall in: finitely much, so that searches
-// that enumerate observations can look ahead. The grid is the same for all states and actions.
+// What a robot observes if it tells numbers only by the cells of a grid that they fall in: finitely much, so that
+// searches that enumerate observations can look ahead. The grid is the same for all states and actions.
 //
-// Who is told less can do no better, and the robot can act as if it were told less. So what is earned over cells is a lower
-// bound of what can be earned, and an upper bound over cells bounds nothing.
+// Who is told less can do no better, and the robot can act as if it were told less. So what is earned over cells is a
+// lower bound of what can be earned, and an upper bound over cells bounds nothing.
 #pragma once
 
 #include <algorithm>
@@ -43,8 +43,8 @@ class NumberCells {
       while (combinations(gauges) > max) {
         NumberGrid* const next = next_to_merge(gauges);
         if (next == nullptr) {
-          return std::to_string(gauges.size()) + " numbers are observed at once, with too many combinations even of two "
-                 "cells each";
+          return std::to_string(gauges.size()) +
+                 " numbers are observed at once, with too many combinations even of two cells each";
         }
         next->merge();
       }
@@ -167,8 +167,8 @@ class NumberCells {
       left_out += cell.probability;
       return true;
     });
-    const auto by_probability = [](const auto& left, const auto& right) { return left.probability < right.probability; };
-    std::max_element(cells.begin(), cells.end(), by_probability)->probability += left_out;
+    const auto is_less_likely = [](const auto& one, const auto& other) { return one.probability < other.probability; };
+    std::max_element(cells.begin(), cells.end(), is_less_likely)->probability += left_out;
     return cells;
   }
 

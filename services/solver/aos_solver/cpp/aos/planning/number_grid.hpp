@@ -46,7 +46,8 @@ class NumberGrid {
   double information() const { return information_; }
   // What merging costs next at least; infinite where only one cell is left.
   double next_loss() const {
-    return losses_.empty() ? std::numeric_limits<double>::infinity() : *std::min_element(losses_.begin(), losses_.end());
+    if (losses_.empty()) return std::numeric_limits<double>::infinity();
+    return *std::min_element(losses_.begin(), losses_.end());
   }
   // Merges the two neighbours of which that costs least.
   void merge() {

@@ -1,6 +1,6 @@
 // What steps report, by number: a response with the distributions of the numbers that are observed beside it.
 //
-// The robot observes less, draws from these distributions. What it can be told to observe of them is in number_cells.hpp.
+// The robot observes less: a draw from each distribution. What a search makes of that is in number_cells.hpp.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class NumberReports final : public NumberSink {
 
   // The number of what a step of a skill reports that has begun last, with the number of its response.
   std::uint32_t add(int skill, std::uint32_t response) {
-    std::sort(taken_.begin(), taken_.end(), [](const auto& left, const auto& right) { return left.first < right.first; });
+    std::sort(taken_.begin(), taken_.end(), [](const auto& one, const auto& other) { return one.first < other.first; });
     Key key{response};
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       if (i > 0 && taken_[i].first == taken_[i - 1].first) reported_twice(taken_[i].first);
@@ -49,8 +49,8 @@ class NumberReports final : public NumberSink {
     const auto [entry, is_new] = by_key_.try_emplace(std::move(key), static_cast<std::uint32_t>(reports_.size()));
     if (is_new) {
       reports_.push_back({response, {entry->first.begin() + 1, entry->first.end()}});
-      const auto by_gauge = [&](std::uint64_t left, std::uint64_t right) { return parts_[left].gauge < parts_[right].gauge; };
-      std::sort(reports_.back().parts.begin(), reports_.back().parts.end(), by_gauge);
+      const auto gauge_of = [&](std::uint32_t part) { return parts_[part].gauge; };
+      std::ranges::sort(reports_.back().parts, {}, gauge_of);
       size_ += taken_.size();
       is_full_ = size_ > max_size;
     }
