@@ -9,10 +9,12 @@
 #include <cstddef>
 #include <initializer_list>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 namespace aos {
 
+struct DescribedDistribution;
 class Sampler;
 
 class Distribution {
@@ -21,6 +23,7 @@ class Distribution {
   virtual double log_density(double value) const = 0;
   // The distance at which two draws from it begin to tell something apart.
   virtual double spread() const = 0;
+  virtual void describe(DescribedDistribution& description) const = 0;
 
  protected:
   ~Distribution() = default;
@@ -33,6 +36,7 @@ class Normal final : public Distribution {
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
   double spread() const override { return deviation_; }
+  void describe(DescribedDistribution& description) const override;
 
  private:
   void check() const;
@@ -47,6 +51,7 @@ class Uniform final : public Distribution {
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
   double spread() const override { return 0.3 * std::abs(high_ - low_); }
+  void describe(DescribedDistribution& description) const override;
 
  private:
   void check() const;
@@ -63,6 +68,7 @@ class Bernoulli final : public Distribution {
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
   double spread() const override { return discrete_spread; }
+  void describe(DescribedDistribution& description) const override;
 
  private:
   double probability_;
@@ -98,8 +104,12 @@ class Discrete final : public Distribution {
   double draw(Sampler& random) const override;
   double log_density(double value) const override;
   double spread() const override { return discrete_spread; }
+  void describe(DescribedDistribution& description) const override;
 
  private:
+  // Of the weights, and of what can happen.
+  std::pair<double, double> total_and_whole() const;
+
   const double* first_ = nullptr;
   std::size_t count_ = 0;
   bool is_normalised_ = false;

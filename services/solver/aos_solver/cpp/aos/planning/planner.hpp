@@ -129,22 +129,18 @@ class Planner {
   }
 
   PlannerKind suited_kind(const Belief<Model>& belief, Budget budget, int horizon) {
-    if (Model::reports_numbers()) {
-      why_ = numbers_are_observed;
-      return PlannerKind::pomcp;
-    }
     if (!space_.reach(belief)) {
       why_ = space_.obstacle();
       return PlannerKind::pomcp;
     }
     why_ = "all " + std::to_string(space_.size()) + " states can be listed";
-    if (belief.is_exact() && exact_.search(belief, budget, horizon)) {
+    if (space_.lists_observations() && belief.is_exact() && exact_.search(belief, budget, horizon)) {
       why_ += ", and every observation of " + std::to_string(horizon) + " decisions fits the budget";
       return PlannerKind::exact;
     }
     if (const std::string obstacle = point_based_.prepare(belief, horizon); !obstacle.empty()) {
       why_ += "; SARSOP cannot be used: " + obstacle;
-      return PlannerKind::despot;
+      return space_.lists_observations() ? PlannerKind::despot : PlannerKind::pomcp;
     }
     return PlannerKind::sarsop;
   }
@@ -152,6 +148,10 @@ class Planner {
   std::string bounds_text(int horizon) const {
     const auto [lower, upper] = point_based_.bounds();
     const std::string scope = point_based_.is_endless() ? "without a horizon" : "with " + std::to_string(horizon) + " decisions to go";
+    if (point_based_.tells_by_cells()) {
+      return scope + " the belief is worth at least " + rounded_down(lower) + ", telling numbers by " +
+             std::to_string(point_based_.cells()) + " cells";
+    }
     return scope + " the belief is worth between " + rounded_down(lower) + " and " + rounded_up(upper);
   }
 

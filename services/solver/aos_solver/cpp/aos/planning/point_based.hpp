@@ -4,6 +4,7 @@
 // Alpha vectors are lower bounds at every belief, so what one decision has found out serves all later ones.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -18,6 +19,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/number_cells.hpp"
 #include "aos/planning/state_space.hpp"
 #include "point_based/online.hpp"
 
@@ -32,7 +34,6 @@ class PointBased {
   // nothing where it can. No budget counts what it takes for the first decision; later it is next to nothing.
   std::string prepare(const Belief<Model>& belief, int horizon) {
     if (Model::action_count() == 0) return "there are no actions";
-    if (!space_.lists_observations()) return numbers_are_observed;
     const auto entries = space_.weights_of(belief);
     running_ = belief.probability_of(Ending::running);
     if (entries.empty()) return {};
@@ -42,13 +43,24 @@ class PointBased {
     starts_.push_back({1, entries});
     states_ = space_.size();
     horizon_ = horizon;
+    if (tells_by_cells()) {
+      if (const std::string obstacle = cells_.choose(space_.reports()); !obstacle.empty()) return obstacle;
+    }
     return take_model(entries);
   }
+  // Whether the search tells observed numbers by cells only: upper bounds are then none.
+  bool tells_by_cells() const { return !space_.lists_observations(); }
+  // Of an observation, at most.
+  std::size_t cells() const { return cells_.most(); }
   // Whether values are of missions without end: the discount leaves next to nothing of what comes after the horizon, or
   // there are too many states to tell them apart by the decisions to go.
   bool is_endless() const { return is_endless_; }
-  // What the running part of the prepared belief is worth at least and at most.
-  std::pair<double, double> bounds() const { return running_ > 0 ? search_->bounds() : std::pair{0.0, 0.0}; }
+  // What the running part of the prepared belief is worth at least and at most, to who tells numbers no better.
+  std::pair<double, double> bounds() const {
+    if (running_ <= 0) return {0, 0};
+    const auto [lower, upper] = search_->bounds();
+    return {lower - error_, upper + error_};
+  }
   // Of all searches so far.
   std::uint64_t known_simulations() const { return known_; }
 
@@ -78,7 +90,7 @@ class PointBased {
     if (running_ <= 0) return std::vector<ActionEstimate>(static_cast<std::size_t>(Model::action_count()));
     std::vector<ActionEstimate> result;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
-      result.push_back({bounds.lower, bounds.trials + 1, 0});
+      result.push_back({bounds.lower - error_, bounds.trials + 1, 0});
     }
     return result;
   }
@@ -90,32 +102,49 @@ class PointBased {
   static constexpr std::uint64_t work_per_step = 100;
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
-    is_endless_ = std::pow(Model::discount, horizon_) <= (is_large() ? little : next_to_nothing);
+    point_based::FlatModel model = flat_model();
+    error_ = error_of(model);
+    is_endless_ = std::pow(Model::discount, horizon_) <= (is_large(model) ? little : next_to_nothing);
     try {
-      search_ = search_with(is_endless_ ? 0 : horizon_);
+      search_ = search_with(std::move(model), is_endless_ ? 0 : horizon_);
     } catch (const std::length_error&) {
       search_.reset();
       if (Model::discount >= 1) return "there are too many states for so long a horizon without a discount";
       is_endless_ = true;
-      search_ = search_with(0);
+      search_ = search_with(flat_model(), 0);
     }
     search_->move_to(entries);
     return {};
   }
   // Whether it takes long to look at all observations of all states once for each decision to go.
-  bool is_large() const {
+  bool is_large(const point_based::FlatModel& model) const {
     constexpr double max_readings = 2e6;
     double readings = 0;
-    for (const point_based::Outcome& outcome : space_.rows().outcomes.elements) {
-      readings += static_cast<double>(space_.rows().readings.end(outcome.sensing) - space_.rows().readings.begin(outcome.sensing));
+    for (const point_based::Outcome& outcome : model.outcomes.elements) {
+      readings += static_cast<double>(model.readings.end(outcome.sensing) - model.readings.begin(outcome.sensing));
     }
     return readings * horizon_ > max_readings;
   }
-  std::unique_ptr<point_based::OnlineSarsop> search_with(int horizon) const {
+  point_based::FlatModel flat_model() const {
     point_based::FlatModel model = space_.rows();
+    if (tells_by_cells()) {
+      model.readings = cells_.by_cells(model.readings);
+      model.observations = cells_.observations();
+    }
     model.starts = starts_;
+    return model;
+  }
+  static std::unique_ptr<point_based::OnlineSarsop> search_with(point_based::FlatModel model, int horizon) {
     model.horizon = static_cast<std::size_t>(horizon);
     return std::make_unique<point_based::OnlineSarsop>(std::move(model));
+  }
+  // What the probabilities of cells may move values by: so much of all that follows, at every decision.
+  double error_of(const point_based::FlatModel& model) const {
+    if (!tells_by_cells()) return 0;
+    double largest = 0;
+    for (const double reward : model.rewards) largest = std::max(largest, std::abs(reward));
+    const double decisions = std::min(static_cast<double>(horizon_), 1 / (1 - Model::discount));
+    return NumberCells::error * largest * decisions * decisions;
   }
 
   std::uint64_t work_of(Budget budget) const {
@@ -139,6 +168,8 @@ class PointBased {
   std::unique_ptr<point_based::OnlineSarsop> search_;
   int horizon_ = 1;  // decisions
   bool is_endless_ = false;
+  NumberCells cells_;
+  double error_ = 0;  // of bounds
   double running_ = 0;
   std::uint64_t known_ = 0;
 };

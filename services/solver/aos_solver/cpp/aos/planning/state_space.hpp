@@ -16,10 +16,10 @@
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
-#include "aos/base/observed_numbers.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/number_reports.hpp"
 #include "aos/planning/observation_numbers.hpp"
 #include "aos/planning/state_numbers.hpp"
 #include "point_based/flat_model.hpp"
@@ -44,7 +44,6 @@ class StateSpace {
     rows_.discount = Model::discount;
     rows_.outcomes.first.push_back(0);
     rows_.readings.first.push_back(0);
-    draws_.report_to(&ignored_numbers);
   }
 
   // Lists what can be reached from a belief. Returns whether all of it is listed; `obstacle` tells why it is not.
@@ -81,8 +80,9 @@ class StateSpace {
   // Rewards and outcomes by state and action; without starts.
   const point_based::FlatModel& rows() const { return rows_; }
   const ObservationNumbers<Model>& observations() const { return observations_; }
-  // Whether all that can be observed is in the rows. Numbers that are observed beside a response are not.
+  // Whether the observations of the rows are what the robot observes. In a model that reports numbers they are reports.
   static bool lists_observations() { return !Model::reports_numbers(); }
+  const NumberReports& reports() const { return reports_; }
   bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
 
   // The running part of a belief, by number, ascending; weights as they are.
@@ -156,11 +156,12 @@ class StateSpace {
   void note_ending(const State& state) { reached_[static_cast<std::size_t>(Model::ending(state))] = true; }
 
   void list_rows_before(std::size_t end) {
+    if (reports_numbers_) draws_.report_to(&reports_);
     for (; listed_ < end; ++listed_) {
       for (std::size_t action = 0; action < rows_.actions; ++action) add_row(listed_, static_cast<int>(action));
     }
     rows_.states = listed_;
-    rows_.observations = observations_.size();
+    rows_.observations = reports_numbers_ ? reports_.reports().size() : observations_.size();
   }
 
   void add_row(std::uint32_t number, int action) {
@@ -174,7 +175,7 @@ class StateSpace {
       reward += path.probability() * step.reward;
       note_ending(next);
       if (Model::ending(next) != Ending::running) return;
-      paths_.push_back({add(next), observations_.add(action, step.observation), path.probability()});
+      paths_.push_back({add(next), observation_of(action, step), path.probability()});
     });
     rows_.rewards.push_back(reward);
     add_outcomes();
@@ -182,6 +183,11 @@ class StateSpace {
     if (rows_.outcomes.elements.size() > limits_.outcomes || rows_.readings.elements.size() > limits_.outcomes) {
       throw NotEnumerable{"there are too many outcomes to list"};
     }
+  }
+
+  std::uint32_t observation_of(int action, const Step& step) {
+    const std::uint32_t number = observations_.add(action, step.observation);
+    return reports_numbers_ ? reports_.add(Model::skill_of(action), number) : number;
   }
 
   void add_outcomes() {
@@ -223,6 +229,8 @@ class StateSpace {
   SpaceLimits limits_;
   StateNumbers<Model> numbers_;
   ObservationNumbers<Model> observations_;
+  bool reports_numbers_ = Model::reports_numbers();
+  NumberReports reports_;
   point_based::FlatModel rows_;
   std::uint32_t listed_ = 0;  // states that have their rows
   bool reached_[ending_count]{};

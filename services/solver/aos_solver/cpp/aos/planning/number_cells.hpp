@@ -1,0 +1,181 @@
+// What a robot observes if it tells numbers only by the cells of a grid that they fall in: finitely much, so that
+// searches that enumerate observations can look ahead. The grid is the same for all states and actions.
+//
+// Who is told less can do no better, and the robot can act as if it were told less. So what is earned over cells is a
+// lower bound of what can be earned, and an upper bound over cells bounds nothing.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "aos/planning/number_grid.hpp"
+#include "aos/planning/number_reports.hpp"
+#include "point_based/flat_model.hpp"
+
+namespace aos {
+
+class NumberCells {
+ public:
+  // The cells of all that a step may report at once, multiplied.
+  static constexpr std::size_t max_combinations = 256;
+  // How far the probabilities of a report's cells may be from the true ones, together.
+  static constexpr double error = 1e-13;
+
+  // Returns why there can be no cells; nothing where they are chosen.
+  std::string choose(const NumberReports& reports, std::size_t max = max_combinations) {
+    if (reports.is_full()) return "too many different distributions of numbers are reported";
+    make_grids(reports);
+    for (NumberGrid& grid : grids_) grid.merge_alike();
+    max = std::min(max, max_readings / std::max<std::size_t>(reports.reports().size(), 1));
+    std::set<std::vector<std::uint32_t>> sets;
+    for (const auto& report : reports.reports()) sets.insert(gauges_of(reports, report));
+    most_ = 1;
+    for (const auto& gauges : sets) {
+      while (combinations(gauges) > max) {
+        NumberGrid* const next = next_to_merge(gauges);
+        if (next == nullptr) {
+          return std::to_string(gauges.size()) +
+                 " numbers are observed at once, with too many combinations even of two cells each";
+        }
+        next->merge();
+      }
+    }
+    for (const auto& gauges : sets) most_ = std::max(most_, combinations(gauges));
+    expand(reports);
+    return {};
+  }
+
+  // Of a report, at most.
+  std::size_t most() const { return most_; }
+  std::size_t observations() const { return observations_; }
+
+  // The same readings with cells in place of reports.
+  point_based::Rows<point_based::Reading> by_cells(const point_based::Rows<point_based::Reading>& reported) const {
+    point_based::Rows<point_based::Reading> result;
+    result.first.push_back(0);
+    std::map<std::uint32_t, double> sums;
+    for (std::size_t row = 0; row + 1 < reported.first.size(); ++row) {
+      sums.clear();
+      for (const auto* reading = reported.begin(row); reading != reported.end(row); ++reading) {
+        for (const auto& [observation, probability] : cells_of_[reading->observation]) {
+          sums[observation] += reading->probability * probability;
+        }
+      }
+      for (const auto& [observation, probability] : sums) result.elements.push_back({observation, probability});
+      result.first.push_back(result.elements.size());
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::size_t max_readings = 8'000'000;
+
+  static std::vector<std::uint32_t> gauges_of(const NumberReports& reports, const NumberReports::Report& report) {
+    std::vector<std::uint32_t> gauges;
+    for (const std::uint32_t part : report.parts) gauges.push_back(reports.parts()[part].gauge);
+    return gauges;
+  }
+
+  void make_grids(const NumberReports& reports) {
+    std::vector<double> weights(reports.parts().size());
+    for (const auto& report : reports.reports()) {
+      for (const std::uint32_t part : report.parts) ++weights[part];
+    }
+    std::vector<std::vector<NumberGrid::Source>> sources(reports.gauges());
+    for (std::size_t part = 0; part < weights.size(); ++part) {
+      const auto& [gauge, distribution] = reports.parts()[part];
+      sources[gauge].push_back({&distribution, weights[part]});
+    }
+    grids_.clear();
+    for (const auto& of_gauge : sources) grids_.emplace_back(of_gauge);
+  }
+
+  std::size_t combinations(const std::vector<std::uint32_t>& gauges) const {
+    std::size_t product = 1;
+    for (const std::uint32_t gauge : gauges) {
+      if (product > max_readings) break;
+      product *= grids_[gauge].cells();
+    }
+    return product;
+  }
+
+  // The grid that loses least by what a merge takes off the combinations. None where all have two cells.
+  NumberGrid* next_to_merge(const std::vector<std::uint32_t>& gauges) {
+    NumberGrid* next = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t gauge : gauges) {
+      NumberGrid& grid = grids_[gauge];
+      if (grid.cells() <= 2) continue;
+      const auto cells = static_cast<double>(grid.cells());
+      const double loss = grid.next_loss() / std::log(cells / (cells - 1));
+      if (next != nullptr && loss >= least) continue;
+      next = &grid;
+      least = loss;
+    }
+    return next;
+  }
+
+  // A response with certain numbers beside it takes as many observations in a row as these have combinations of cells.
+  void expand(const NumberReports& reports) {
+    std::vector<std::vector<double>> probabilities;
+    for (const auto& [gauge, distribution] : reports.parts()) {
+      probabilities.push_back(grids_[gauge].probabilities_of(distribution));
+    }
+    std::map<std::pair<std::uint32_t, std::vector<std::uint32_t>>, std::uint32_t> first;
+    observations_ = 0;
+    cells_of_.clear();
+    for (const auto& report : reports.reports()) {
+      std::vector<std::uint32_t> gauges = gauges_of(reports, report);
+      const std::size_t count = combinations(gauges);
+      const auto number = static_cast<std::uint32_t>(observations_);
+      const auto [entry, is_new] = first.try_emplace({report.response, std::move(gauges)}, number);
+      if (is_new) observations_ += count;
+      std::vector<point_based::Reading> cells{{0, 1.0}};
+      for (const std::uint32_t part : report.parts) cells = multiplied(cells, probabilities[part]);
+      for (point_based::Reading& cell : cells) cell.observation += entry->second;
+      cells_of_.push_back(without_the_least(std::move(cells)));
+    }
+  }
+
+  static std::vector<point_based::Reading> multiplied(const std::vector<point_based::Reading>& cells,
+                                                      const std::vector<double>& by) {
+    std::vector<point_based::Reading> result;
+    for (const auto& [observation, probability] : cells) {
+      for (std::size_t cell = 0; cell < by.size(); ++cell) {
+        const auto number = static_cast<std::uint32_t>(observation * by.size() + cell);
+        if (probability * by[cell] > 0) result.push_back({number, probability * by[cell]});
+      }
+    }
+    return result;
+  }
+
+  // What is not above the error of what is likely goes to the likeliest.
+  static std::vector<point_based::Reading> without_the_least(std::vector<point_based::Reading> cells) {
+    constexpr double least = error / (4 * static_cast<double>(max_combinations));
+    double left_out = 0;
+    std::erase_if(cells, [&](const point_based::Reading& cell) {
+      if (cell.probability > least) return false;
+      left_out += cell.probability;
+      return true;
+    });
+    const auto is_less_likely = [](const auto& one, const auto& other) { return one.probability < other.probability; };
+    std::max_element(cells.begin(), cells.end(), is_less_likely)->probability += left_out;
+    return cells;
+  }
+
+  std::vector<NumberGrid> grids_;                             // by gauge
+  std::vector<std::vector<point_based::Reading>> cells_of_;  // by report
+  std::size_t observations_ = 0;
+  std::size_t most_ = 1;
+};
+
+}  // namespace aos

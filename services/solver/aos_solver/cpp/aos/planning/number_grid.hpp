@@ -1,0 +1,125 @@
+// Cells of one number that is observed: neighbouring ones are merged where that loses least of what they tell.
+//
+// What cells tell is the mutual information of the cell and the distribution that the number is drawn from (the
+// agglomerative information bottleneck: Slonim and Tishby, 1999; only neighbours are merged here).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "aos/base/described_distribution.hpp"
+
+namespace aos {
+
+class NumberGrid {
+ public:
+  struct Source {
+    const DescribedDistribution* distribution;
+    double weight;
+  };
+
+  // Begins with small cells. The sources must not be empty.
+  explicit NumberGrid(const std::vector<Source>& sources) {
+    edges_ = first_edges(sources);
+    double total = 0;
+    const std::size_t step = 1 + sources.size() / max_sources;
+    for (std::size_t i = 0; i < sources.size(); i += step) total += sources[i].weight;
+    told_.assign(cells(), {});
+    std::vector<double> whole;
+    for (std::size_t i = 0; i < sources.size(); i += step) {
+      const double weight = sources[i].weight / total;
+      const std::vector<double> probabilities = probabilities_of(*sources[i].distribution);
+      for (std::size_t cell = 0; cell < cells(); ++cell) told_[cell].push_back(weight * probabilities[cell]);
+      whole.push_back(weight);
+    }
+    information_ = -information_of(whole);
+    for (const auto& cell : told_) information_ += information_of(cell);
+    for (std::size_t cell = 0; cell + 1 < cells(); ++cell) losses_.push_back(loss_at(cell));
+  }
+
+  std::size_t cells() const { return edges_.size() + 1; }
+  // What the small cells tell, in nats.
+  double information() const { return information_; }
+  // What merging costs next at least; infinite where only one cell is left.
+  double next_loss() const {
+    if (losses_.empty()) return std::numeric_limits<double>::infinity();
+    return *std::min_element(losses_.begin(), losses_.end());
+  }
+  // Merges the two neighbours of which that costs least.
+  void merge() {
+    const auto place = std::min_element(losses_.begin(), losses_.end()) - losses_.begin();
+    const auto cell = static_cast<std::size_t>(place);
+    for (std::size_t i = 0; i < told_[cell].size(); ++i) told_[cell][i] += told_[cell + 1][i];
+    told_.erase(told_.begin() + place + 1);
+    edges_.erase(edges_.begin() + place);
+    losses_.erase(losses_.begin() + place);
+    if (cell > 0) losses_[cell - 1] = loss_at(cell - 1);
+    if (cell < losses_.size()) losses_[cell] = loss_at(cell);
+  }
+  // Merges as long as that loses next to nothing.
+  void merge_alike() {
+    const double allowed = negligible_share * std::max(information_, 0.0) + negligible_loss;
+    double lost = 0;
+    while (!losses_.empty() && (lost += std::max(next_loss(), 0.0)) <= allowed) merge();
+  }
+
+  // Of a draw from a distribution, by cell.
+  std::vector<double> probabilities_of(const DescribedDistribution& distribution) const {
+    std::vector<double> probabilities;
+    double before = 0;
+    for (const double edge : edges_) {
+      const double below = distribution.below(edge);
+      probabilities.push_back(std::max(below - before, 0.0));
+      before = std::max(before, below);
+    }
+    probabilities.push_back(std::max(1 - before, 0.0));
+    return probabilities;
+  }
+
+ private:
+  static constexpr std::size_t max_cells = 256;  // of the small ones
+  static constexpr std::size_t max_sources = 1000;
+  static constexpr double negligible_share = 0.001;
+  static constexpr double negligible_loss = 1e-12;
+
+  static std::vector<double> first_edges(const std::vector<Source>& sources) {
+    std::vector<double> edges;
+    for (const Source& source : sources) source.distribution->add_edges(edges);
+    std::sort(edges.begin(), edges.end());
+    const double too_near = edges.empty() ? 0 : 1e-9 * (edges.back() - edges.front());
+    const auto is_same = [&](double left, double right) { return right - left <= too_near; };
+    edges.erase(std::unique(edges.begin(), edges.end(), is_same), edges.end());
+    if (edges.size() < max_cells) return edges;
+    std::vector<double> some;
+    for (std::size_t i = 0; i + 1 < max_cells; ++i) some.push_back(edges[i * (edges.size() - 1) / (max_cells - 2)]);
+    return some;
+  }
+
+  // What a cell adds to the information; parts are probabilities of the cell with each distribution.
+  static double information_of(const std::vector<double>& parts) {
+    double sum = 0;
+    double added = 0;
+    for (const double part : parts) {
+      if (part <= 0) continue;
+      sum += part;
+      added += part * std::log(part);
+    }
+    return sum > 0 ? added - sum * std::log(sum) : 0;
+  }
+  double loss_at(std::size_t cell) const {
+    std::vector<double> merged = told_[cell];
+    for (std::size_t i = 0; i < merged.size(); ++i) merged[i] += told_[cell + 1][i];
+    return information_of(told_[cell]) + information_of(told_[cell + 1]) - information_of(merged);
+  }
+
+  std::vector<double> edges_;  // between cells; an edge belongs to the cell above it
+  std::vector<std::vector<double>> told_;  // by cell: its probability with each distribution
+  std::vector<double> losses_;             // of merging a cell with the next
+  double information_ = 0;
+};
+
+}  // namespace aos

@@ -1,0 +1,97 @@
+// What steps report, by number: a response with the distributions of the numbers that are observed beside it.
+//
+// The robot observes less: a draw from each distribution. What a search makes of that is in number_cells.hpp.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "aos/base/described_distribution.hpp"
+#include "aos/base/distributions.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/reflection.hpp"
+
+namespace aos {
+
+class NumberReports final : public NumberSink {
+ public:
+  // A number that a skill reports, from one of its distributions.
+  struct Part {
+    std::uint32_t gauge;  // which number of which skill
+    DescribedDistribution distribution;
+  };
+  struct Report {
+    std::uint32_t response;
+    std::vector<std::uint32_t> parts;  // by gauge, ascending
+  };
+
+  void begin() override { taken_.clear(); }
+  void take(NumberKey key, const Distribution& distribution) override {
+    if (is_full_) return;
+    taken_.emplace_back(key, DescribedDistribution{});
+    distribution.describe(taken_.back().second);
+  }
+
+  // The number of what a step of a skill reports that has begun last, with the number of its response.
+  std::uint32_t add(int skill, std::uint32_t response) {
+    std::sort(taken_.begin(), taken_.end(), [](const auto& one, const auto& other) { return one.first < other.first; });
+    Key key{response};
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      if (i > 0 && taken_[i].first == taken_[i - 1].first) reported_twice(taken_[i].first);
+      key.push_back(part_of(skill, taken_[i].first, taken_[i].second));
+    }
+    const auto [entry, is_new] = by_key_.try_emplace(std::move(key), static_cast<std::uint32_t>(reports_.size()));
+    if (is_new) {
+      reports_.push_back({response, {entry->first.begin() + 1, entry->first.end()}});
+      const auto gauge_of = [&](std::uint32_t part) { return parts_[part].gauge; };
+      std::ranges::sort(reports_.back().parts, {}, gauge_of);
+      size_ += taken_.size();
+      is_full_ = size_ > max_size;
+    }
+    return entry->second;
+  }
+
+  const std::vector<Report>& reports() const { return reports_; }
+  const std::vector<Part>& parts() const { return parts_; }
+  std::size_t gauges() const { return gauges_.size(); }
+  // Whether there are so many that not all are told apart.
+  bool is_full() const { return is_full_; }
+
+ private:
+  using Key = std::vector<std::uint64_t>;
+  struct KeyHash {
+    std::size_t operator()(const Key& key) const {
+      std::uint64_t hash = 0;
+      for (const std::uint64_t part : key) hash = mixed(hash, part);
+      return hash;
+    }
+  };
+  static constexpr std::size_t max_size = 2'000'000;  // of numbers in all reports
+
+  std::uint64_t part_of(int skill, NumberKey number, DescribedDistribution& distribution) {
+    const std::uint64_t name = std::uint64_t{static_cast<std::uint32_t>(skill)} << 32 | number;
+    const std::uint32_t gauge = gauges_.try_emplace(name, static_cast<std::uint32_t>(gauges_.size())).first->second;
+    Key key{gauge, static_cast<std::uint64_t>(distribution.kind)};
+    for (const double each : distribution.numbers) key.push_back(std::bit_cast<std::uint64_t>(each));
+    const auto [entry, is_new] = by_distribution_.try_emplace(std::move(key), parts_.size());
+    if (is_new) parts_.push_back({gauge, std::move(distribution)});
+    return entry->second;
+  }
+
+  std::vector<std::pair<NumberKey, DescribedDistribution>> taken_;  // since the step has begun
+  std::vector<Report> reports_;
+  std::vector<Part> parts_;
+  std::unordered_map<std::uint64_t, std::uint32_t> gauges_;
+  std::unordered_map<Key, std::uint64_t, KeyHash> by_distribution_;
+  std::unordered_map<Key, std::uint32_t, KeyHash> by_key_;
+  std::size_t size_ = 0;
+  bool is_full_ = false;
+};
+
+}  // namespace aos
