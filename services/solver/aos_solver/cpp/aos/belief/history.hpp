@@ -110,6 +110,10 @@ class History {
     const double below = number > 0 ? origins_->cumulative[number - 1] : 0;
     return (below + random.uniform() * (origins_->cumulative[number] - below)) / origins_->cumulative.back();
   }
+  // Whether all states that it may begin with are among the particles, so that none can be missed. Traces of equal states
+  // are merged, so that few origins then say nothing.
+  bool has_all_origins() const { return has_all_origins_; }
+  void note_all_origins() { has_all_origins_ = true; }
   const std::vector<HistoryStep>& steps() const { return steps_; }
   void add(const HistoryStep& step) { steps_.push_back(step); }
 
@@ -140,6 +144,7 @@ class History {
   };
   std::shared_ptr<const Origins> origins_;
   std::vector<HistoryStep> steps_;
+  bool has_all_origins_ = false;
   unsigned since_moves_ = 0;  // updates
   unsigned pause_ = 0;        // updates between moves
 };

@@ -67,7 +67,9 @@ class ParticleFilter {
       block.draws = static_cast<std::uint32_t>(replay_.draws());
       gathered.add(state, 1.0, 1.0, begun_trace(std::move(block)), random_);
     }
-    return gathered.thinned(particle_count, {}, random_);
+    History<Model> history;
+    if (gathered.size() <= few_states) history.note_all_origins();
+    return gathered.thinned(particle_count, std::move(history), random_);
   }
 
   // A belief from which a history begins, of weights that are known exactly, or of one sample each.
@@ -154,7 +156,7 @@ class ParticleFilter {
 
   void move_where_few(Cloud<Model>& cloud) {
     const bool is_few = cloud.effective() < few_effective;
-    if (!is_few && cloud.effective_origins() >= few_origins) return;
+    if (!is_few && (cloud.history.has_all_origins() || cloud.effective_origins() >= few_origins)) return;
     if (!cloud.history.is_time_to_move()) return;
     Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud);
     const bool have_helped = is_few ? moved.effective() > 1.1 * cloud.effective()
