@@ -36,6 +36,7 @@ def test_a_new_project_with_a_new_skill_lints_clean_plans_and_reaches_its_goal(a
     assert linted.output.endswith("fetch: 0 errors, 0 warnings\n")
     planned = run(aos, "plan fetch --simulations 20000 --json")
     assert json.loads(planned.stdout)["action"] == "look"
+    assert "exact: all 2 states can be listed" in run(aos, "plan fetch --simulations 20000").output
     played = run(aos, "simulate fetch --runs 5 --simulations 20000 --json")
     assert json.loads(played.stdout)["summary"]["goal_rate"] == 1.0
 

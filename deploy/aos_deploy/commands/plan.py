@@ -38,7 +38,7 @@ PolicyFile = Annotated[
 ]
 Seed = Annotated[int, typer.Option(min=0, help="The same seed and simulations give the same result")]
 PlannerName = Annotated[
-    Planner, typer.Option("--planner", help="How to search; with auto the model's size and horizon decide")
+    Planner, typer.Option("--planner", help="How to search; with auto what fits the model and the budget")
 ]
 Threads = Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
@@ -101,6 +101,8 @@ def plan(
     else:
         title = "exact" if exact else "0 simulations" if policy is None else "by the policy"
         print_values(decision.actions, decision.simulations, title)
+        if decision.planner:
+            print(f"{decision.planner}: {decision.why}")
 
 
 def _decision(values: list[ActionValue], simulations: int) -> Decision:
