@@ -57,8 +57,8 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True):
 class SolverPart(msgspec.Struct, frozen=True, kw_only=True):
     """The budget of one decision, in simulations or in time, and what makes it reproducible.
 
-    Without a horizon the environment document's holds. With the planner `auto` the model's size and
-    horizon decide. POMCP can search with several `threads`; POMCP and SARSOP, with a budget in time, go on
+    Without a horizon the environment document's holds. With the planner `auto` the model, the belief and the
+    budget decide. POMCP can search with several `threads`; POMCP and SARSOP, with a budget in time, go on
     while a skill runs. With a `policy`, which `aos solve` has written, nothing is searched.
     """
 
