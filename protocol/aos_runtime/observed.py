@@ -7,19 +7,18 @@ else that is done with `__observed` is a misuse.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import msgspec
 
-from aos_protocol.documents import Assignment, SkillModel, Snippet
+from aos_protocol.documents import SkillModel, Snippet
+from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
     Access,
     Call,
     Cpp,
     Extent,
     Mention,
-    read_cpp,
-    read_cpp_expression,
     strip_comments,
 )
 
@@ -76,22 +75,11 @@ def misuses_of(cpp: Cpp) -> tuple[Misuse, ...]:
 def reported_numbers(model: SkillModel) -> tuple[ReportedNumber, ...]:
     """The numbers of a skill, each once, in the order of their first reports."""
     numbers: dict[str, ReportedNumber] = {}
-    for snippet, cpp in _snippets(model.dynamic_model):
+    for snippet, cpp in snippets_of(model.dynamic_model):
         for report in reports_in(cpp):
             number = ReportedNumber(report.name, report.is_array, snippet, report.mention.extent)
             numbers.setdefault(report.name, number)
     return tuple(numbers.values())
-
-
-def _snippets(assignments: Iterable[Assignment]) -> Iterator[tuple[Snippet, Cpp]]:
-    for assignment in assignments:
-        for loop in (*assignment.over_previous, *assignment.over_next):
-            if loop.condition is not None:
-                yield loop.condition, read_cpp_expression(loop.condition.code)
-            if loop.body is not None:
-                yield loop.body, read_cpp(loop.body.code)
-        if assignment.code is not None:
-            yield assignment.code, read_cpp(assignment.code.code)
 
 
 def _read(cpp: Cpp) -> Iterator[Report | Misuse]:

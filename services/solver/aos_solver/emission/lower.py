@@ -12,6 +12,7 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
 from aos_protocol.local_types import LocalType, local_type, told_variables
+from aos_runtime.document_code import snippets_of
 from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import read_cpp_expression
 from aos_solver.emission.cpp_library import headers_for
@@ -24,7 +25,6 @@ from aos_solver.emission.lower_code import (
     LOOKING,
     Pieces,
     SectionLowering,
-    snippets_of,
 )
 from aos_solver.emission.lower_copies import copies_of
 from aos_solver.emission.lower_names import check_names

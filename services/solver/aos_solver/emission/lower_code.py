@@ -17,6 +17,7 @@ from aos_protocol.documents import (
     Snippet,
     TemporaryVariable,
 )
+from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
     Cpp,
     DeclarationKind,
@@ -31,7 +32,7 @@ from aos_solver.emission.lower_types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
 from aos_solver.emission.rewrite import EnumValues, Rewriting, rewrite
 
-__all__ = ["Phase", "Pieces", "SectionLowering", "environment_sections", "skill_sections", "snippets_of"]
+__all__ = ["Phase", "Pieces", "SectionLowering", "environment_sections", "skill_sections"]
 
 
 class Phase(msgspec.Struct, frozen=True):
@@ -68,18 +69,6 @@ def skill_sections(model: SkillModel) -> Iterator[tuple[Phase, tuple[Assignment,
     yield LOOKING, model.rollout_policy
     yield DYNAMIC, model.dynamic_model
     yield GIVEN, model.state_given_observation
-
-
-def snippets_of(assignments: Iterable[Assignment]) -> Iterator[tuple[Snippet, Cpp]]:
-    """Every snippet of a section, read."""
-    for assignment in assignments:
-        for loop in (*assignment.over_previous, *assignment.over_next):
-            if loop.condition is not None:
-                yield loop.condition, read_cpp_expression(loop.condition.code)
-            if loop.body is not None:
-                yield loop.body, read_cpp(loop.body.code)
-        if assignment.code is not None:
-            yield assignment.code, read_cpp(assignment.code.code)
 
 
 class Pieces:

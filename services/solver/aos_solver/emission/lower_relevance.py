@@ -12,8 +12,8 @@ from collections.abc import Iterable, Iterator
 
 from aos_protocol.documents import Assignment, Environment, Project
 from aos_runtime.cpp_flow import STATES, Flow, Name, flows_of
+from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import read_cpp, read_cpp_expression
-from aos_solver.emission.lower_code import snippets_of
 
 __all__ = ["irrelevant_variables"]
 

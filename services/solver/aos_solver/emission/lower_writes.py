@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from aos_protocol.documents import Assignment, Environment, Project
 from aos_protocol.local_types import told_variables
 from aos_runtime.cpp_facts import READING_FUNCTIONS
+from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
     Access,
     Cpp,
@@ -21,7 +22,7 @@ from aos_runtime.snippets import (
     read_cpp,
     read_cpp_expression,
 )
-from aos_solver.emission.lower_code import Phase, environment_sections, skill_sections, snippets_of
+from aos_solver.emission.lower_code import Phase, environment_sections, skill_sections
 
 __all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]
 
