@@ -7,94 +7,100 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
 
-from aos_skills.pybullet.robot import Robot
-from aos_skills.pybullet.scene import Scene
-from aos_skills.pybullet.skills import ArmadilloSkills
-from aos_skills.pybullet.world_file import FaultModel, WorldFile, load_world_file
+from aos_skills.pybullet.world_file import load_world_file
+from aos_skills.pybullet.worlds.armadillo import KIND
+from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile, FaultModel
+from aos_skills.pybullet.worlds.armadillo.pick import can_in_reach
+from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 
 pytestmark = pytest.mark.physics
 
 EASY_TABLE = {"x": 0.0, "y": 2.0, "yaw": 1.5708}
 CORRIDOR = {"x": 4.0, "y": 0.0, "yaw": 0.0}
 
-Make = Callable[..., ArmadilloSkills]
+Make = Callable[..., Armadillo]
 
 
 @pytest.fixture
-def world(root: Path) -> WorldFile:
-    return load_world_file(root / "deploy/worlds/armadillo.yaml")
+def file(root: Path) -> ArmadilloFile:
+    room: ArmadilloFile = load_world_file(root / "deploy/worlds/armadillo.yaml").room
+    return room
 
 
 @pytest.fixture
-def make(world: WorldFile) -> Make:
+def make(file: ArmadilloFile) -> Make:
     """A robot in a fresh room with a fault model of the test's choice."""
 
-    def build(faults: FaultModel, seed: int = 1) -> ArmadilloSkills:
-        scene = Scene(msgspec.structs.replace(world, faults=faults))
-        robot = Robot(scene, lambda: None)
-        skills = ArmadilloSkills(scene, robot, seed)
-        robot.on_tick = skills.watch_person
-        return skills
+    def build(faults: FaultModel, seed: int = 1) -> Armadillo:
+        return Armadillo(msgspec.structs.replace(file, faults=faults), seed)
 
     return build
 
 
-def with_misplaced_easy_can(world: WorldFile, probability: float) -> WorldFile:
-    easy = world.tables["easy"]
+def call(world: Armadillo, path: str, fields: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Runs a skill to its end, as the adapter does."""
+    world.begin()
+    return KIND.skills[path](world, fields or {})
+
+
+def with_misplaced_easy_can(file: ArmadilloFile, probability: float) -> ArmadilloFile:
+    easy = file.tables["easy"]
     can = msgspec.structs.replace(easy.can, misplaced=probability)
-    tables = {**world.tables, "easy": msgspec.structs.replace(easy, can=can)}
-    return msgspec.structs.replace(world, tables=tables, faults=FaultModel())
+    tables = {**file.tables, "easy": msgspec.structs.replace(easy, can=can)}
+    return msgspec.structs.replace(file, tables=tables, faults=FaultModel())
 
 
 def test_a_faultless_robot_brings_the_easy_can_to_the_person(make: Make) -> None:
-    skills = make(FaultModel())
-    assert skills.call("/navigate", EASY_TABLE)["success"]
-    assert skills.call("/pick", {})["success"]
-    assert skills.is_holding
-    assert skills.call("/navigate", CORRIDOR)["success"]
-    assert skills.is_holding
-    assert skills.call("/serve", {})["success"]
-    assert skills.scene.is_on_tray("easy")
-    assert not skills.has_injured
+    world = make(FaultModel())
+    assert call(world, "/navigate", EASY_TABLE)["success"]
+    assert call(world, "/pick")["success"]
+    assert world.is_holding
+    assert call(world, "/navigate", CORRIDOR)["success"]
+    assert world.is_holding
+    assert call(world, "/serve")["success"]
+    assert world.room.is_on_tray("easy")
+    assert not world.has_injured
 
 
 def test_the_hard_can_is_not_grasped_where_the_robot_sees_it(make: Make) -> None:
-    skills = make(FaultModel())
-    assert skills.call("/pick", {})["success"]
-    assert not skills.is_holding
-    left, right = skills.robot.finger_forces_n()
-    assert skills.robot.gap_m < 0.005 or min(left, right) == 0
+    world = make(FaultModel())
+    assert call(world, "/pick")["success"]
+    assert not world.is_holding
+    left, right = world.robot.gripper.forces_n()
+    assert world.robot.gripper.gap_m < 0.005 or min(left, right) == 0
 
 
-def test_a_lost_can_is_not_picked_again(make: Make, world: WorldFile) -> None:
-    skills = make(world.faults, seed=3)
-    skills.call("/pick", {})
-    skills.robot.wait(1.0)
-    assert not skills.is_holding
-    assert not skills.sees_can
-    skills.call("/pick", {})
-    assert not skills.is_holding
+def test_a_lost_can_is_not_picked_again(make: Make, file: ArmadilloFile) -> None:
+    world = make(file.faults, seed=3)
+    call(world, "/pick")
+    world.scene.wait(1.0)
+    assert not world.is_holding
+    assert can_in_reach(world) is None
+    call(world, "/pick")
+    assert not world.is_holding
 
 
-def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, world: WorldFile) -> None:
-    skills = make(FaultModel())
-    before = skills.scene.can_place("easy")
-    skills.call("/navigate", EASY_TABLE)
-    skills.scene.file = with_misplaced_easy_can(world, 1.0)
-    skills.call("/pick", {})
-    assert not skills.is_holding
-    assert skills.scene.can_place("easy") == pytest.approx(before, abs=1e-3)
-    skills.scene.file = with_misplaced_easy_can(world, 0.0)
-    skills.call("/pick", {})
-    assert skills.is_holding
+def test_a_misplaced_can_stays_and_may_be_picked_again(make: Make, file: ArmadilloFile) -> None:
+    world = make(FaultModel())
+    before = world.room.can_place("easy")
+    call(world, "/navigate", EASY_TABLE)
+    world.file = with_misplaced_easy_can(file, 1.0)
+    call(world, "/pick")
+    assert not world.is_holding
+    assert world.room.can_place("easy") == pytest.approx(before, abs=1e-3)
+    world.file = with_misplaced_easy_can(file, 0.0)
+    call(world, "/pick")
+    assert world.is_holding
 
 
 def test_the_frequencies_are_json_and_nothing_else(root: Path) -> None:
-    command = [sys.executable, "-m", "aos_skills.pybullet.frequencies", "deploy/worlds/armadillo.yaml"]
+    module = "aos_skills.pybullet.worlds.armadillo.frequencies"
+    command = [sys.executable, "-m", module, "deploy/worlds/armadillo.yaml"]
     ended = subprocess.run([*command, "1", "--json"], cwd=root, capture_output=True, timeout=120, check=True)
     counts = json.loads(ended.stdout)
     assert counts["picks"] == 1
@@ -103,19 +109,19 @@ def test_the_frequencies_are_json_and_nothing_else(root: Path) -> None:
 
 
 def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Make) -> None:
-    skills = make(FaultModel(arm_stays_out=1.0))
-    skills.call("/navigate", EASY_TABLE)
-    assert not skills.call("/pick", {})["success"]
-    assert skills.robot.arm_angles[3] > -2.3
-    skills.call("/navigate", CORRIDOR)
-    skills.call("/serve", {})
-    assert skills.has_injured
+    world = make(FaultModel(arm_stays_out=1.0))
+    call(world, "/navigate", EASY_TABLE)
+    assert not call(world, "/pick")["success"]
+    assert world.robot.arm.angles[3] > -2.3
+    call(world, "/navigate", CORRIDOR)
+    call(world, "/serve")
+    assert world.has_injured
 
 
-def test_the_same_seed_gives_the_same_world(make: Make, world: WorldFile) -> None:
+def test_the_same_seed_gives_the_same_world(make: Make, file: ArmadilloFile) -> None:
     ends = []
     for _ in range(2):
-        skills = make(world.faults, seed=3)
-        skills.call("/pick", {})
-        ends.append((skills.robot.arm_angles, skills.scene.can_place("hard")))
+        world = make(file.faults, seed=3)
+        call(world, "/pick")
+        ends.append((world.robot.arm.angles, world.room.can_place("hard")))
     assert ends[0] == ends[1]

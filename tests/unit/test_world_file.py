@@ -11,7 +11,7 @@ from aos_skills.pybullet.world_file import load_world_file
 
 
 def test_the_shipped_world_has_an_easy_and_a_hard_can(root: Path) -> None:
-    world = load_world_file(root / "deploy/worlds/armadillo.yaml")
+    world = load_world_file(root / "deploy/worlds/armadillo.yaml").room
     hard = world.tables["hard"].can
     easy = world.tables["easy"].can
     assert hard.radius * hard.perceived_scale == pytest.approx(easy.radius)
@@ -19,7 +19,12 @@ def test_the_shipped_world_has_an_easy_and_a_hard_can(root: Path) -> None:
 
 @pytest.mark.parametrize(
     ("old", "new", "complaint"),
-    [("pose_noise_m", "pose_noise", "pose_noise"), ("x: 0.0, y: -2.0", "x: zero, y: -2.0", "robot.x")],
+    [
+        ("pose_noise_m", "pose_noise", "pose_noise"),
+        ("x: 0.0, y: -2.0", "x: zero, y: -2.0", "robot.x"),
+        ("kind: armadillo", "kind: armadilo", "no world of the kind armadilo. Did you mean armadillo"),
+        ("kind: armadillo", "", "has no `kind`. Give one of armadillo"),
+    ],
 )
 def test_a_mistake_is_named(root: Path, tmp_path: Path, old: str, new: str, complaint: str) -> None:
     text = (root / "deploy/worlds/armadillo.yaml").read_text()

@@ -1,70 +1,49 @@
-"""The world file: where things stand, and the fault model."""
+"""World files: where things stand, and the faults; the `kind` says which world it is."""
 
 from __future__ import annotations
 
+import difflib
+import importlib
+import pkgutil
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import msgspec
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from aos_protocol.errors import DeployError
+from aos_skills.pybullet import worlds
+from aos_skills.pybullet.parts.world import World, WorldKind
 
-__all__ = ["Can", "FaultModel", "Place", "Table", "WorldFile", "load_world_file"]
-
-
-class Place(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A place on the floor, in metres; `yaw` in radians."""
-
-    x: float
-    y: float
-    yaw: float = 0.0
+__all__ = ["WorldFile", "kinds", "load_world_file"]
 
 
-class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A can as it is. The robot perceives it `perceived_scale` times as large, and with the probability
-    `misplaced` elsewhere: where there is nothing to grasp.
-    """
+@dataclass(frozen=True)
+class WorldFile:
+    """A checked world file: `room` is of the kind's own form."""
 
-    x: float
-    y: float
-    radius: float
-    height: float
-    perceived_scale: float = 1.0
-    misplaced: float = 0.0
+    kind: WorldKind[Any, Any]
+    room: Any
 
-
-class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A table by its centre, with its can."""
-
-    x: float
-    y: float
-    can: Can
+    def build(self, seed: int) -> World:
+        """A fresh world; the seed draws its noise and its faults."""
+        world: World = self.kind.build(self.room, seed)
+        return world
 
 
-class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Noise as standard deviations in metres, faults as probabilities."""
-
-    pose_noise_m: float = 0.0
-    height_noise_m: float = 0.0
-    arm_stays_out: float = 0.0
-    silent_fingers: float = 0.0
-
-
-class WorldFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The room."""
-
-    robot: Place
-    tables: dict[str, Table]
-    person: Place
-    faults: FaultModel = FaultModel()
+def kinds() -> list[str]:
+    """The folders under `worlds`."""
+    return sorted(module.name for module in pkgutil.iter_modules(worlds.__path__) if module.ispkg)
 
 
 def load_world_file(path: Path) -> WorldFile:
     """Reads and checks a world file; DeployError AOS801 names the file and what is wrong in it."""
     try:
         data = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
-        return msgspec.convert(data, WorldFile)
+        kind = _kind(path, data)
+        return WorldFile(kind, msgspec.convert(data, kind.file))
     except OSError as error:
         raise DeployError(
             f"{path}: cannot be read: {error.strerror}", hint="Name another world file under `world:`"
@@ -72,4 +51,18 @@ def load_world_file(path: Path) -> WorldFile:
     except (YAMLError, UnicodeDecodeError) as error:
         raise DeployError(f"{path}: not YAML: {error}", hint="Mend the file") from error
     except msgspec.ValidationError as error:
-        raise DeployError(f"{path}: {error}", hint="Compare with deploy/worlds/armadillo.yaml") from error
+        raise DeployError(f"{path}: {error}", hint="Compare with the files in deploy/worlds") from error
+
+
+def _kind(path: Path, data: Any) -> WorldKind[Any, Any]:
+    """The folder that a file's `kind` names; only that one is imported."""
+    known = kinds()
+    name = data.pop("kind", None) if isinstance(data, dict) else None
+    if name in known:
+        kind: WorldKind[Any, Any] = importlib.import_module(f"{worlds.__name__}.{name}").KIND
+        return kind
+    if name is None:
+        raise DeployError(f"{path}: has no `kind`", hint=f"Give one of {', '.join(known)}")
+    near = difflib.get_close_matches(str(name), known, 1)
+    hint = f"Did you mean {near[0]}?" if near else f"Known are {', '.join(known)}"
+    raise DeployError(f"{path}: there is no world of the kind {name}", hint=hint)

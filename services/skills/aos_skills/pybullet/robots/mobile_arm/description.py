@@ -8,20 +8,15 @@ limited force, step by step, so that the base still has mass, gathers speed, bum
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from xml.etree import ElementTree
 
-__all__ = ["ARM_JOINTS", "BASE_JOINTS", "FINGER_JOINTS", "bare_arm_urdf", "robot_urdf", "urdf_file"]
+from aos_skills.pybullet.parts.urdf import drop, parts_of
 
-BASE_JOINTS = ("base_x", "base_y", "base_yaw")
-ARM_JOINTS = tuple(f"panda_joint{number}" for number in range(1, 8))
-FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
+__all__ = ["mobile_arm_urdf"]
 
 _PLANAR_JOINTS = """
-<robot name="armadillo">
+<robot name="mobile_arm">
   <link name="odom"/>
   <link name="slide_x">{inertia}</link>
   <link name="slide_y">{inertia}</link>
@@ -52,58 +47,19 @@ _CHASSIS_HEIGHT_M = 0.14493
 """Of Husky's base_link above the floor."""
 
 
-def robot_urdf(data: Path, mount_m: tuple[float, float, float]) -> str:
+def mobile_arm_urdf(data: Path, mount_m: tuple[float, float, float]) -> str:
     """The URDF text. `data` is pybullet_data's folder; `mount_m` the arm's foot in the base's floor frame."""
     x, y, z = mount_m
     robot = ElementTree.fromstring(
         _PLANAR_JOINTS.format(inertia=_SMALL_INERTIA, mount=f"{x} {y} {z - _CHASSIS_HEIGHT_M}")
     )
-    robot.extend(_parts(data / "husky" / "husky.urdf"))
-    robot.extend(_parts(data / "franka_panda" / "panda.urdf"))
+    robot.extend(parts_of(data / "husky" / "husky.urdf"))
+    robot.extend(parts_of(data / "franka_panda" / "panda.urdf"))
     for link in robot.iter("link"):
         if link.get("name", "").endswith("_wheel_link"):
-            _drop(link, "collision")
+            drop(link, "collision")
         if link.get("name") == "base_footprint":
             link.append(ElementTree.fromstring(_SMALL_INERTIA))
         if link.find("inertial") is None:
             link.append(ElementTree.fromstring(_UNIT_INERTIA))
     return ElementTree.tostring(robot, encoding="unicode")
-
-
-def bare_arm_urdf(data: Path) -> str:
-    """The arm without shapes, which take half a second to load: joints are all that kinematics needs."""
-    arm = ElementTree.parse(data / "franka_panda" / "panda.urdf").getroot()
-    for link in arm.iter("link"):
-        _drop(link, "visual")
-        _drop(link, "collision")
-    return ElementTree.tostring(arm, encoding="unicode")
-
-
-@contextmanager
-def urdf_file(text: str) -> Iterator[str]:
-    """A path where Bullet can read a description from; in memory, so that a crash leaves nothing behind."""
-    file = os.memfd_create("aos-urdf")
-    try:
-        os.write(file, text.encode())
-        yield f"/proc/self/fd/{file}"
-    finally:
-        os.close(file)
-
-
-def _parts(urdf: Path) -> list[ElementTree.Element]:
-    """Materials, links and joints of a URDF, with absolute mesh paths."""
-    root = ElementTree.parse(urdf).getroot()
-    for mesh in root.iter("mesh"):
-        name = mesh.get("filename", "").removeprefix("package://")
-        mesh.set("filename", str(urdf.parent / name))
-    for joint in root.iter("joint"):
-        # Husky's IMU mount holds an unexpanded xacro expression; nothing uses the link.
-        origin = joint.find("origin")
-        if origin is not None and "$(" in origin.get("xyz", ""):
-            joint.remove(origin)
-    return [part for part in root if part.tag in ("material", "link", "joint")]
-
-
-def _drop(link: ElementTree.Element, tag: str) -> None:
-    for part in link.findall(tag):
-        link.remove(part)

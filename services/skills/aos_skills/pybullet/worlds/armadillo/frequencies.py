@@ -1,4 +1,4 @@
-"""How often a pick ends how: `python -m aos_skills.pybullet.frequencies deploy/worlds/armadillo.yaml 60`."""
+"""How often a pick ends how: `python -m aos_skills.pybullet.worlds.armadillo.frequencies WORLD.yaml 60`."""
 
 from __future__ import annotations
 
@@ -8,30 +8,30 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from aos_skills.pybullet.robot import Robot
-from aos_skills.pybullet.scene import Scene
-from aos_skills.pybullet.skills import ArmadilloSkills
 from aos_skills.pybullet.world_file import load_world_file
+from aos_skills.pybullet.worlds.armadillo.navigate import navigate
+from aos_skills.pybullet.worlds.armadillo.pick import can_in_reach, pick
+from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 
 PLACES = {"easy": (0.0, 2.0, 1.5708), "hard": (0.0, -2.0, -1.5708)}
 OUTCOMES = ("held", "held, arm out", "missed", "lost")
 SETTLING_S = 1.0
 
 
-def outcome_of_pick(world: Path, table: str, seed: int) -> str:
+def outcome_of_pick(world_file: Path, table: str, seed: int) -> str:
     """One pick in a fresh room: one of OUTCOMES; a missed can still stands in reach, a lost one does not."""
-    scene = Scene(load_world_file(world))
-    robot = Robot(scene, lambda: None)
-    skills = ArmadilloSkills(scene, robot, seed)
+    world = Armadillo(load_world_file(world_file).room, seed)
     x, y, yaw = PLACES[table]
-    skills.call("/navigate", {"x": x, "y": y, "yaw": yaw})
-    answer = skills.call("/pick", {})
-    robot.wait(SETTLING_S)
-    if skills.is_holding:
+    world.begin()
+    navigate(world, {"x": x, "y": y, "yaw": yaw})
+    world.begin()
+    answer = pick(world, {})
+    world.scene.wait(SETTLING_S)
+    if world.is_holding:
         outcome = "held" if answer["success"] else "held, arm out"
     else:
-        outcome = "missed" if skills.sees_can else "lost"
-    scene.close()
+        outcome = "missed" if can_in_reach(world) is not None else "lost"
+    world.scene.close()
     return outcome
 
 

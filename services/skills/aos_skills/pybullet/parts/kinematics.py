@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from aos_skills.pybullet.client import connect
-from aos_skills.pybullet.robot_model import bare_arm_urdf, urdf_file
+from aos_skills.pybullet.parts.client import connect
+from aos_skills.pybullet.parts.urdf import bare_arm_urdf, urdf_file
 
 __all__ = ["ArmKinematics"]
 

@@ -1,0 +1,93 @@
+"""Pictures of a scene, by the software renderer: no screen and no GPU needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pybullet
+from PIL import Image, ImageOps
+
+from aos_skills.pybullet.parts.scene import Scene, Vector
+
+__all__ = ["Camera", "photograph"]
+
+PICTURE_SIZE = (480, 360)
+CLOSE_UP_SIZE = (200, 150)
+FRAME_EVERY_S = 1.5
+FRAME_SHOWN_MS = 200
+FIELD_OF_VIEW_DEG = 50
+SUN = (3.0, -4.0, 7.0)
+BORDER_PX = 2
+
+
+def photograph(
+    scene: Scene,
+    eye: Vector,
+    looks_at: Vector,
+    size: tuple[int, int],
+    *,
+    up: Vector = (0, 0, 1),
+    sun: Vector = SUN,
+    field_of_view_deg: float = FIELD_OF_VIEW_DEG,
+    shadow: bool = True,
+) -> Image.Image:
+    """What a camera at `eye` sees, in color; `size` is width and height in pixels."""
+    client = scene.client
+    width, height = size
+    _, _, pixels, _, _ = client.getCameraImage(
+        width,
+        height,
+        client.computeViewMatrix(eye, looks_at, up),
+        client.computeProjectionMatrixFOV(field_of_view_deg, width / height, 0.1, 30),
+        shadow=int(shadow),
+        lightDirection=sun,
+        renderer=pybullet.ER_TINY_RENDERER,
+    )
+    rgba = np.reshape(np.asarray(pixels, dtype=np.uint8), (height, width, 4))
+    return Image.fromarray(rgba[:, :, :3])
+
+
+class Camera:
+    """Looks into a room from its open side, with a close-up in the corner if the world has one to show.
+
+    `close_up` gives the close-up's eye and what it looks at.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        eye: Vector,
+        looks_at: Vector,
+        close_up: Callable[[], tuple[Vector, Vector]] | None = None,
+    ) -> None:
+        self._scene = scene
+        self._eye = eye
+        self._looks_at = looks_at
+        self._close_up = close_up
+        self._frames: list[Image.Image] = []
+        self._next_frame_s = 0.0
+
+    def watch(self) -> None:
+        """Called at every simulation step; takes a frame for the animated picture when it is time."""
+        if self._scene.time_s >= self._next_frame_s:
+            self._next_frame_s = self._scene.time_s + FRAME_EVERY_S
+            self._frames.append(self._picture().quantize(64, dither=Image.Dither.NONE))
+
+    def save_picture(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._picture().save(path)
+
+    def save_animation(self, path: Path) -> None:
+        """All frames so far, as an animated GIF; nothing if there are none."""
+        if self._frames:
+            first, *rest = self._frames
+            first.save(path, save_all=True, append_images=rest, duration=FRAME_SHOWN_MS, loop=0)
+
+    def _picture(self) -> Image.Image:
+        picture = photograph(self._scene, self._eye, self._looks_at, PICTURE_SIZE)
+        if self._close_up is not None:
+            close_up = photograph(self._scene, *self._close_up(), CLOSE_UP_SIZE)
+            picture.paste(ImageOps.expand(close_up, BORDER_PX, "white"), (0, 0))
+        return picture

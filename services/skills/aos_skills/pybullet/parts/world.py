@@ -1,0 +1,61 @@
+"""What a world is to the adapter: skills by path, sensors by topic, the truth, and pictures.
+
+A world is a folder under `worlds` whose `__init__` has a `KIND`. Nothing outside the folder knows its words.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import msgspec
+
+from aos_skills.pybullet.parts.camera import Camera
+from aos_skills.pybullet.parts.faults import Faults
+from aos_skills.pybullet.parts.scene import Scene
+
+__all__ = ["Fields", "World", "WorldKind"]
+
+Fields = dict[str, Any]
+"""Of a request, an answer or a message, by name."""
+
+AnyFile = TypeVar("AnyFile", bound=msgspec.Struct)
+AnyWorld = TypeVar("AnyWorld", bound="World")
+
+
+class World(ABC):
+    """A room, a robot in it, and the faults that are drawn."""
+
+    scene: Scene
+    camera: Camera
+    faults: Faults
+
+    def begin(self) -> None:
+        """Before each call of a skill: draws the faults that last as long as it."""
+        self.faults.drawn.clear()
+
+    @abstractmethod
+    def stop(self) -> None:
+        """The robot holds still where it is; time does not pass."""
+
+    @abstractmethod
+    def sensors(self) -> dict[str, Fields]:
+        """What the robot's sensors give now, by topic."""
+
+    @abstractmethod
+    def truth(self) -> Fields:
+        """The state of the world, for the record; the robot is not told."""
+
+
+@dataclass(frozen=True)
+class WorldKind(Generic[AnyFile, AnyWorld]):
+    """`file` is the form of its world files; `build` makes a world from one and a seed.
+
+    A skill takes the world and the request's fields and returns the answer's.
+    """
+
+    file: type[AnyFile]
+    build: Callable[[AnyFile, int], AnyWorld]
+    skills: Mapping[str, Callable[[AnyWorld, Fields], Fields]]

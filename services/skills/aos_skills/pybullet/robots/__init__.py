@@ -1,0 +1,1 @@
+"""Robots, one folder each: their description and the parts that move them."""

@@ -1,0 +1,48 @@
+"""The form of the Armadillo's world files."""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_skills.pybullet.parts.place import Place
+
+__all__ = ["ArmadilloFile", "Can", "FaultModel", "Table"]
+
+
+class Can(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A can as it is. The robot perceives it `perceived_scale` times as large, and with the probability
+    `misplaced` elsewhere: where there is nothing to grasp.
+    """
+
+    x: float
+    y: float
+    radius: float
+    height: float
+    perceived_scale: float = 1.0
+    misplaced: float = 0.0
+
+
+class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A table by its centre, with its can."""
+
+    x: float
+    y: float
+    can: Can
+
+
+class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Noise as standard deviations in metres, faults as probabilities."""
+
+    pose_noise_m: float = 0.0
+    height_noise_m: float = 0.0
+    arm_stays_out: float = 0.0
+    silent_fingers: float = 0.0
+
+
+class ArmadilloFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The room."""
+
+    robot: Place
+    tables: dict[str, Table]
+    person: Place
+    faults: FaultModel = FaultModel()

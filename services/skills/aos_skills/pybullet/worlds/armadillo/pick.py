@@ -1,0 +1,79 @@
+"""Pick: reach for the can on the table where the robot stands, close the fingers, lift, fold the arm."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from aos_skills.pybullet.parts.arm import TUCKED
+from aos_skills.pybullet.worlds.armadillo.room import TABLE_TOP_M
+from aos_skills.pybullet.worlds.armadillo.world import Armadillo
+
+__all__ = ["can_in_reach", "pick"]
+
+STRETCHED = (0.0, 0.75, 0.0, -0.75, 0.0, 1.5, 0.785)
+"""Arm joint angles in radians of an arm that did not return."""
+SHOULDER_AHEAD_M = 0.25
+REACH_M = 0.8
+LOWEST_GRASP_M = 0.008
+"""Lower, the finger tips stand on the table and do not close."""
+GRASP_ABOVE_CENTRE_M = 0.006
+"""What is grasped above its centre hangs, and does not turn over."""
+GRASPABLE_RADII_M = (0.02, 0.038)
+"""What looks larger does not fit between the fingers; what looks smaller is no can."""
+MISPLACED_BY_M = 0.08
+LIFT_M = 0.22
+
+
+def pick(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
+    """Takes nothing. `success` is false if the arm stays out; a missed or dropped can is not noticed."""
+    robot = world.robot
+    robot.gripper.open()
+    robot.arm.move(TUCKED)
+    can = can_in_reach(world)
+    if can is None:
+        return {"success": True}
+    x, y, height = _perceived(world, can)
+    above = TABLE_TOP_M + LIFT_M
+    grasp = TABLE_TOP_M + max(height, LOWEST_GRASP_M)
+    robot.arm.move_tip((x, y, above))
+    robot.arm.move_tip((x, y, grasp), speed_m_s=0.15)
+    robot.gripper.close()
+    robot.arm.move_tip((x, y, above))
+    if world.is_holding and world.faults.draw("the arm stays out", world.file.faults.arm_stays_out):
+        robot.arm.move(STRETCHED)
+        return {"success": False}
+    robot.arm.move(TUCKED)
+    return {"success": True}
+
+
+def can_in_reach(world: Armadillo) -> str | None:
+    """A can that stands on a table, near enough to the arm; a fallen one is not recognised."""
+    x, y, yaw = world.robot.base.place
+    foot = (x + SHOULDER_AHEAD_M * math.cos(yaw), y + SHOULDER_AHEAD_M * math.sin(yaw))
+    for name in world.room.cans:
+        can_x, can_y, can_z = world.room.can_place(name)
+        can = world.file.tables[name].can
+        smallest, largest = GRASPABLE_RADII_M
+        is_seen = can_z > TABLE_TOP_M - 0.01 and world.room.is_standing(name)
+        is_seen = is_seen and smallest < can.radius * can.perceived_scale < largest
+        if is_seen and math.dist(foot, (can_x, can_y)) < REACH_M:
+            return name
+    return None
+
+
+def _perceived(world: Armadillo, name: str) -> tuple[float, float, float]:
+    """Where to grasp, as far as the robot can see: x, y, and the height above the table, in metres."""
+    file, noise = world.file, world.faults.noise
+    can = file.tables[name].can
+    x, y, z = world.room.can_place(name)
+    height = z - TABLE_TOP_M + GRASP_ABOVE_CENTRE_M
+    if world.faults.draw("the can is seen elsewhere", can.misplaced):
+        _, _, yaw = world.robot.base.place
+        x -= MISPLACED_BY_M * math.cos(yaw)
+        y -= MISPLACED_BY_M * math.sin(yaw)
+    return (
+        x + noise.gauss(0, file.faults.pose_noise_m),
+        y + noise.gauss(0, file.faults.pose_noise_m),
+        height + noise.gauss(0, file.faults.height_noise_m),
+    )

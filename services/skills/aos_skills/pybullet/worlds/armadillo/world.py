@@ -1,0 +1,74 @@
+"""The Armadillo in its room: what its skills share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aos_skills.pybullet.parts.camera import Camera
+from aos_skills.pybullet.parts.faults import Faults
+from aos_skills.pybullet.parts.scene import Scene, Vector
+from aos_skills.pybullet.parts.world import World
+from aos_skills.pybullet.robots.mobile_arm import MobileArm
+from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile
+from aos_skills.pybullet.worlds.armadillo.room import Room
+
+__all__ = ["Armadillo"]
+
+EYE_M = (4.6, -5.6, 4.0)
+LOOKS_AT_M = (1.7, 0.0, 0.3)
+CLOSE_EYE_M = (1.1, -0.9, 0.7)
+"""Of the close-up, from the hand."""
+
+
+class Armadillo(World):
+    """Outcomes come out of the physics. Faults that a simulator cannot produce (perception noise, an arm that
+    stays out, fingers that report nothing) are drawn; whether a grasp holds is not.
+    """
+
+    def __init__(self, file: ArmadilloFile, seed: int) -> None:
+        self.file = file
+        self.scene = Scene()
+        self.room = Room(self.scene, file)
+        self.robot = MobileArm(self.scene, (file.robot.x, file.robot.y, file.robot.yaw))
+        self.faults = Faults(seed)
+        self.camera = Camera(self.scene, EYE_M, LOOKS_AT_M, self._close_up)
+        self.is_silent = False
+        """Whether the finger sensors report nothing during this call."""
+        self.has_injured = False
+        self.scene.watchers.append(self._watch_person)
+
+    @property
+    def is_holding(self) -> bool:
+        """The truth, which the robot itself has to sense."""
+        return any(self.robot.gripper.holds(can) for can in self.room.cans.values())
+
+    def begin(self) -> None:
+        super().begin()
+        self.is_silent = self.faults.draw("silent fingers", self.file.faults.silent_fingers)
+
+    def stop(self) -> None:
+        self.robot.stop()
+
+    def sensors(self) -> dict[str, dict[str, Any]]:
+        left, right = (0.0, 0.0) if self.is_silent else self.robot.gripper.forces_n()
+        gripper = {"gap_m": self.robot.gripper.gap_m, "left_force_n": left, "right_force_n": right}
+        return {"/gripper": gripper, "/joints": {"positions": self.robot.arm.angles}}
+
+    def truth(self) -> dict[str, Any]:
+        room = self.room
+        return {
+            "base": [round(value, 3) for value in self.robot.base.place],
+            "cans": {name: [round(value, 3) for value in room.can_place(name)] for name in room.cans},
+            "is_holding": self.is_holding,
+            "is_delivered": any(room.is_on_tray(name) for name in room.cans),
+            "has_injured": self.has_injured,
+        }
+
+    def _watch_person(self) -> None:
+        """Remembers any touch of the person."""
+        if self.scene.client.getContactPoints(bodyA=self.robot.body, bodyB=self.room.person):
+            self.has_injured = True
+
+    def _close_up(self) -> tuple[Vector, Vector]:
+        hand = self.robot.arm.tip_place()
+        return (hand[0] + CLOSE_EYE_M[0], hand[1] + CLOSE_EYE_M[1], hand[2] + CLOSE_EYE_M[2]), hand
