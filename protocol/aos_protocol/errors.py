@@ -95,6 +95,8 @@ CODES: dict[str, str] = {
     "AOS505": "no adapter answers",
     "AOS506": "a stale mission epoch",
     "AOS507": "the skill was cancelled",
+    "AOS508": "a message of the robot cannot be read",
+    "AOS509": "the robot defines an interface differently",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
     "AOS603": "another protocol version",
@@ -108,6 +110,7 @@ CODES: dict[str, str] = {
     "AOS803": "a second instance on this bus",
     "AOS804": "a service ended unexpectedly",
     "AOS805": "something this machine lacks",
+    "AOS806": "an unknown ROS interface",
 }
 """Every code with its meaning; docs/errors.md is made from this table."""
 

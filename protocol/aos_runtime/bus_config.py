@@ -33,10 +33,13 @@ _COMMON: dict[str, Any] = {
 }
 
 
-def client_config(endpoint: str) -> zenoh.Config:
-    """A client of the router at `endpoint`, such as `tcp/127.0.0.1:7447`. Opening it tries once."""
+def client_config(endpoint: str, *, stamps: bool = False) -> zenoh.Config:
+    """A client of the router at `endpoint`, such as `tcp/127.0.0.1:7447`. Opening it tries once.
+
+    Publishers that keep a history for late comers need `stamps`, a time on all that is sent.
+    """
     connect = {"endpoints": [_checked(endpoint)], "timeout_ms": 0}
-    return _config({"mode": "client", "connect": connect})
+    return _config({"mode": "client", "connect": connect, "timestamping": {"enabled": stamps}})
 
 
 def router_config(endpoint: str) -> zenoh.Config:

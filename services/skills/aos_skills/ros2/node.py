@@ -1,0 +1,217 @@
+"""A ROS 2 node without ROS: topics and services as rmw_zenoh speaks them. Values are dicts of fields."""
+
+from __future__ import annotations
+
+import itertools
+import logging
+import time
+from collections.abc import Awaitable, Callable
+from typing import Any, Self
+
+from aos_protocol.errors import AosError, BusError, SkillError
+from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
+from aos_skills.ros.types import RosTypes
+from aos_skills.ros2.graph import Graph
+from aos_skills.ros2.wire import DEFAULT_QOS, Attachment, Endpoint, Kind, Qos, gid_of
+
+__all__ = ["DISCOVERY_S", "Fields", "Node"]
+
+DISCOVERY_S = 5.0
+"""How long a server or publisher may take to appear. Liveliness tokens come in milliseconds."""
+
+_FIRST_ENTITY = 10
+
+Fields = dict[str, Any]
+
+_log = logging.getLogger("aos.ros2")
+
+
+class Node:
+    """Belongs to the event loop that opened it."""
+
+    def __init__(self, bus: ForeignBus, types: RosTypes, name: str, domain: int) -> None:
+        self.types = types
+        self.domain = domain
+        self._bus = bus
+        self._node = Endpoint(domain, bus.id, 0, 0, Kind.NODE, name)
+        self._numbers = itertools.count(_FIRST_ENTITY)
+        self._clients: dict[str, _Client] = {}
+        bus.announce(self._node.token)
+        self.graph = Graph(bus, domain)
+
+    @classmethod
+    async def open(
+        cls, endpoint: str, types: RosTypes, *, name: str, domain: int = 0, connect_timeout_s: float = 5.0
+    ) -> Self:
+        """Joins the ROS 2 system whose router is at `endpoint`; BusError AOS605 if there is none."""
+        bus = await ForeignBus.open(endpoint, connect_timeout_s=connect_timeout_s)
+        return cls(bus, types, name, domain)
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self._bus.close()
+
+    # --- topics --------------------------------------------------------------------------------------
+
+    def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
+        """What publishes a message on a topic."""
+        own = self._endpoint(Kind.PUBLISHER, topic, type_name, self.types.hash(type_name), qos)
+        send = self._bus.publisher(own.key, cached=qos.depth if qos.is_transient_local else 0)
+        self._bus.announce(own.token)
+        gid, numbers = gid_of(own.token), itertools.count(1)
+
+        def publish(fields: Fields) -> None:
+            attachment = Attachment(next(numbers), time.time_ns(), gid).encoded()
+            send(Packet(self.types.encoded(type_name, fields), attachment))
+
+        return publish
+
+    def subscribe(
+        self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
+    ) -> Undo:
+        """Has each message of a topic taken; those that cannot be decoded are logged and left out.
+
+        With a transient local quality of service, messages from before are taken as well.
+        """
+        own = self._endpoint(Kind.SUBSCRIPTION, topic, type_name, self._hash(topic, type_name), qos)
+
+        def on_packet(packet: Packet) -> None:
+            try:
+                fields = self.types.decoded(type_name, packet.payload)
+            except AosError as error:
+                _log.warning("on %s: %s", topic, error)
+            else:
+                take(fields)
+
+        stop = self._bus.listen(own.key, on_packet, with_history=qos.is_transient_local)
+        leave = self._bus.announce(own.token)
+
+        def undo() -> None:
+            leave()
+            stop()
+
+        return undo
+
+    # --- services ------------------------------------------------------------------------------------
+
+    async def call(
+        self,
+        service: str,
+        fields: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        discovery_s: float = DISCOVERY_S,
+    ) -> Fields:
+        """A service's response. Without a type, the server's is taken.
+
+        SkillError AOS505 if no node serves it, AOS503 if it does not answer in time, AOS504 if it is lost.
+        DeployError AOS806 if its type is not known, SkillError AOS509 if the server's definition is another.
+        """
+        server = await self.server(service, type_name, min(discovery_s, timeout_s))
+        client = self._client(server)
+        request = self.types.encoded(f"{server.type_name}_Request", fields)
+        packet = Packet(request, client.attachment())
+        try:
+            answer = await self._bus.ask(server.key, packet, timeout_s=timeout_s)
+        except BusError as error:
+            raise _skill_error(service, timeout_s, error) from error
+        return self.types.decoded(f"{server.type_name}_Response", answer.payload)
+
+    async def server(self, service: str, type_name: str, timeout_s: float) -> Endpoint:
+        """The node's end of a service, whose type is as it is defined here."""
+        server = await self.graph.wait_for(Kind.SERVER, service, timeout_s)
+        if server is None:
+            known = ", ".join(sorted(self.graph.names(Kind.SERVER))) or "none"
+            raise SkillError(
+                f"no ROS 2 node serves {service} in domain {self.domain}",
+                code="AOS505",
+                hint=f"Served are: {known}",
+            )
+        if type_name and server.type_name != type_name:
+            raise SkillError(
+                f"{service} is of type {server.type_name}, not {type_name}",
+                code="AOS509",
+                hint="Correct the type in the deploy file, or leave it out",
+            )
+        self._same_definition(server)
+        return server
+
+    def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
+        """Serves until closed: `handler(request)` runs as a task for each request and gives the response."""
+        own = self._endpoint(Kind.SERVER, service, type_name, self.types.hash(type_name), DEFAULT_QOS)
+
+        async def on_request(packet: Packet) -> Packet:
+            asked = Attachment.read(packet.attachment)
+            response = await handler(self.types.decoded(f"{type_name}_Request", packet.payload))
+            attachment = b"" if asked is None else asked._replace(sent_ns=time.time_ns()).encoded()
+            return Packet(self.types.encoded(f"{type_name}_Response", response), attachment)
+
+        self._bus.answer(own.key, on_request)
+        # Whoever sees the token may ask at once.
+        self._bus.announce(own.token)
+
+    # --- what they share -----------------------------------------------------------------------------
+
+    def _client(self, server: Endpoint) -> _Client:
+        if server.key not in self._clients:
+            own = self._endpoint(Kind.CLIENT, server.name, server.type_name, server.type_hash, DEFAULT_QOS)
+            self._bus.announce(own.token)
+            self._clients[server.key] = _Client(gid_of(own.token))
+        return self._clients[server.key]
+
+    def _endpoint(self, kind: Kind, name: str, type_name: str, type_hash: str, qos: Qos) -> Endpoint:
+        endpoint = self._node._replace(
+            number=next(self._numbers),
+            kind=kind,
+            name=name,
+            type_name=type_name,
+            type_hash=type_hash,
+            qos=qos,
+        )
+        return endpoint
+
+    def _hash(self, topic: str, type_name: str) -> str:
+        """The hash that the topic's publisher uses, if there is one already."""
+        for publisher in self.graph.find(Kind.PUBLISHER, topic):
+            if publisher.type_name == type_name:
+                self._same_definition(publisher)
+                return publisher.type_hash
+        return self.types.hash(type_name)
+
+    def _same_definition(self, theirs: Endpoint) -> None:
+        """SkillError AOS509 unless a node's type is defined as here."""
+        own = self.types.hash(theirs.type_name)
+        # Humble has no hashes and says so in words.
+        if theirs.type_hash.startswith("RIHS01_") and theirs.type_hash != own:
+            raise SkillError(
+                f"the node {theirs.node} defines {theirs.type_name} of {theirs.name} differently from here",
+                code="AOS509",
+                hint="Give the interface files that the node was built with, "
+                "and its ROS distribution (humble, jazzy, ...)",
+            )
+
+
+class _Client:
+    """What tells one service client's requests from all others."""
+
+    def __init__(self, gid: bytes) -> None:
+        self._gid = gid
+        self._numbers = itertools.count(1)
+
+    def attachment(self) -> bytes:
+        return Attachment(next(self._numbers), time.time_ns(), self._gid).encoded()
+
+
+def _skill_error(service: str, timeout_s: float, error: BusError) -> SkillError:
+    if error.code == "AOS601":
+        return SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503")
+    if error.code == "AOS604":
+        return SkillError(
+            f"the node that serves {service} was lost during the call",
+            code="AOS504",
+            hint="Whether the skill did its work is not known",
+        )
+    return SkillError(error.message, code="AOS502", hint=error.hint)

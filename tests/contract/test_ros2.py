@@ -1,0 +1,256 @@
+"""ROS 2 over Zenoh: topics, services and actions, between nodes of ours and with others' implementation."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib.util
+import os
+import sys
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import pytest_asyncio
+
+pytest.importorskip("rosbags", reason="needs the extra `ros`")
+
+from aos_protocol.errors import BusError, DeployError, SkillError
+from aos_runtime.parent import PARENT_VARIABLE
+from aos_skills.ros.types import RosTypes
+from aos_skills.ros2.action_client import run_action
+from aos_skills.ros2.action_server import ActionServer, Goal
+from aos_skills.ros2.node import Node
+from aos_skills.ros2.wire import Kind, Qos
+
+ROOT = Path(__file__).resolve().parents[2]
+INTERFACES = ROOT / "tests" / "data" / "interfaces"
+ADD = "example_interfaces/srv/AddTwoInts"
+FIBONACCI = "example_interfaces/action/Fibonacci"
+STRING = "std_msgs/msg/String"
+DEADLINE_S = 20.0
+
+
+@asynccontextmanager
+async def opened(endpoint: str, name: str, *interfaces: Path) -> AsyncIterator[Node]:
+    types = RosTypes("jazzy", interfaces or [INTERFACES])
+    async with await Node.open(endpoint, types, name=name) as node:
+        yield node
+
+
+@pytest_asyncio.fixture
+async def robot(endpoint: str) -> AsyncIterator[Node]:
+    """The node that serves."""
+    async with opened(endpoint, "robot") as node:
+        yield node
+
+
+@pytest_asyncio.fixture
+async def node(endpoint: str) -> AsyncIterator[Node]:
+    """The node that asks."""
+    async with opened(endpoint, "aos") as node:
+        yield node
+
+
+async def add(request: dict[str, Any]) -> dict[str, Any]:
+    return {"sum": request["a"] + request["b"]}
+
+
+async def count_up(
+    goal: dict[str, Any], state: Goal, feedback: Callable[[dict[str, Any]], None]
+) -> dict[str, Any]:
+    """Fibonacci's numbers; an order of 1000 is never reached, one below 0 cannot be run."""
+    if goal["order"] < 0:
+        raise SkillError("an order is at least 0", code="AOS502")
+    sequence = [0, 1]
+    while len(sequence) < goal["order"]:
+        sequence.append(min(sequence[-1] + sequence[-2], 2**31 - 1))
+        feedback({"sequence": sequence})
+        if goal["order"] == 1000:
+            await state.cancelled.wait()
+        if state.cancelled.is_set():
+            break
+    return {"sequence": sequence}
+
+
+async def test_a_service_is_called_by_its_name_alone(robot: Node, node: Node) -> None:
+    robot.serve("/lab/add", ADD, add)
+    assert await node.call("/lab/add", {"a": 20, "b": 22}, timeout_s=DEADLINE_S) == {"sum": 42}
+
+
+async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
+    robot: Node, node: Node
+) -> None:
+    robot.serve("/lab/add", ADD, add)
+    await node.server("/lab/add", ADD, DEADLINE_S)
+    with pytest.raises(SkillError, match=r"no ROS 2 node serves /lab/sub .*/lab/add") as raised:
+        await node.call("/lab/sub", {}, timeout_s=DEADLINE_S, discovery_s=0.05)
+    assert raised.value.code == "AOS505"
+
+
+async def test_a_service_of_another_type_than_given_is_an_error(robot: Node, node: Node) -> None:
+    robot.serve("/lab/add", ADD, add)
+    with pytest.raises(SkillError, match=f"/lab/add is of type {ADD}, not std_srvs/srv/Trigger"):
+        await node.call("/lab/add", {}, type_name="std_srvs/srv/Trigger", timeout_s=DEADLINE_S)
+
+
+async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_silence(
+    endpoint: str, node: Node, tmp_path: Path
+) -> None:
+    folder = tmp_path / "example_interfaces" / "srv"
+    folder.mkdir(parents=True)
+    (folder / "AddTwoInts.srv").write_text("int32 a\nint32 b\n---\nint64 sum\n")
+    async with opened(endpoint, "other", tmp_path) as other:
+        other.serve("/lab/add", ADD, add)
+        with pytest.raises(SkillError, match=r"the node other defines .*AddTwoInts .*differently") as raised:
+            await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=DEADLINE_S)
+    assert raised.value.code == "AOS509"
+
+
+async def test_a_type_that_is_not_known_here_names_the_file_to_add(
+    endpoint: str, robot: Node, tmp_path: Path
+) -> None:
+    robot.serve("/lab/add", ADD, add)
+    async with opened(endpoint, "ignorant", tmp_path) as ignorant:
+        with pytest.raises(DeployError, match=r"example_interfaces/srv/AddTwoInts\.srv"):
+            await ignorant.call("/lab/add", {"a": 1, "b": 2}, timeout_s=DEADLINE_S)
+
+
+async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node: Node) -> None:
+    async def never(_: dict[str, Any]) -> dict[str, Any]:
+        await asyncio.Event().wait()
+        return {}
+
+    robot.serve("/lab/add", ADD, never)
+    with pytest.raises(SkillError, match=r"/lab/add did not answer within 0\.2 s") as raised:
+        await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=0.2)
+    assert raised.value.code == "AOS503"
+
+
+async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node, node: Node) -> None:
+    latched = Qos(depth=1, is_transient_local=True)
+    received: asyncio.Queue[Any] = asyncio.Queue()
+    publish = robot.publisher("/lab/map", STRING, latched)
+    publish({"data": "old"})
+    publish({"data": "new"})
+    node.subscribe("/lab/map", STRING, received.put_nowait, latched)
+    async with asyncio.timeout(DEADLINE_S):
+        assert await received.get() == {"data": "new"}
+        publish({"data": "newest"})
+        # Zenoh may give what it kept more than once.
+        while (message := await received.get()) == {"data": "new"}:
+            pass
+        assert message == {"data": "newest"}
+
+
+async def test_an_action_gives_feedback_and_its_result(robot: Node, node: Node) -> None:
+    ActionServer(robot, "/lab/fibonacci", FIBONACCI, count_up)
+    feedback: list[Any] = []
+    end = await run_action(
+        node, "/lab/fibonacci", {"order": 6}, timeout_s=DEADLINE_S, on_feedback=feedback.append
+    )
+    assert end == ("succeeded", {"sequence": [0, 1, 1, 2, 3, 5]})
+    assert feedback[-1] == {"sequence": [0, 1, 1, 2, 3, 5]}
+
+
+async def test_an_action_is_cancelled_with_a_handshake(robot: Node, node: Node) -> None:
+    ActionServer(robot, "/lab/fibonacci", FIBONACCI, count_up)
+    cancelled = asyncio.Event()
+    end = await run_action(
+        node,
+        "/lab/fibonacci",
+        {"order": 1000},
+        timeout_s=DEADLINE_S,
+        cancelled=cancelled,
+        on_feedback=lambda _: cancelled.set(),
+    )
+    assert end == ("canceled", {"sequence": [0, 1, 1]})
+
+
+async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robot: Node, node: Node) -> None:
+    ended = asyncio.Event()
+
+    async def wait(_: Any, state: Goal, __: Any) -> dict[str, Any]:
+        await state.cancelled.wait()
+        ended.set()
+        return {}
+
+    ActionServer(robot, "/lab/fibonacci", FIBONACCI, wait)
+    with pytest.raises(SkillError, match=r"did not end within 0\.3 s and was cancelled") as raised:
+        await run_action(node, "/lab/fibonacci", {"order": 1000}, timeout_s=0.3)
+    assert raised.value.code == "AOS503"
+    assert ended.is_set()
+
+
+async def test_an_action_that_fails_is_aborted(robot: Node, node: Node) -> None:
+    ActionServer(robot, "/lab/fibonacci", FIBONACCI, count_up)
+    end = await run_action(node, "/lab/fibonacci", {"order": -1}, timeout_s=DEADLINE_S)
+    assert end.status == "aborted"
+
+
+async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: str, node: Node) -> None:
+    async with opened(endpoint, "leaving") as leaving:
+        ActionServer(leaving, "/lab/fibonacci", FIBONACCI, count_up)
+        started = asyncio.Event()
+        running = asyncio.create_task(
+            run_action(
+                node,
+                "/lab/fibonacci",
+                {"order": 1000},
+                timeout_s=DEADLINE_S,
+                on_feedback=lambda _: started.set(),
+            )
+        )
+        await started.wait()
+    with pytest.raises(SkillError, match=r"serves /lab/fibonacci.* (has left|was lost)") as raised:
+        await running
+    assert raised.value.code == "AOS504"
+
+
+async def test_a_router_that_is_not_there_is_an_error_that_says_how_to_start_it() -> None:
+    with pytest.raises(BusError, match=r"no Zenoh router answers .*rmw_zenohd"):
+        await Node.open("tcp/127.0.0.1:1", RosTypes(), name="aos", connect_timeout_s=0.1)
+
+
+async def answered(node: Node, service: str, fields: dict[str, Any]) -> dict[str, Any]:
+    """What the service answers once it does: the peer shows its token before it can."""
+    async with asyncio.timeout(DEADLINE_S):
+        while True:
+            try:
+                return await node.call(service, fields, timeout_s=DEADLINE_S, discovery_s=DEADLINE_S)
+            except SkillError as error:
+                if error.code != "AOS504":
+                    raise
+
+
+@pytest.mark.skipif(
+    importlib.util.find_spec("zenoh_ros2_sdk") is None, reason="needs the package zenoh-ros2-sdk"
+)
+async def test_an_independent_implementation_understands_us_and_we_it(
+    endpoint: str, robot: Node, tmp_path: Path
+) -> None:
+    robot.serve("/aos/add_two_ints", ADD, add)
+    received: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+    robot.subscribe("/from_sdk", STRING, received.put_nowait)
+    publish = robot.publisher("/to_sdk", STRING)
+    with (tmp_path / "peer.log").open("wb") as log:
+        peer = await asyncio.create_subprocess_exec(
+            sys.executable,
+            *("-m", "tests.ros2_sdk_peer", endpoint.rpartition(":")[2]),
+            cwd=ROOT,
+            env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
+            stdout=log,
+            stderr=log,
+        )
+        try:
+            assert await answered(robot, "/sdk/add_two_ints", {"a": 20, "b": 22}) == {"sum": 42}
+            assert await robot.graph.wait_for(Kind.SUBSCRIPTION, "/to_sdk", DEADLINE_S)
+            async with asyncio.timeout(DEADLINE_S):
+                publish({"data": "loud"})
+                assert await received.get() == {"data": "LOUD"}
+                publish({"data": "call 1 2"})
+                assert await received.get() == {"data": "3"}
+        finally:
+            peer.kill()
+            await peer.wait()
