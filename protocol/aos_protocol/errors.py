@@ -1,14 +1,17 @@
 """The errors that cross the bus, and the table of codes.
 
-The number crosses the bus, the class stays local:
+The code crosses the bus, the class stays local. Whoever must tell situations apart catches their classes, and
+compares no codes:
 
     AosError
       DocumentError   AOS1xx  a document cannot be read, or documents contradict each other
       ModelError      AOS2xx  model code does not compile, crashes, hangs
+                      CodeFaultError (EndlessCodeError), IntractableError
       PlanningError   AOS3xx  no decision, impossible observation
       MappingError    AOS4xx  an abstraction mapping raised, or no rule matched
       SkillError      AOS5xx  a skill is unknown, refused, timed out, lost
-      BusError        AOS6xx  no answer, late answer, malformed message
+      BusError        AOS6xx  no answer, late answer, malformed message:
+                      LateAnswerError, NobodyAnswersError, LostAnswerError
       StorageError    AOS7xx  journal or catalogue
       DeployError     AOS8xx  deploy file, start-up, supervision
 
@@ -23,10 +26,16 @@ __all__ = [
     "CODES",
     "AosError",
     "BusError",
+    "CodeFaultError",
     "DeployError",
     "DocumentError",
+    "EndlessCodeError",
+    "IntractableError",
+    "LateAnswerError",
+    "LostAnswerError",
     "MappingError",
     "ModelError",
+    "NobodyAnswersError",
     "PlanningError",
     "SkillError",
     "StorageError",
@@ -103,6 +112,7 @@ CODES: dict[str, str] = {
     "AOS604": "nobody answers this key",
     "AOS605": "the bus cannot be reached",
     "AOS606": "the handler failed",
+    "AOS607": "whoever took the question ended before it replied",
     "AOS701": "the journal cannot be written",
     "AOS702": "the journal cannot be read",
     "AOS801": "the deploy file is not valid",
@@ -150,6 +160,24 @@ class ModelError(AosError):
     code = "AOS201"
 
 
+class CodeFaultError(ModelError):
+    """Code of a document failed while it ran, so that the place of it can be looked for."""
+
+    code = "AOS210"
+
+
+class EndlessCodeError(CodeFaultError):
+    """Code of a document does not come to an end."""
+
+    code = "AOS211"
+
+
+class IntractableError(ModelError):
+    """What was asked cannot be enumerated: a draw is continuous, or there is too much of it."""
+
+    code = "AOS220"
+
+
 class PlanningError(AosError):
     code = "AOS302"
 
@@ -164,6 +192,24 @@ class SkillError(AosError):
 
 class BusError(AosError):
     code = "AOS601"
+
+
+class LateAnswerError(BusError):
+    """No reply came in time. Whether the question is being worked on is not known."""
+
+    code = "AOS601"
+
+
+class NobodyAnswersError(BusError):
+    """Nobody took the question: nothing was begun."""
+
+    code = "AOS604"
+
+
+class LostAnswerError(BusError):
+    """Somebody took the question and ended before replying: what was begun is not known."""
+
+    code = "AOS607"
 
 
 class StorageError(AosError):
@@ -185,10 +231,21 @@ _BY_HUNDRED: dict[str, type[AosError]] = {
     "8": DeployError,
 }
 
+_SITUATIONS: dict[str, type[AosError]] = {
+    "AOS210": CodeFaultError,
+    "AOS211": EndlessCodeError,
+    "AOS214": CodeFaultError,
+    "AOS215": CodeFaultError,
+    "AOS220": IntractableError,
+    "AOS601": LateAnswerError,
+    "AOS604": NobodyAnswersError,
+    "AOS607": LostAnswerError,
+}
+
 
 def error_from_code(
     code: str, message: str, *, hint: str = "", diagnostics: tuple[Diagnostic, ...] = ()
 ) -> AosError:
-    """The local exception for a code that came over the bus."""
-    kind = _BY_HUNDRED.get(code[3:4], AosError)
+    """The local exception for a code that came from another process."""
+    kind = _SITUATIONS.get(code) or _BY_HUNDRED.get(code[3:4], AosError)
     return kind(message, code=code, hint=hint, diagnostics=diagnostics)

@@ -17,7 +17,7 @@ import zenoh
 from zenoh.handlers import Callback
 
 from aos_protocol.codec import decode, decode_fault, encode, encode_fault
-from aos_protocol.errors import AosError, BusError
+from aos_protocol.errors import AosError, BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
 from aos_runtime.bus_config import client_config
 from aos_runtime.clock import Clock, SystemClock
@@ -32,6 +32,10 @@ _RETRY_S = 0.02
 _ROUND_TRIP_S = 2.0
 _LATE_S = 0.5
 """How long after Zenoh's own deadline a question ends by ours, in case Zenoh says nothing."""
+
+_TAKEN = b"taken"
+"""The attachment of a question that asks for a receipt, and of the receipt: a first, empty reply. Somebody
+who knows neither asks without, and answers without."""
 
 _log = logging.getLogger("aos.bus")
 
@@ -98,18 +102,26 @@ class Bus:
     async def ask(self, key: str, message: Message, reply: type[R], *, timeout_s: float) -> R:
         """The answer of whoever serves `key`.
 
-        BusError AOS604 if nobody does, or whoever did ended before it replied; AOS601 if no reply comes
-        within `timeout_s`; AOS602 or AOS603 if the reply is malformed or of another protocol version; the
-        handler's own AosError if it raised one.
+        NobodyAnswersError if nobody takes the question; LostAnswerError if whoever took it ended before the
+        reply; LateAnswerError if no reply comes within `timeout_s`; BusError AOS602 or AOS603 if the reply is
+        malformed or of another protocol version; the handler's own AosError if it raised one.
         """
         payload = encode(message, sender=self.sender, stamp_ns=self._clock.now_ns())
         answer: asyncio.Future[tuple[bool, bytes] | None] = self._loop.create_future()
+        is_taken = False
 
         def settle(result: tuple[bool, bytes] | None) -> None:
             if not answer.done():
                 answer.set_result(result)
 
+        def take() -> None:
+            nonlocal is_taken
+            is_taken = True
+
         def on_reply(received: zenoh.Reply) -> None:
+            if received.ok is not None and received.ok.attachment is not None:
+                self._loop.call_soon_threadsafe(take)
+                return
             if received.ok is not None:
                 result = (True, received.ok.payload.to_bytes())
             else:
@@ -121,6 +133,7 @@ class Bus:
             key,
             Callback(on_reply, partial(self._loop.call_soon_threadsafe, settle, None), indirect=False),
             payload=payload,
+            attachment=_TAKEN,
             timeout=timeout_s,
             # Otherwise a reply is held back until every responder has finished.
             consolidation=zenoh.ConsolidationMode.NONE,
@@ -130,6 +143,11 @@ class Bus:
                 result = await answer
         except TimeoutError:
             result = (False, b"Timeout")
+        if result is None and is_taken:
+            raise LostAnswerError(
+                f"who took the question on {key} ended before the answer",
+                hint="See the logs of the services for what ended",
+            )
         return _read_answer(result, key, reply, timeout_s)
 
     async def answer(
@@ -260,6 +278,8 @@ class Bus:
         with query:
             key = str(query.key_expr)
             try:
+                if query.attachment is not None:
+                    query.reply(query.key_expr, b"", attachment=_TAKEN)
                 if "*" in key:
                     raise BusError(f"a question to {key} has no one answer", code="AOS602")
                 payload = query.payload.to_bytes() if query.payload is not None else b""
@@ -268,7 +288,7 @@ class Bus:
             except AosError as error:
                 self._refuse(query, error)
             except asyncio.CancelledError:
-                self._refuse(query, BusError(f"{self.sender} stopped while it answered {key}", code="AOS606"))
+                self._refuse(query, LostAnswerError(f"{self.sender} stopped while it answered {key}"))
                 raise
             except Exception as error:
                 _log.exception("the handler of %s failed", key)
@@ -289,14 +309,13 @@ class Bus:
 
 def _read_answer(result: tuple[bool, bytes] | None, key: str, reply: type[R], timeout_s: float) -> R:
     if result is None:
-        raise BusError(
-            f"nobody answers {key}", code="AOS604", hint="Is the service that should answer running?"
-        )
+        hint = "Is the service that should answer running?"
+        raise NobodyAnswersError(f"nobody answers {key}", hint=hint)
     is_answer, payload = result
     if is_answer:
         return decode(payload, reply)
     if payload == b"Timeout":  # Zenoh's own error reply, the only one that is not an envelope.
-        raise BusError(f"no answer on {key} within {timeout_s:g} s", code="AOS601")
+        raise LateAnswerError(f"no answer on {key} within {timeout_s:g} s")
     raise decode_fault(payload)
 
 

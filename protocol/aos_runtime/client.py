@@ -46,7 +46,7 @@ class AosClient:
             yield cls(bus, robot)
 
     async def mission_state(self) -> MissionState:
-        """Where the mission is now; BusError AOS604 if there is no solver."""
+        """Where the mission is now; NobodyAnswersError if there is no solver."""
         return await self.bus.ask(
             self.keys.mission_state, MissionQuery(), MissionState, timeout_s=_HISTORY_TIMEOUT_S
         )

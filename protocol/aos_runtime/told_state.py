@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable
 from typing import TypeVar
 
-from aos_protocol.errors import BusError
+from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
 from aos_runtime.bus import Bus
 
@@ -16,7 +16,7 @@ M = TypeVar("M", bound=Message)
 
 _QUESTION_S = 5.0
 
-_IS_AWAY = ("AOS601", "AOS604", "AOS606")
+_IS_AWAY = (NobodyAnswersError, LostAnswerError, LateAnswerError)
 """What an asker hears of a service that starts, stops or is busy: it tells its state when it has one."""
 
 
@@ -26,15 +26,14 @@ async def state_when(
     """The first state on `key` for which `holds`, told already or from now on.
 
     `key` is a stream of states and answers `question` with the present one; its service may come later.
-    BusError AOS601 if no such state is told within `timeout_s`, AOS605 if the bus is left.
+    LateAnswerError if no such state is told within `timeout_s`, BusError AOS605 if the bus is left.
     """
     try:
         async with asyncio.timeout(timeout_s), bus.listen(key, kind) as told:
             try:
                 state = await bus.ask(key, question, kind, timeout_s=min(timeout_s, _QUESTION_S))
-            except BusError as error:
-                if error.code not in _IS_AWAY:
-                    raise
+            except _IS_AWAY:
+                pass
             else:
                 if holds(state):
                     return state
@@ -42,5 +41,5 @@ async def state_when(
                 if holds(state):
                     return state
     except TimeoutError:
-        raise BusError(f"what is awaited on {key} did not come in {timeout_s:g} s", code="AOS601") from None
+        raise LateAnswerError(f"what is awaited on {key} did not come in {timeout_s:g} s") from None
     raise BusError(f"{bus.sender} has left the bus", code="AOS605")

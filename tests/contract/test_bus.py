@@ -12,10 +12,11 @@ from contextlib import asynccontextmanager
 import msgspec
 import pytest
 import zenoh
+from zenoh.handlers import Callback
 
 from aos_protocol.codec import encode
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
-from aos_protocol.errors import AosError, BusError, ModelError
+from aos_protocol.errors import AosError, BusError, LostAnswerError, ModelError, NobodyAnswersError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     Catalogue,
@@ -77,6 +78,92 @@ async def test_nobody_answers_is_said_at_once(bus: Bus, keys: Keys) -> None:
     with pytest.raises(BusError, match="nobody answers") as caught:
         await bus.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=30)
     assert caught.value.code == "AOS604"
+
+
+MORTAL = """
+import asyncio, os, sys
+from aos_runtime.bus import Bus
+from aos_protocol.keys import Keys
+from aos_protocol.messages import ProjectQuery
+async def main():
+    bus = await Bus.open(sys.argv[1], sender="mortal")
+    async def die(query, key):
+        await bus.announce(Keys("test").live("dying"))  # The router has all that this process said before.
+        os.kill(os.getpid(), 9)
+    await bus.answer(Keys("test").project, ProjectQuery, die)
+    print("ready", flush=True)
+    await asyncio.Event().wait()
+asyncio.run(main())
+"""
+
+
+async def test_who_dies_over_a_question_is_told_from_nobody(endpoint: str, bus: Bus, keys: Keys) -> None:
+    child = await Child.start([sys.executable, "-c", MORTAL, endpoint], stdout=PIPE)
+    try:
+        assert await child.stdout.readline() == b"ready\n"
+        with pytest.raises(LostAnswerError, match="ended before the answer") as caught:
+            await bus.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=30)
+        assert caught.value.code == "AOS607"
+        with pytest.raises(NobodyAnswersError):
+            await bus.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=30)
+    finally:
+        await child.stop()
+
+
+async def test_who_leaves_the_bus_over_a_question_says_so(bus: Bus, endpoint: str, keys: Keys) -> None:
+    leaving = await Bus.open(endpoint, sender="leaving")
+    is_asked = asyncio.Event()
+
+    async def never(_: ProjectQuery, __: str) -> Message:
+        is_asked.set()
+        await asyncio.Event().wait()
+        return Catalogue(())
+
+    await leaving.answer(keys.project, ProjectQuery, never)
+    async with asyncio.TaskGroup() as tasks:
+        asked = tasks.create_task(_error_of(bus.ask(keys.project, ProjectQuery(), Catalogue, timeout_s=30)))
+        await is_asked.wait()
+        await leaving.close()
+    assert isinstance(asked.result(), LostAnswerError)
+
+
+async def test_who_knows_no_receipts_asks_and_answers_all_the_same(
+    endpoint: str, bus: Bus, other: Bus, keys: Keys
+) -> None:
+    outsider = await asyncio.to_thread(zenoh.open, client_config(endpoint))
+    try:
+        question = encode(ProjectQuery("a"), sender="outsider", stamp_ns=0)
+        answer = encode(Catalogue((ENTRY,)), sender="outsider", stamp_ns=0)
+        await other.answer(keys.catalogue, ProjectQuery, list_catalogue)
+        replies = await asyncio.to_thread(
+            lambda: list(outsider.get(keys.catalogue, payload=question, timeout=5.0))
+        )
+        assert len(replies) == 1
+        queryable = outsider.declare_queryable(
+            keys.project, Callback(lambda query: query.reply(query.key_expr, answer), indirect=False)
+        )
+        await until_answered(bus, keys.project)
+        queryable.undeclare()
+    finally:
+        await asyncio.to_thread(outsider.close)
+
+
+async def until_answered(bus: Bus, key: str) -> None:
+    """The router has taken in the outsider's declaration, and the answer is the one it gives."""
+    async with asyncio.timeout(10):
+        while True:
+            try:
+                catalogue = await bus.ask(key, ProjectQuery("a"), Catalogue, timeout_s=5)
+            except NobodyAnswersError:
+                continue
+            assert catalogue.entries == (ENTRY,)
+            return
+
+
+async def _error_of(asked: Awaitable[Message]) -> AosError:
+    with pytest.raises(AosError) as error:
+        await asked
+    return error.value
 
 
 async def test_a_late_answer_is_a_timeout(bus: Bus, other: Bus, keys: Keys) -> None:

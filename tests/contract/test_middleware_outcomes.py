@@ -116,7 +116,7 @@ async def test_the_activations_deadline_counts_where_it_is_shorter(system: Syste
     await system.adapter.serve("/pick", hang)
     outcome = await system.activate("pick", deadline_s=0.4)
     assert outcome.status == "timed_out"
-    assert 0 < system.adapter.calls[0].deadline_s <= 0.4
+    assert system.adapter.calls[0].deadline_s <= 0.4
 
 
 async def test_a_result_that_no_rule_covers_is_a_failure_with_the_values(system: System) -> None:

@@ -159,6 +159,24 @@ async def test_the_solver_is_asked_and_its_complaint_refuses_the_bundle(
         await current(bus, keys)
 
 
+async def test_documents_that_a_dying_solver_was_asked_about_are_not_accepted_unchecked(
+    registry: Path, bus: Bus, endpoint: str, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    solver = await Bus.open(endpoint, sender="solver")
+
+    async def never(_: CheckModel, __: str) -> ModelCheck:
+        leaving.append(asyncio.create_task(solver.close()))
+        await asyncio.Event().wait()
+        return ModelCheck(())
+
+    leaving: list[asyncio.Task[None]] = []
+    await solver.answer(keys.check_model, CheckModel, never)
+    report = await push(bus, keys, finer)
+    await leaving[0]
+    assert not report.is_accepted
+    assert {each.code for each in report.diagnostics if each.is_error} == {"AOS607"}
+
+
 async def test_a_skill_of_an_unknown_project_is_refused_with_the_nearest_name(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:

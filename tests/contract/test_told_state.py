@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from aos_protocol.errors import BusError
+from aos_protocol.errors import BusError, NobodyAnswersError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import MappingQuery, MappingState
 from aos_runtime.bus import Bus
@@ -74,7 +74,7 @@ async def test_what_is_told_later_is_heard_and_what_does_not_hold_is_passed_over
 async def test_the_service_may_come_later(bus: Bus, keys: Keys, teller: Teller) -> None:
     async def refuse(_: MappingQuery, __: str) -> MappingState:
         teller.was_asked.set()
-        raise BusError("still starting", code="AOS604")
+        raise NobodyAnswersError("still starting")
 
     await bus.answer(keys.mapping_state, MappingQuery, refuse)
     async with asyncio.TaskGroup() as tasks:

@@ -17,7 +17,7 @@ from aos_middleware.evaluator import Evaluator, MappingFault
 from aos_middleware.low_level import LowLevelValues, assigned_variables
 from aos_middleware.observed_numbers import observed_numbers
 from aos_protocol.documents import AbstractionMapping, LocalSource
-from aos_protocol.errors import AosError, BusError, SkillError
+from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     Activate,
@@ -172,13 +172,16 @@ class _Activation:
             return await self._bus.ask(
                 self._keys.call(path), call, SkillResult, timeout_s=limit_s + _REPLY_GRACE_S
             )
-        except BusError as error:
-            if error.code == "AOS601":
-                await self._cancel(f"{self._request.skill} did not end within {limit_s:g} s")
-                raise _timed_out(path, limit_s) from error
-            if error.code == "AOS604":
-                raise _no_adapter(path, self._clock.monotonic_s() - started_s) from error
-            raise
+        except LateAnswerError as error:
+            await self._cancel(f"{self._request.skill} did not end within {limit_s:g} s")
+            raise _timed_out(path, limit_s) from error
+        except LostAnswerError as error:
+            raise _lost_adapter(path, self._clock.monotonic_s() - started_s) from error
+        except NobodyAnswersError as error:
+            # An adapter that does not use our bus gives no receipt: then time alone tells.
+            after_s = self._clock.monotonic_s() - started_s
+            is_surely_nobody = after_s < SURELY_NOT_STARTED_S
+            raise (_no_adapter(path) if is_surely_nobody else _lost_adapter(path, after_s)) from error
 
     async def _cancel(self, reason: str) -> None:
         """Has whatever moves stopped, as far as somebody answers."""
@@ -245,13 +248,15 @@ def _timed_out(path: str, limit_s: float) -> SkillError:
     )
 
 
-def _no_adapter(path: str, after_s: float) -> SkillError:
-    if after_s < SURELY_NOT_STARTED_S:
-        return SkillError(
-            f"no adapter answers calls of {path}",
-            code="AOS505",
-            hint=f"Name one for {path} under `bind:` in the deploy file, and see that it runs",
-        )
+def _no_adapter(path: str) -> SkillError:
+    return SkillError(
+        f"no adapter answers calls of {path}",
+        code="AOS505",
+        hint=f"Name one for {path} under `bind:` in the deploy file, and see that it runs",
+    )
+
+
+def _lost_adapter(path: str, after_s: float) -> SkillError:
     return SkillError(
         f"the adapter of {path} was lost {after_s:.1f} s after it was called",
         code="AOS504",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors, render
 from aos_protocol.documents import Project
-from aos_protocol.errors import AosError, DocumentError, StorageError
+from aos_protocol.errors import AosError, DocumentError, NobodyAnswersError, StorageError
 from aos_protocol.messages import (
     BundleReport,
     CatalogueQuery,
@@ -149,7 +149,10 @@ class _Registry:
         return report
 
     async def _check_model(self, project: Project) -> tuple[Diagnostic, ...]:
-        """What the solver says to a project; nothing when there is no solver yet."""
+        """What the solver says to a project; nothing when there is no solver yet.
+
+        A solver that took the question and ended has not accepted the project.
+        """
         try:
             answer = await self._bus.ask(
                 self._keys.check_model,
@@ -157,9 +160,9 @@ class _Registry:
                 ModelCheck,
                 timeout_s=self._settings.model_check_timeout_s,
             )
+        except NobodyAnswersError:
+            return ()
         except AosError as error:
-            if error.code == "AOS604":
-                return ()
             message = f"the solver could not check the model: {error.message}"
             return (Diagnostic(Severity.ERROR, error.code, message, Span(project.name), error.hint),)
         return answer.diagnostics

@@ -77,7 +77,11 @@ def emitted_model(project: Project) -> EmittedModel:
 
 
 class ModelShelf:
-    """Holds the newest model that is ready to run, at most one besides the mission's own."""
+    """Holds the newest model that is ready to run, at most one besides the mission's own.
+
+    `_shelf` is locked by whoever puts a model there, takes it, or decides whether to take it: nothing is
+    replaced while the belief moves over. A model's engine is closed by the shelf until somebody has it.
+    """
 
     def __init__(
         self,
@@ -92,7 +96,7 @@ class ModelShelf:
         self._mapping_revision = mapping_revision
         self._ready: RunningModel | None = None
         self._fault: AosError | None = None
-        self._changed = asyncio.Condition()
+        self._shelf = asyncio.Condition()
         self._newest_revision = 0
         self._building = asyncio.Lock()
         self._thorough: asyncio.Task[None] | None = None
@@ -112,18 +116,25 @@ class ModelShelf:
             model = RunningModel(revision.revision, built, await self._start_engine(built))
         except AosError as error:
             log.warning("revision %d is not used: %s", revision.revision, error)
-            async with self._changed:
+            async with self._shelf:
                 self._fault = error
-                self._changed.notify_all()
+                self._shelf.notify_all()
             return
-        async with self._changed:
-            outdated, self._ready, self._fault = self._ready, model, None
-            self._changed.notify_all()
+        await self._put(model)
+        await self._end_thorough_build()
+        self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
+
+    async def _put(self, model: RunningModel) -> None:
+        """On the shelf, instead of what nobody has taken."""
+        try:
+            async with self._shelf:
+                outdated, self._ready, self._fault = self._ready, model, None
+                self._shelf.notify_all()
+        except asyncio.CancelledError:
+            await model.engine.close()
+            raise
         if outdated is not None:
             await outdated.engine.close()
-        if self._thorough is not None:
-            self._thorough.cancel()
-        self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
 
     async def _build_thoroughly(self, emitted: EmittedModel) -> None:
         """Into the cache; the running mission needs none, so all else goes first and a fault is only told."""
@@ -137,11 +148,19 @@ class ModelShelf:
             )
         except AosError as error:
             log.warning("%s was not built thoroughly: %s", emitted.project, error)
+        except Exception:
+            log.exception("%s was not built thoroughly", emitted.project)
+
+    async def _end_thorough_build(self) -> None:
+        task, self._thorough = self._thorough, None
+        if task is not None:
+            task.cancel()
+            await asyncio.wait({task})
 
     async def first(self) -> RunningModel:
         """The first model that runs; raises what kept it from running."""
-        async with self._changed:
-            await self._changed.wait_for(lambda: self._ready is not None or self._fault is not None)
+        async with self._shelf:
+            await self._shelf.wait_for(lambda: self._ready is not None or self._fault is not None)
             if self._ready is None:
                 assert self._fault is not None
                 raise self._fault
@@ -149,15 +168,26 @@ class ModelShelf:
             return model
 
     async def newest(self, running: RunningModel) -> RunningModel:
-        """The running model, or its successor with the belief carried over and the old engine closed."""
-        candidate = self._ready
-        if candidate is None or await self._mapping_revision() < candidate.revision:
-            return running
-        if candidate.built.emitted.state_digest != running.built.emitted.state_digest:
-            log.warning("revision %d changes the state and waits for a new mission", candidate.revision)
-            return running
-        self._ready = None
-        await candidate.engine.import_belief(await running.engine.export_belief())
+        """The running model, or its successor with the belief carried over and the old engine closed.
+
+        A successor that cannot take the belief is given up.
+        """
+        async with self._shelf:
+            candidate = self._ready
+            if candidate is None or await self._mapping_revision() < candidate.revision:
+                return running
+            if candidate.built.emitted.state_digest != running.built.emitted.state_digest:
+                log.warning("revision %d changes the state and waits for a new mission", candidate.revision)
+                return running
+            belief = await running.engine.export_belief()
+            try:
+                await candidate.engine.import_belief(belief)
+            except AosError as error:
+                log.warning("revision %d cannot take the belief: %s", candidate.revision, error)
+                self._ready = None
+                await candidate.engine.close()
+                return running
+            self._ready = None
         await running.engine.close()
         log.info("revision %d takes over from revision %d", candidate.revision, running.revision)
         return candidate
@@ -176,12 +206,12 @@ class ModelShelf:
         return ()
 
     async def close(self) -> None:
-        if self._thorough is not None:
-            self._thorough.cancel()
-            await asyncio.wait({self._thorough})
-        if self._ready is not None:
-            await self._ready.engine.close()
-            self._ready = None
+        """Ends what is being built, and the engine that nobody has taken."""
+        await self._end_thorough_build()
+        async with self._shelf:
+            unused, self._ready = self._ready, None
+        if unused is not None:
+            await unused.engine.close()
 
 
 def _state_changed(project: Project) -> Diagnostic:

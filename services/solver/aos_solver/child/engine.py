@@ -82,7 +82,7 @@ class Engine:
         self._child: EngineChild | None = None
         self._beliefs: SharedMemory | None = None
         self._changes = 0
-        self._correction_faults: dict[EngineFault, ModelError] = {}
+        self._correction_faults: dict[EngineFault, AosError] = {}
         self._world: list[str] = []
         self._asking = asyncio.Lock()
         self.description: EngineDescription
@@ -173,7 +173,7 @@ class Engine:
         await self._ask(f"count_processor_time\t{int(counts)}", _Done)
 
     async def exact(self, horizon: int | None = None) -> ExactValues:
-        """Finite-horizon values by enumeration; ModelError AOS220 where that is not tractable, and why."""
+        """Finite-horizon values by enumeration; IntractableError where that is not possible, and why."""
         command = f"exact\t{horizon or 0}\t{EXACT_BELIEF_BUDGET}\t{EXACT_TIME_S}"
         return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
@@ -183,7 +183,7 @@ class Engine:
 
     async def list_states(self, max_states: int = 0) -> Listed:
         """What one more decision leads to, from the current belief on with `max_states`, else where the last
-        call has ended; ModelError AOS220 where outcomes cannot be counted, or there are too many states."""
+        call has ended; IntractableError where outcomes cannot be counted, or there are too many states."""
         return await self._ask(f"list\t{max_states}", Listed, deadline_s=LISTING_DEADLINE_S)
 
     async def write_listing(self, model: Path, states: Path) -> WrittenListing:
@@ -247,7 +247,7 @@ class Engine:
         log.warning("%s", remark)
         return msgspec.structs.replace(update, remark=remark)
 
-    async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> ModelError:
+    async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> AosError:
         """Why local variables did not correct the belief that was there after so many changes.
 
         The statement is looked for once: the mission waits for it, and meets the fault at every outcome.
@@ -346,10 +346,10 @@ class Engine:
                 log.warning("asking again: %s", error)
                 await self._restart_child()
                 return await self._child.ask(command, kind, deadline_s)
-            except ModelError as error:
+            except AosError as error:
                 raise await self._located(error, command) from None
 
-    async def _located(self, fault: ModelError, command: str) -> ModelError:
+    async def _located(self, fault: AosError, command: str) -> AosError:
         """The fault at its statement, if a replay of the command finds it."""
         commands = [*self._restoration(self._changes), *self._world, command]
         return await at_its_statement(fault, self._built, self._start, commands)
@@ -357,7 +357,7 @@ class Engine:
     async def _start_child(self) -> None:
         try:
             self._child = await EngineChild.start(self._built, self._start)
-        except ModelError as error:
+        except AosError as error:
             raise await at_its_statement(error, self._built, self._start, []) from None
         self.description = self._child.description
 

@@ -14,7 +14,7 @@ from typing import Literal, Self, TypeVar
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity
-from aos_protocol.errors import ModelError
+from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, ModelError, error_from_code
 from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EngineDescription, EngineFault
@@ -132,15 +132,15 @@ class EngineChild:
             self._blame.close()
             self._blame = None
 
-    def fault(self, code: str, message: str, piece: int) -> ModelError:
+    def fault(self, code: str, message: str, piece: int) -> AosError:
         """The error of model code, at the document place of that number if it is one."""
         spans = self._built.emitted.snippets
         if not 0 < piece <= len(spans):
-            return ModelError(message, code=code)
+            return error_from_code(code, message)
         span = spans[piece - 1]
         hint = "Look at this piece of the document"
         diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)
-        return ModelError(f"{span}: {message}", code=code, hint=hint, diagnostics=(diagnostic,))
+        return error_from_code(code, f"{span}: {message}", hint=hint, diagnostics=(diagnostic,))
 
     async def _exchange(self, command: str | None, kind: type[A], deadline_s: float) -> A:
         """One line there and one back; `command` None only waits for the answer."""
@@ -152,11 +152,12 @@ class EngineChild:
                     await child.stdin.drain()
                 line = await child.stdout.readline()
         except TimeoutError:
-            raise await self._lost("AOS211", f"the model did not finish within {deadline_s:.0f} s") from None
+            text = f"the model did not finish within {deadline_s:.0f} s"
+            raise await self._lost(EndlessCodeError, text) from None
         except (ConnectionError, ValueError):
             line = b""
         if not line.endswith(b"\n"):
-            raise await self._lost("AOS210", "model code ended the engine")
+            raise await self._lost(CodeFaultError, "model code ended the engine")
         return self._decoded(line, kind)
 
     def _decoded(self, line: bytes, kind: type[A]) -> A:
@@ -168,22 +169,22 @@ class EngineChild:
             raise ModelError(f"the engine's answer makes no sense: {error}", code="AOS213") from error
         raise self.fault(fault.code, fault.text, fault.piece)
 
-    async def _lost(self, code: str, message: str) -> ModelError:
+    async def _lost(self, kind: type[CodeFaultError], message: str) -> AosError:
         """The error for a child that is gone or has to go; the blame page tells what ran last."""
         piece = self.running_piece
-        status = None if code == "AOS211" else await self._status()
+        status = None if kind is EndlessCodeError else await self._status()
         await self.close()
         if status == -signal.SIGKILL:
             return KilledError("the engine was killed", code="AOS213")
         if status is None:
-            return self.fault(code, message, piece)
+            return self.fault(kind.code, message, piece)
         if status == HANG_STATUS and piece:
-            return self.fault("AOS211", "this code does not come to an end", piece)
+            return self.fault(EndlessCodeError.code, "this code does not come to an end", piece)
         told = _status_text(status)
         if not piece:
             message = f"the engine ended outside of the documents' code ({told})"
             return ModelError(message, code="AOS213", hint=_MEMORY_HINT)
-        return self.fault(code, f"{message} ({told})", piece)
+        return self.fault(kind.code, f"{message} ({told})", piece)
 
     async def _status(self) -> int | None:
         """How a child that has closed its output ended; None if it lingers."""

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from aos_protocol.diagnostics import Span
-from aos_protocol.errors import AosError, ModelError
+from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, ModelError, error_from_code
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.child.answers import BeliefUpdate
 from aos_solver.child.engine_child import EngineChild, EngineStart
@@ -33,17 +33,16 @@ HANG_DEADLINE_S = 4.0
 _RANDOM_ACTIONS_S = 2.0
 _SAMPLE_PERIOD_S = 0.02
 _LAST_SAMPLES = 20
-_FOUND = ("AOS210", "AOS211", "AOS214", "AOS215")
 
 
 async def at_its_statement(
-    fault: ModelError, built: BuiltModel, start: EngineStart, commands: Sequence[str]
-) -> ModelError:
+    fault: AosError, built: BuiltModel, start: EngineStart, commands: Sequence[str]
+) -> AosError:
     """The fault at the document place of its statement, or as it is if that cannot be found.
 
     `commands` are what a new child was asked until it failed; without any it failed to start.
     """
-    if fault.code not in _FOUND or not fault.diagnostics:
+    if not isinstance(fault, CodeFaultError) or not fault.diagnostics:
         return fault
     place = fault.diagnostics[0].span
     trace = traced(built.emitted)
@@ -51,18 +50,18 @@ async def at_its_statement(
         return fault
     try:
         slow = await build(trace.emitted, cache_dir=built.cache_dir, kind="unoptimized")
-        span = await _Replay(fault.code, place, trace, slow, start).statement(commands)
+        span = await _Replay(fault, place, trace, slow, start).statement(commands)
     except AosError as error:
         log.info("the statement of a fault was not found: %s", error)
         return fault
     return fault if span is None else _moved(fault, span)
 
 
-def _moved(fault: ModelError, span: Span) -> ModelError:
+def _moved(fault: CodeFaultError, span: Span) -> AosError:
     (told,) = fault.diagnostics
     hint = "Look at this statement"
     diagnostic = msgspec.structs.replace(told, span=span, hint=hint)
-    return ModelError(f"{span}: {told.message}", code=fault.code, hint=hint, diagnostics=(diagnostic,))
+    return error_from_code(fault.code, f"{span}: {told.message}", hint=hint, diagnostics=(diagnostic,))
 
 
 class _Replay:
@@ -70,13 +69,13 @@ class _Replay:
 
     def __init__(
         self,
-        code: str,
+        fault: CodeFaultError,
         place: Span,
         trace: TracedModel,
         built: BuiltModel,
         start: EngineStart,
     ) -> None:
-        self._code = code
+        self._fault = fault
         self._trace = trace
         self._spans = trace.emitted.snippets
         self._piece = self._spans.index(place) + 1
@@ -115,7 +114,7 @@ class _Replay:
 
     @property
     def _deadline_s(self) -> float:
-        return HANG_DEADLINE_S if self._code == "AOS211" else REPLAY_DEADLINE_S
+        return HANG_DEADLINE_S if isinstance(self._fault, EndlessCodeError) else REPLAY_DEADLINE_S
 
     async def _watched(self, child: EngineChild, question: Coroutine[Any, Any, A]) -> A:
         """The answer; what runs until then is looked at."""
@@ -126,9 +125,9 @@ class _Replay:
         return asking.result()
 
     def _span_of(self, error: ModelError) -> Span | None:
-        if error.code != self._code or not error.diagnostics:
+        if error.code != self._fault.code or not error.diagnostics:
             return None
-        if error.code != "AOS211":
+        if not isinstance(error, EndlessCodeError):
             return error.diagnostics[0].span
         # What never ends is the first of the statements that still run in the end: the head of its loop.
         if not self._samples or any(not self._is_number_in_the_piece(number) for number in self._samples):

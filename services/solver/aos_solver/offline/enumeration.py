@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from aos_protocol.errors import ModelError
+from aos_protocol.errors import IntractableError
 from aos_solver.child.answers import Listed
 from aos_solver.child.engine import Engine
 from aos_solver.offline.explicit_model import ExplicitModel, FlatModel, Integers, Ragged, read_flat
@@ -44,7 +44,7 @@ async def enumerate_model(
 ) -> Enumeration:
     """All that can happen from the initial belief on; `discount` None is the documents'.
 
-    ModelError AOS220 if a draw is continuous, or there are more than `max_states` states.
+    IntractableError if a draw is continuous, or there are more than `max_states` states.
     """
     await engine.reset_belief()
     description = engine.description
@@ -53,12 +53,9 @@ async def enumerate_model(
         while listed.listed < listed.known:
             on_progress(listed)
             listed = await engine.list_states()
-    except ModelError as error:
-        if error.code != "AOS220":
-            raise
-        raise ModelError(
+    except IntractableError as error:
+        raise IntractableError(
             f"{description.project} cannot be solved before the mission: {error.message}",
-            code="AOS220",
             hint="Use draws with a finite number of outcomes and counters with a limit, for no more than "
             f"{max_states} states (--states), or plan online (aos plan, aos-up)",
         ) from error

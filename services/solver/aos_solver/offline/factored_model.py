@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import msgspec
 import numpy as np
 
-from aos_protocol.errors import DocumentError, ModelError
+from aos_protocol.errors import DocumentError, IntractableError
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
 from aos_solver.offline.factors import Factor, Table, Variable
 
@@ -90,7 +90,7 @@ class _Code:
         self.variables = variables
         self._sizes = [len(variable.values) for variable in variables]
         if np.prod(self._sizes, dtype=float) > 2**62:
-            raise ModelError("the variables have more than 2^62 combinations", code="AOS220")
+            raise IntractableError("the variables have more than 2^62 combinations")
 
     def encode(self, columns: Mapping[str, Integers], rows: int) -> Integers:
         code = np.zeros(rows, dtype=np.int64)
@@ -116,15 +116,13 @@ def flatten(
 ) -> ExplicitModel:
     """The model over the states that can be reached; `on_progress` is told how many are known.
 
-    DocumentError AOS122 for probabilities that do not sum to 1 where it matters, ModelError AOS220 where
+    DocumentError AOS122 for probabilities that do not sum to 1 where it matters, IntractableError where
     there are more than `most_states`.
     """
     try:
         return _Flattening(model, most_states, on_progress).result()
     except MemoryError:
-        raise ModelError(
-            f"a table of {model.name} is too large once it is written out", code="AOS220"
-        ) from None
+        raise IntractableError(f"a table of {model.name} is too large once it is written out") from None
 
 
 class _Steps(msgspec.Struct, frozen=True):
@@ -219,9 +217,8 @@ class _Flattening:
             known = np.union1d(known, frontier)
             self._on_progress(len(known))
             if len(known) > self._most_states:
-                raise ModelError(
-                    f"{self._model.name} has more than {self._most_states} states that can be reached",
-                    code="AOS220",
+                raise IntractableError(
+                    f"{self._model.name} has more than {self._most_states} states that can be reached"
                 )
         return steps, known
 

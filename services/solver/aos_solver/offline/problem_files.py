@@ -22,7 +22,7 @@ def read_problem(
     most_states: int = MOST_STATES,
     on_progress: Callable[[int], None] = lambda states: None,
 ) -> ExplicitModel:
-    """The model of a file; DocumentError with its mistakes, ModelError AOS220 if it is too large."""
+    """The model of a file; DocumentError with its mistakes, IntractableError if it is too large."""
     try:
         data = path.read_bytes()
     except OSError as error:
