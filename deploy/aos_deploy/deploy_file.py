@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import msgspec
 
+from aos_deploy.adapters import AdapterPlan, read_adapters
 from aos_deploy.typed import nearest, read_structure
 from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
 from aos_protocol.diagnostics import Span, has_errors
@@ -78,8 +79,9 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
 
     `project` is the project that the bundles' documents name, by default the robot's name. `leave_out` names
     skills whose documents (`<skill>.*`) are kept back at the start. `watch` is the folder whose sub-folders
-    the registry takes as bundles, by default `drop` in the run directory. `bind` says which adapter serves
-    which activation path of the abstraction mappings. `runs` is where run directories go.
+    the registry takes as bundles, by default `drop` in the run directory. `adapters` gives adapters a name
+    and options. `bind` says which adapter serves which activation path of the abstraction mappings, `"*"`
+    stands for all others; see docs/deploy-file.md. `runs` is where run directories go.
     """
 
     aos: Literal[1]
@@ -92,7 +94,8 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     mission: MissionPart = MissionPart()
     solver: SolverPart = SolverPart()
     world: str | None = None
-    bind: dict[str, str] = {}
+    adapters: dict[str, Any] = {}
+    bind: dict[str, Any] = {}
     runs: str = "runs"
 
 
@@ -104,6 +107,7 @@ class Deployment(msgspec.Struct, frozen=True, kw_only=True):
     project: str
     bundles: tuple[Path, ...]
     world: Path | None
+    adapters: tuple[AdapterPlan, ...]
     policy: Path | None
     watch: Path | None
     runs: Path
@@ -165,6 +169,7 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         project=file.project or file.robot,
         bundles=bundles,
         world=world,
+        adapters=read_adapters(node, findings, str(world) if world else ""),
         policy=policy,
         watch=folder / file.watch if file.watch is not None else None,
         runs=(folder / file.runs).resolve(),

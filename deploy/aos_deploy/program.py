@@ -9,7 +9,10 @@ from typing import Any
 
 import msgspec
 
+from aos_deploy.adapter_kinds import MODEL
+from aos_deploy.adapters import AdapterPlan
 from aos_deploy.deploy_file import Deployment
+from aos_runtime.children import guarded
 from aos_runtime.service_settings import ServiceSettings
 
 __all__ = ["Program", "cache_dir", "programs_of_deployment", "settings_of"]
@@ -19,19 +22,25 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     """A service to be supervised.
 
     `settings` are what it is told beyond robot, endpoint and run directory. It is ready when its liveliness
-    token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL.
+    token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL. Once it was ready it
+    is started again up to `restarts` times when it ends by itself. With a `command` it is a program of the
+    user's own: it gets its settings in the environment, and is ready when it serves its paths.
     """
 
     name: str
-    module: str
+    module: str = ""
     settings: dict[str, Any] = {}
     start_s: float = 20.0
     stop_s: float = 3.0
+    restarts: int = 0
+    command: tuple[str, ...] = ()
+    folder: str | None = None
 
-    @property
-    def argv(self) -> list[str]:
-        """The command line without the settings file."""
-        return [sys.executable, "-m", self.module]
+    def argv(self, settings: Path) -> list[str]:
+        """The command line."""
+        if self.command:
+            return guarded(list(self.command))
+        return [sys.executable, "-m", self.module, str(settings)]
 
 
 def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
@@ -40,18 +49,39 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
     project = {"project": deployment.project}
     activation = {"activation_timeout_s": file.mission.activation_timeout_s}
     registry = {"watch": str(deployment.watch)} if deployment.watch else {}
-    skills = {"world": str(deployment.world) if deployment.world else "", "bind": file.bind}
+    adapters = [_adapter(deployment, plan) for plan in deployment.adapters if plan.is_process]
     return (
         Program(name="registry", module="aos_registry", settings=registry),
         Program(name="middleware", module="aos_middleware", settings=project | activation),
-        Program(
-            name="skills",
-            module="aos_skills",
-            settings=skills | {"seed": file.solver.seed},
-            start_s=60.0,
-            stop_s=20.0,  # It makes the mission's picture while it stops.
-        ),
+        *adapters,
         Program(name="solver", module="aos_solver", settings=_solver_settings(deployment), stop_s=5.0),
+    )
+
+
+def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:
+    kind, folder = plan.kind, deployment.path.parent
+    options = plan.options
+    if plan.kind_name == MODEL:
+        options = options | {"cache_dir": str(cache_dir())}
+    settings = {
+        "adapter": kind.adapter,
+        "project": deployment.project,
+        "folder": str(folder),
+        "options": options,
+        "bind": {path: msgspec.structs.asdict(binding) for path, binding in plan.bind.items()},
+        "serves_others": plan.serves_others,
+        "elsewhere": plan.elsewhere,
+        "seed": deployment.file.solver.seed,
+    }
+    return Program(
+        name=plan.name,
+        module="aos_runtime.adapters",
+        settings=settings,
+        start_s=kind.start_s,
+        stop_s=kind.stop_s,
+        restarts=kind.restarts,
+        command=tuple(plan.options["command"]) if plan.is_command else (),
+        folder=str(folder) if plan.is_command else None,
     )
 
 

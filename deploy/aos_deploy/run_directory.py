@@ -123,6 +123,10 @@ class RunDirectory:
         except (OSError, msgspec.MsgspecError):
             return None
 
+    def forget_fault(self, service: str) -> None:
+        """Puts the fault aside of a service that is started again: its log has it."""
+        fault_path(self.path, service).unlink(missing_ok=True)
+
     def write_record(self, record: RunRecord) -> None:
         (self.path / "run.json").write_bytes(_pretty(record))
 

@@ -4,8 +4,8 @@ All processes start at once, because a Python interpreter takes longer to start 
 each waits for the bus by itself. Readiness, a liveliness token on the bus, is then awaited in the order of
 the programs. They are stopped in the reverse order, the router last.
 
-A service that ends before it is told to ends the supervision with the fault it left. Restarting one belongs
-into `_watch`, the only place that sees a service end.
+A service that ends before it is told to ends the supervision with the fault it left, unless its program says
+that it may be started again. `_watch` is the only place that sees a service end.
 """
 
 from __future__ import annotations
@@ -26,21 +26,27 @@ from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings
+from aos_runtime.subscription import merged
 
 __all__ = ["ROUTER", "Supervisor", "free_endpoint", "supervised"]
 
 ROUTER = Program(name="router", module="aos_runtime.router", start_s=10.0)
 
-_CANCEL_TIMEOUT_S = 1.0
+_CANCEL_TIMEOUT_S = 2.5
+_RESTART_S = 0.2
+"""Before the first restart of a program; each further one waits twice as long."""
 
 
 class _Running:
-    """A program's process."""
+    """A program's process; `starts` counts how often it was started."""
 
     def __init__(self, program: Program, child: Child) -> None:
         self.program = program
         self.child = child
+        self.starts = 1
         self.ready = asyncio.Event()
+        if program.command:
+            self.ready.set()  # It is awaited by the paths that it serves.
 
 
 @asynccontextmanager
@@ -90,6 +96,7 @@ class Supervisor:
         self._watches: list[asyncio.Task[None]] = []
         self._is_stopping = False
         self._bus: Bus | None = None
+        self._serving: set[str] = set()
         self._presence: asyncio.Task[None] | None = None
 
     @property
@@ -139,6 +146,12 @@ class Supervisor:
         await asyncio.wait(self._watches, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
 
     async def _spawn(self, program: Program) -> None:
+        running = _Running(program, await self._process(program))
+        self._running[program.name] = running
+        self._changed(program.name, "starting")
+        self._watches.append(self._tasks.create_task(self._watch(running)))
+
+    async def _process(self, program: Program) -> Child:
         base = ServiceSettings(
             robot=self._base.robot,
             service=program.name,
@@ -146,28 +159,52 @@ class Supervisor:
             run_dir=self._base.run_dir,
         )
         settings = self._run.write_settings(program.name, settings_of(program, base))
+        told = {
+            "AOS_SETTINGS": str(settings),
+            "AOS_ENDPOINT": base.endpoint,
+            "AOS_ROBOT": base.robot,
+            "AOS_ADAPTER": program.name,
+        }
         with self._run.log(program.name).open("ab") as log:
-            child = await Child.start(
-                [*program.argv, str(settings)], name=program.name, stdout=log, stderr=log
+            return await Child.start(
+                program.argv(settings),
+                name=program.name,
+                cwd=program.folder,
+                env=told if program.command else None,
+                stdout=log,
+                stderr=log,
             )
-        self._running[program.name] = running = _Running(program, child)
-        self._changed(program.name, "starting")
-        self._watches.append(self._tasks.create_task(self._watch(running)))
 
     async def _follow_presence(self, bus: Bus) -> None:
-        async with bus.presence(self.keys.all_live) as changes:
+        keys = self.keys
+        async with merged(bus.presence(keys.all_live), bus.presence(keys.all_serve)) as changes:
             async for key, is_alive in changes:
-                running = self._running.get(self.keys.service_of(key))
+                serving = keys.serving_of(key)
+                if serving is not None:
+                    (self._serving.add if is_alive else self._serving.discard)(serving.path)
+                    continue
+                running = self._running.get(keys.service_of(key))
                 if running is not None and is_alive:
                     running.ready.set()
                     self._changed(running.program.name, "ready")
 
     async def _watch(self, running: _Running) -> None:
-        """Raises when the process ends though nobody stopped it."""
-        status = await running.child.wait()
-        if not self._is_stopping:
-            self._changed(running.program.name, "ended", _status_text(status))
-            raise self._end_of(running, status)
+        """Raises when the process ends though nobody stopped it, and may not be started again."""
+        program = running.program
+        while True:
+            status = await running.child.wait()
+            if self._is_stopping:
+                return
+            self._changed(program.name, "ended", _status_text(status))
+            if not running.ready.is_set() or running.starts > program.restarts:
+                raise self._end_of(running, status)
+            await asyncio.sleep(_RESTART_S * 2 ** (running.starts - 1))
+            if self._is_stopping:
+                return
+            running.starts += 1
+            self._run.forget_fault(program.name)
+            running.child = await self._process(program)
+            self._changed(program.name, "starting", f"for the {running.starts}. time")
 
     def _end_of(self, running: _Running, status: int) -> AosError:
         name = running.program.name
@@ -218,15 +255,16 @@ class Supervisor:
             self._changed(name, "ended")
 
     async def _cancel_skills(self) -> None:
-        if self._bus is None or "skills" not in self._running:
+        """Nobody moves the robot, or whoever does not answer ends in a moment anyway."""
+        if self._bus is None:
             return
-        try:
-            await self._bus.ask(
-                self.keys.cancel, Cancel("aos-up stops"), Cancelled, timeout_s=_CANCEL_TIMEOUT_S
+        questions = [
+            self._bus.ask(
+                self.keys.cancel(path), Cancel("aos-up stops"), Cancelled, timeout_s=_CANCEL_TIMEOUT_S
             )
-        except AosError:
-            # Nobody moves the robot, or whoever does ends in a moment anyway.
-            return
+            for path in self._serving
+        ]
+        await asyncio.gather(*questions, return_exceptions=True)
 
     def _changed(self, service: str, state: str, detail: str = "") -> None:
         after_s = self._clock.monotonic_s() - self._started_s

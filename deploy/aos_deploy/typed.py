@@ -14,7 +14,7 @@ from msgspec import UNSET
 from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlNode, YamlScalar
 from aos_protocol.diagnostics import Span
 
-__all__ = ["nearest", "read_structure"]
+__all__ = ["nearest", "plain_value", "read_structure"]
 
 S = TypeVar("S", bound=msgspec.Struct)
 
@@ -26,7 +26,8 @@ def read_structure(node: YamlMap, kind: type[S], findings: Findings, prefix: str
 
     What is wrong is found, and left at its default, so that the rest can be checked on; None where a required
     value is missing or wrong. Understands scalars with `msgspec.Meta` limits, literals, optional values,
-    structures, and tuples and mappings of such. `prefix` is the dotted path of the node, for the messages.
+    structures, tuples and mappings of such, and `Any`. `prefix` is the dotted path of the node, for the
+    messages.
     """
     fields = {field.name: field for field in msgspec.structs.fields(kind)}
     hints = typing.get_type_hints(kind, include_extras=True)
@@ -53,8 +54,19 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return f"Did you mean {close[0]}?" if close else f"Known are {', '.join(known)}"
 
 
+def plain_value(node: YamlNode) -> Any:
+    """What a node holds, as lists, dicts and scalars."""
+    if isinstance(node, YamlMap):
+        return {key: plain_value(item) for key, item in node.entries.items()}
+    if isinstance(node, YamlList):
+        return [plain_value(item) for item in node.items]
+    return node.value
+
+
 def _read(node: YamlNode, kind: Any, findings: Findings, path: str) -> Any:
     """The value, or UNSET where it is wrong as a whole; wrong items of a collection are left out."""
+    if kind is Any:
+        return plain_value(node)
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin in (types.UnionType, typing.Union):
         if isinstance(node, YamlScalar) and node.value is None:

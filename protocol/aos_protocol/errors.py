@@ -106,6 +106,9 @@ CODES: dict[str, str] = {
     "AOS507": "the skill was cancelled",
     "AOS508": "a message of the robot cannot be read",
     "AOS509": "the robot defines an interface differently",
+    "AOS510": "the skill failed",
+    "AOS511": "two adapters serve one path",
+    "AOS512": "a skill may still be moving",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
     "AOS603": "another protocol version",
@@ -121,6 +124,7 @@ CODES: dict[str, str] = {
     "AOS804": "a service ended unexpectedly",
     "AOS805": "something this machine lacks",
     "AOS806": "an unknown ROS interface",
+    "AOS807": "a path that nobody serves",
 }
 """Every code with its meaning; docs/errors.md is made from this table."""
 

@@ -10,8 +10,10 @@
     aos/<robot>/bundle/report       stream  what became of a bundle                              BundleReport
     aos/<robot>/activate/<skill>    query   run a grounded action                         Activate -> Outcome
     aos/<robot>/middleware/ready    stream and query: which mappings run         MappingQuery -> MappingState
+    aos/<robot>/serve/<adapter>/<version>/<instance>/<path>   token   an adapter answers calls of the path
     aos/<robot>/call/<path>         query   the adapter runs a skill's code          SkillCall -> SkillResult
-    aos/<robot>/skill/cancel        query   stop whatever moves                           Cancel -> Cancelled
+    aos/<robot>/cancel/<path>       query   stop what runs on the path                    Cancel -> Cancelled
+    aos/<robot>/progress/<path>     stream  how far a call is                                   SkillProgress
     aos/<robot>/topic/<path>        stream  raw data of the robot                                TopicMessage
     aos/<robot>/model/check         query   can the solver use these documents       CheckModel -> ModelCheck
     aos/<robot>/mission/start       query   start the mission                    StartMission -> MissionState
@@ -26,13 +28,24 @@ paths are what a ROS name may be.
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 from aos_protocol.errors import BusError
 
-__all__ = ["Keys"]
+__all__ = ["Keys", "Serving"]
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_VERSION = re.compile(r"[A-Za-z0-9._+-]{1,64}")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
+
+
+class Serving(NamedTuple):
+    """What a token of an adapter says; `instance` tells two processes of one adapter apart."""
+
+    adapter: str
+    version: str
+    instance: str
+    path: str
 
 
 class Keys:
@@ -91,9 +104,34 @@ class Keys:
     def call(self, path: str) -> str:
         return f"{self._root}/call/{_path(path)}"
 
+    def cancel(self, path: str) -> str:
+        return f"{self._root}/cancel/{_path(path)}"
+
+    def progress(self, path: str) -> str:
+        return f"{self._root}/progress/{_path(path)}"
+
     @property
-    def cancel(self) -> str:
-        return f"{self._root}/skill/cancel"
+    def all_progress(self) -> str:
+        return f"{self._root}/progress/**"
+
+    def serve(self, serving: Serving) -> str:
+        adapter = _checked(_NAME, serving.adapter, "adapter name")
+        version = _checked(_VERSION, serving.version, "version")
+        instance = _checked(_NAME, serving.instance, "instance name")
+        return f"{self._root}/serve/{adapter}/{version}/{instance}/{_path(serving.path)}"
+
+    @property
+    def all_serve(self) -> str:
+        return f"{self._root}/serve/**"
+
+    def serving_of(self, serve_key: str) -> Serving | None:
+        """What a token says; None for one that says nothing."""
+        head = f"{self._root}/serve/"
+        parts = serve_key.removeprefix(head).split("/", 3)
+        if len(parts) != 4 or not serve_key.startswith(head):
+            return None
+        adapter, version, instance, path = parts
+        return Serving(adapter, version, instance, "/" + path)
 
     def topic(self, path: str) -> str:
         return f"{self._root}/topic/{_path(path)}"

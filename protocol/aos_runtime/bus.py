@@ -200,6 +200,17 @@ class Bus:
         self._tokens[key] = self._session.liveliness().declare_token(key)
         await self._wait_for_router()
 
+    def withdraw(self, key: str) -> None:
+        """Ends the presence of `key`, if it was announced."""
+        token = self._tokens.pop(key, None)
+        if token is not None and not self._is_closed:
+            token.undeclare()
+
+    @property
+    def instance(self) -> str:
+        """A name that no other session on the bus has."""
+        return str(self._session.zid())
+
     def presence(self, key_expression: str) -> Subscription[tuple[str, bool]]:
         """Which keys are present: (key, True) for each that is there or comes, (key, False) when it goes.
 

@@ -92,12 +92,12 @@ class Adapter:
 
         await self._bus.answer(self._keys.call(path), SkillCall, run)
 
-    async def serve_cancel(self) -> None:
+    async def serve_cancel(self, path: str) -> None:
         async def cancel(request: Cancel, _: str) -> Cancelled:
             self.cancelled.append(request.reason)
             return Cancelled()
 
-        await self._bus.answer(self._keys.cancel, Cancel, cancel)
+        await self._bus.answer(self._keys.cancel(path), Cancel, cancel)
 
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
         self._sent[topic] = self._sent.get(topic, 0) + 1

@@ -102,7 +102,7 @@ async def test_an_adapters_error_becomes_a_defined_outcome(system: System, code:
 
 async def test_a_skill_that_does_not_end_is_timed_out_and_stopped(system: System) -> None:
     await system.adapter.serve("/sense", hang)
-    await system.adapter.serve_cancel()
+    await system.adapter.serve_cancel("/sense")
     outcome = await system.activate("sense")
     (call,) = system.adapter.calls
     assert call.deadline_s == 0.5

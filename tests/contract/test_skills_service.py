@@ -15,14 +15,14 @@ import pytest_asyncio
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import ActivationId, Cancel, Cancelled, SkillCall, SkillResult, TopicMessage
+from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
-from aos_skills.settings import Settings
 
 pytestmark = pytest.mark.physics
 
 PATIENCE_S = 30.0
-ALL_PATHS = {"/navigate": "pybullet", "/pick": "pybullet", "/sense": "pybullet", "/serve": "pybullet"}
+ALL_PATHS = {path: Binding() for path in ("/navigate", "/pick", "/sense", "/serve")}
 FAR_AWAY = {"x": 4.0, "y": 0.0, "yaw": 0.0}
 
 
@@ -39,23 +39,25 @@ class Robot:
 
     async def launch(self, **settings: Any) -> Child:
         """Starts the process."""
-        values = Settings(
+        values = AdapterSettings(
             robot=self.keys.robot,
-            service="skills",
+            service="pybullet",
             endpoint=self.endpoint,
             run_dir=str(self.run_dir),
-            **({"bind": ALL_PATHS, "world": str(self.world)} | settings),
+            adapter="aos_skills.pybullet.adapter:PybulletAdapter",
+            **({"bind": ALL_PATHS, "options": {"world": str(self.world)}} | settings),
         )
-        path = self.run_dir / "skills.json"
+        path = self.run_dir / "pybullet.json"
         path.write_bytes(msgspec.json.encode(values))
-        with (self.run_dir / "skills.log").open("ab") as log:
-            self.child = await Child.start([sys.executable, "-m", "aos_skills", str(path)], stderr=log)
+        with (self.run_dir / "pybullet.log").open("ab") as log:
+            argv = [sys.executable, "-m", "aos_runtime.adapters", str(path)]
+            self.child = await Child.start(argv, stderr=log)
         return self.child
 
     async def start(self) -> None:
         """Starts the process; returns when it answers."""
         await self.launch()
-        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.live("skills")) as present:
+        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.live("pybullet")) as present:
             async for _, is_alive in present:
                 if is_alive:
                     return
@@ -120,7 +122,9 @@ async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> N
     refused = await robot.refusal("/pick", 2)
     assert refused.code == "AOS502"
     assert "/navigate is running" in str(refused)
-    answer = await robot.bus.ask(robot.keys.cancel, Cancel("enough"), Cancelled, timeout_s=PATIENCE_S)
+    answer = await robot.bus.ask(
+        robot.keys.cancel("/pick"), Cancel("enough"), Cancelled, timeout_s=PATIENCE_S
+    )
     assert answer.ids == ("m-1-1",)
     assert (await driving).code == "AOS507"
     # It can move again, and what was refused never ran.
@@ -165,10 +169,9 @@ async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"bind": {"/pick": "pybulet"}}, "unknown adapter, pybulet. Did you mean pybullet?"),
-        ({"bind": {"/dance": "pybullet"}}, "the adapter pybullet has no skill at /dance"),
-        ({"world": ""}, "the adapter pybullet needs a world file"),
-        ({"world": "nowhere.yaml"}, "nowhere.yaml: cannot be read"),
+        ({"bind": {"/dance": Binding()}}, "the adapter pybullet has no skill at /dance"),
+        ({"options": {}}, "the adapter pybullet needs a world file"),
+        ({"options": {"world": "nowhere.yaml"}}, "nowhere.yaml: cannot be read"),
     ],
 )
 async def test_what_cannot_be_bound_ends_the_service_with_one_message(
@@ -177,7 +180,7 @@ async def test_what_cannot_be_bound_ends_the_service_with_one_message(
     child = await robot.launch(**settings)
     async with asyncio.timeout(PATIENCE_S):
         assert await child.wait() == 1
-    assert message in (robot.run_dir / "skills.log").read_text()
+    assert message in (robot.run_dir / "pybullet.log").read_text()
 
 
 async def _first(messages: Any, count: int) -> AsyncIterator[Any]:

@@ -151,7 +151,7 @@ def test_a_mission_ends_in_a_defined_way(mission: Mission) -> None:
 def test_services_start_in_order_and_all_get_ready(mission: Mission) -> None:
     services = [event for event in mission.up.events if event["event"] == "service"]
     order = [event["service"] for event in services if event["state"] == "starting"]
-    assert order == ["router", "registry", "middleware", "skills", "solver"]
+    assert order == ["router", "registry", "middleware", "pybullet", "solver"]
     assert {event["service"] for event in services if event["state"] == "ready"} == set(order)
     assert [event["service"] for event in services if event["state"] == "ended"] == order[::-1]
 
@@ -162,7 +162,7 @@ def test_the_run_directory_keeps_the_mission(mission: Mission) -> None:
     assert summary["exit_code"] == mission.status
     assert summary["actions"] == [event["action"] for event in decided if "outcome" in event]
     assert 0 < summary["services_ready_s"] < summary["first_decision_s"] < summary["duration_s"]
-    for service in ("router", "registry", "middleware", "skills", "solver"):
+    for service in ("router", "registry", "middleware", "pybullet", "solver"):
         assert (mission.run / "logs" / f"{service}.log").stat().st_size > 0
     assert list((mission.run / "faults").iterdir()) == []
 

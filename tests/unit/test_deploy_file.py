@@ -5,12 +5,14 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file
 from aos_deploy.mission_run import files_of_bundle
 from aos_deploy.program import programs_of_deployment
 from aos_protocol.errors import DeployError
+from aos_runtime.adapters import AdapterSettings, Binding
 
 HEAD = "aos: 1\nrobot: rover\nbundles: [bundle]\n"
 
@@ -80,6 +82,7 @@ runs: ../elsewhere
     assert (file.mission.goal_probability, file.mission.step_limit) == (1.0, 7)
     assert (file.solver.time_s, file.solver.horizon, file.solver.seed) == (0.5, 12, 16)
     assert (deployment.world, file.bind) == (folder / "room.yaml", {"/drive": "pybullet"})
+    assert [adapter.name for adapter in deployment.adapters] == ["pybullet"]
     assert deployment.runs == folder.parent / "elsewhere"
 
 
@@ -98,7 +101,7 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
     [
         ("bundels: [x]", "4:1 AOS102 unknown key bundels. Did you mean bundles?"),
         ("solver:\n  simulation: 5", "5:3 AOS102 unknown key solver.simulation. Did you mean simulations?"),
-        ("zebra: 1", "4:1 AOS102 unknown key zebra. Known are aos, bind, bundles, bus"),
+        ("zebra: 1", "4:1 AOS102 unknown key zebra. Known are adapters, aos, bind, bundles"),
         ("solver: {seed: many}", "4:16 AOS106 solver.seed is not a whole number"),
         ("solver: {seed: -1}", "4:16 AOS106 solver.seed is not a whole number >= 0"),
         ("solver: {seed: true}", "4:16 AOS106 solver.seed is not a whole number"),
@@ -111,7 +114,23 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ("mission: {goal_probability: 1.5}", "4:29 AOS106 mission.goal_probability is not a number <= 1.0"),
         ("leave_out: look", "4:12 AOS106 leave_out is not a list"),
         ("leave_out: [drive, loook]", "4:20 AOS110 no bundle has a skill loook. Did you mean look?"),
-        ("bind: {/drive: 3}", "4:16 AOS106 bind./drive is not a text"),
+        ("bind: {/drive: 3}", "4:16 AOS106 bind./drive is not an adapter's name, and no mapping"),
+        (
+            "bind: {/drive: pybulet}",
+            "4:16 AOS110 bind./drive names an unknown adapter, pybulet. Did you mean p",
+        ),
+        ("bind: {'/dr*': pybullet}", "4:8 AOS106 '/dr*' is not an activation path"),
+        ("bind: {/drive: {arm: go}}", "4:17 AOS110 bind./drive names an unknown adapter, arm"),
+        ("bind: {/drive: {fields: {}}}", "4:16 AOS106 bind./drive does not name one adapter"),
+        (
+            "bind: {/drive: {pybullet: /go, fields: {x: 'goal.'}}}",
+            "4:44 AOS106 bind./drive.fields.x is no expression",
+        ),
+        ("adapters: {arm: {port: 1}}", "4:12 AOS106 adapters.arm has no one kind but port"),
+        ("adapters: {arm: {command: ./arm}}", "4:12 AOS106 adapters.arm.command is not a list of texts"),
+        ("adapters: {solver: external}", "4:12 AOS126 'solver' is no name for an adapter"),
+        ("adapters: {sim: {pybullet: a.yaml, wrld: b}}", "4:36 AOS102 unknown key adapters.sim.wrld"),
+        ("bind: {/drive: command}", "1:1 AOS105 the adapter command has no command"),
         ("world: nowhere.yaml", "4:8 AOS101 there is no world file"),
         ("bus: {listen: tcp/0.0.0.0:7447}", "4:15 AOS106 'tcp/0.0.0.0:7447' is not an endpoint of this"),
         ("robot: twice", "4:1 AOS103 the key robot is given twice. First in line 2"),
@@ -169,15 +188,47 @@ def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.
     deployment = read(folder, f"{HEAD}watch: drop\nworld: room.yaml\nbind: {{/drive: pybullet}}\n")
     programs = {program.name: program for program in programs_of_deployment(deployment)}
 
-    assert list(programs) == ["registry", "middleware", "skills", "solver"]
+    assert list(programs) == ["registry", "middleware", "pybullet", "solver"]
     assert programs["registry"].settings == {"watch": str(folder / "drop")}
     assert programs["middleware"].settings == {"project": "rover", "activation_timeout_s": 120.0}
-    assert programs["skills"].settings == {
-        "world": str(folder / "room.yaml"),
-        "bind": {"/drive": "pybullet"},
-        "seed": 1,
-    }
+    adapter = msgspec.convert(
+        programs["pybullet"].settings | {"robot": "", "service": "", "endpoint": "", "run_dir": ""},
+        AdapterSettings,
+    )
+    assert adapter.adapter == "aos_skills.pybullet.adapter:PybulletAdapter"
+    assert adapter.options == {"world": str(folder / "room.yaml")}
+    assert adapter.bind == {"/drive": Binding()}
     solver = programs["solver"].settings
     assert solver["cache_dir"] == str(folder / "cache")
     assert "time_s" not in solver
     assert solver["goal_probability"] == 0.9
+
+
+def test_adapters_get_their_paths_their_options_and_what_others_serve(folder: Path) -> None:
+    deployment = read(
+        folder,
+        HEAD
+        + """\
+adapters:
+  arm: {command: [./arm, --fast]}
+  base: external
+bind:
+  /pick: {arm: /grasp, fields: {x: goal.x, speed: 2}, result: {success: "result == 'true'"}}
+  drive: base
+  "*": pybullet
+""",
+    )
+    arm, base, world = deployment.adapters
+    assert arm.bind == {
+        "/pick": Binding(
+            target="/grasp",
+            fields={"x": "goal.x", "speed": "2"},
+            result={"success": "result == 'true'"},
+        )
+    }
+    assert (arm.is_command, arm.options) == (True, {"command": ["./arm", "--fast"]})
+    assert (base.name, base.is_process, base.bind) == ("base", False, {"/drive": Binding()})
+    assert (world.name, world.serves_others, world.elsewhere) == ("pybullet", True, ("/pick", "/drive"))
+    programs = {program.name: program for program in programs_of_deployment(deployment)}
+    assert "base" not in programs
+    assert programs["arm"].argv(Path("settings.json"))[-2:] == ["./arm", "--fast"]

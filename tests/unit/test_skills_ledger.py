@@ -8,7 +8,7 @@ import pytest
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import ActivationId, SkillCall, SkillResult
-from aos_skills.ledger import Ledger
+from aos_runtime.adapters.ledger import Ledger
 
 ID = ActivationId("mission", 2, 1)
 CALL = SkillCall(ID, "/pick", {}, 10.0)
@@ -46,3 +46,13 @@ def test_a_stale_epoch_is_refused(path: Path) -> None:
     with pytest.raises(SkillError) as error:
         ledger.stored(ActivationId("mission", 1, 7))
     assert error.value.code == "AOS506"
+
+
+def test_a_repeated_activation_that_failed_fails_again_and_does_not_move(path: Path) -> None:
+    ledger = Ledger(path)
+    ledger.start(CALL)
+    ledger.fail(ID, SkillError("gripper jammed", code="AOS510"))
+    ledger.close()
+    with pytest.raises(SkillError, match="gripper jammed") as error:
+        Ledger(path).stored(ID)
+    assert error.value.code == "AOS510"

@@ -37,6 +37,9 @@ def up(
     runs: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Where the run directory goes", file_okay=False)
     ] = None,
+    model: Annotated[
+        bool, typer.Option("--model", help="Every skill is played by its own document; no robot is needed")
+    ] = False,
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
 ) -> None:
@@ -49,6 +52,7 @@ def up(
     # For --help, and for a word about a wrong option, none of this is needed.
     import asyncio
 
+    from aos_deploy.adapters import played_by_model
     from aos_deploy.deploy_file import check_endpoint, read_deploy_file
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
     from aos_deploy.views import make_view
@@ -64,6 +68,8 @@ def up(
     deployment = msgspec.structs.replace(
         deployment, file=file, runs=runs.resolve() if runs is not None else deployment.runs
     )
+    if model:
+        deployment = msgspec.structs.replace(deployment, adapters=played_by_model())
     title = f"{file.robot} · {deploy.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
     mission = MissionRun(deployment, view, SystemClock())

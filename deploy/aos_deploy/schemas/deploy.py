@@ -22,5 +22,15 @@ def deploy_schema() -> dict[str, Any]:
         part["description"] = " ".join(part["description"].split())
     parts["SolverPart"]["not"] = {"required": ["simulations", "time_s"]}
     parts["DeployFile"]["properties"]["bundles"]["minItems"] = 1
+    properties = parts["DeployFile"]["properties"]
+    expressions = {"type": "object", "additionalProperties": {"type": ["string", "number", "boolean"]}}
+    bound = {
+        "type": "object",
+        "minProperties": 1,
+        "properties": {"fields": expressions, "result": expressions},
+    }
+    properties["bind"]["additionalProperties"] = {"anyOf": [{"type": "string"}, bound]}
+    adapter = {"anyOf": [{"type": "string"}, {"type": "object", "minProperties": 1}]}
+    properties["adapters"]["additionalProperties"] = adapter
     head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "AOS deploy file"}
     return {**head, **schema}

@@ -47,6 +47,7 @@ from aos_protocol.messages.skills import (
     MappingState,
     Outcome,
     SkillCall,
+    SkillProgress,
     SkillResult,
     TopicMessage,
 )
@@ -85,6 +86,7 @@ __all__ = [
     "Revisions",
     "RevisionsQuery",
     "SkillCall",
+    "SkillProgress",
     "SkillResult",
     "StartMission",
     "TopicMessage",

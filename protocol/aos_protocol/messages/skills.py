@@ -15,6 +15,7 @@ __all__ = [
     "MappingState",
     "Outcome",
     "SkillCall",
+    "SkillProgress",
     "SkillResult",
     "TopicMessage",
 ]
@@ -82,34 +83,61 @@ class MappingState(Message, frozen=True):
 
 
 class SkillCall(Message, frozen=True):
-    """The middleware's request to an adapter. A repeat of an id returns what the first call returned."""
+    """The middleware's request to an adapter. A repeat of an id returns what the first call returned.
+
+    `fields` are what the abstraction mapping makes of the action. The action itself, `skill` with its
+    `parameters`, is there for adapters that go by the documents, and empty in a call by hand.
+    """
 
     id: ActivationId
     path: str
     fields: dict[str, Any]
     deadline_s: float
+    skill: str = ""
+    parameters: dict[str, Any] = {}
 
 
 class SkillResult(Message, frozen=True):
-    """An adapter's answer. `published` counts, by topic path, the messages sent on it since the adapter
-    started: whoever listens has seen everything once it has seen that `TopicMessage.number`.
+    """An adapter's answer: the skill has succeeded. Whatever else happened is an error reply.
+
+    `published` counts, by topic path, the messages sent on it since the adapter started: whoever listens has
+    seen everything once it has seen that `TopicMessage.number`. An adapter that knows the observation itself
+    gives its `response` with the `numbers` beside it; then the mapping's rules do not run.
     """
 
     id: ActivationId
     fields: dict[str, Any]
     published: dict[str, int] = {}
+    response: str = ""
+    numbers: dict[str, Any] = {}
 
 
 class Cancel(Message, frozen=True):
-    """Stop whatever moves."""
+    """Stop the call of this id; without one, whatever runs. Answered when it has stopped.
+
+    A call that has ended already, or another one, is left alone.
+    """
 
     reason: str = ""
+    id: ActivationId | None = None
 
 
 class Cancelled(Message, frozen=True):
     """The activations that were stopped, as text."""
 
     ids: tuple[str, ...] = ()
+
+
+class SkillProgress(Message, frozen=True):
+    """How far a call is: `state` is `accepted`, `executing`, `cancelling`, `succeeded`, `failed`,
+    `timed_out` or `cancelled`; `progress` goes from 0 to 1; `text` is for people.
+    """
+
+    id: ActivationId
+    path: str
+    state: str
+    progress: float = 0.0
+    text: str = ""
 
 
 class TopicMessage(Message, frozen=True):

@@ -39,7 +39,7 @@ CATCH_UP_S = 0.5
 """How long to wait, after the call, for topic messages that were sent during it."""
 
 _REPLY_GRACE_S = 0.5
-_CANCEL_S = 1.0
+_CANCEL_S = 3.0
 SURELY_NOT_STARTED_S = 0.2
 """An adapter that is not there is known at once; one that is lost later may have moved something."""
 
@@ -128,6 +128,8 @@ class _Activation:
         constants = self._evaluator.emitted.constants
         fields = await self._evaluator.begin(*self._low_level.arguments(self._request, constants))
         result = await self._listening_call(fields)
+        if result.response:
+            return _Observation(result.response, numbers=result.numbers)
         observed = await self._evaluator.finish(result.fields)
         if observed.response is None:
             raise self._no_response(observed.local_variables)
@@ -167,7 +169,8 @@ class _Activation:
         limit_s = max(self._ends_at_s - started_s, 0.0)
         if self._mapping.activation.max_duration_s is not None:
             limit_s = min(limit_s, self._mapping.activation.max_duration_s)
-        call = SkillCall(self._request.id, path, fields, limit_s)
+        request = self._request
+        call = SkillCall(request.id, path, fields, limit_s, request.skill, request.parameters)
         try:
             return await self._bus.ask(
                 self._keys.call(path), call, SkillResult, timeout_s=limit_s + _REPLY_GRACE_S
@@ -186,7 +189,12 @@ class _Activation:
     async def _cancel(self, reason: str) -> None:
         """Has whatever moves stopped, as far as somebody answers."""
         try:
-            await self._bus.ask(self._keys.cancel, Cancel(reason), Cancelled, timeout_s=_CANCEL_S)
+            await self._bus.ask(
+                self._keys.cancel(self._mapping.activation.path),
+                Cancel(reason, self._request.id),
+                Cancelled,
+                timeout_s=_CANCEL_S,
+            )
         except AosError as error:
             _log.warning("%s, and stopping it failed: %s", reason, error)
 

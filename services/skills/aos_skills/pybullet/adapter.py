@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import json
-import threading
-import time
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
+from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from aos_protocol.errors import SkillError
-from aos_protocol.messages import ActivationId
-from aos_skills.adapter import Publish
+from aos_protocol.errors import DeployError, SkillError
+from aos_runtime.adapters import Call, Host
 from aos_skills.pybullet.parts.scene import STEP_S
 from aos_skills.pybullet.parts.world import World
-from aos_skills.pybullet.world_file import WorldFile
+from aos_skills.pybullet.world_file import WorldFile, load_world_file
 
 __all__ = ["PybulletAdapter"]
 
@@ -25,38 +22,47 @@ PUBLISH_EVERY_S = 0.05
 class PybulletAdapter:
     """Everything of pybullet happens on one thread, first of all the building of the world."""
 
-    def __init__(self, world: WorldFile, run_dir: Path, seed: int, publish: Publish) -> None:
-        self.paths = frozenset(world.kind.skills)
-        self._skills = world.kind.skills
-        self._run_dir = run_dir
-        self._publish = publish
+    version = "1"
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._run_dir = host.run_dir
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="world")
-        self._is_cancelled = threading.Event()
-        self._deadline_s = float("inf")
         self._next_publication_s = 0.0
+        self._call: Call | None = None
+        self._skills: Mapping[str, Any] = {}
         self._world: World
-        self._building = self._thread.submit(self._build, world, seed)
+        self._building: Future[None] | None = None
 
-    async def prepare(self) -> None:
+    async def start(self) -> None:
+        """Builds the world, which takes a second. `options` name its file under `world`."""
+        named = self._host.options.get("world")
+        if not named:
+            raise DeployError("the adapter pybullet needs a world file", hint="Name it under `world:`")
+        world = load_world_file(self._host.folder / named)
+        self._skills = world.kind.skills
+        paths = self._host.chosen(self._skills)
+        self._building = self._thread.submit(self._build, world, self._host.seed)
         await asyncio.wrap_future(self._building)
+        await self._host.serve(*paths)
 
-    async def call(
-        self, id: ActivationId, path: str, fields: dict[str, Any], deadline_s: float
-    ) -> dict[str, Any]:
-        self._is_cancelled.clear()
-        self._deadline_s = time.monotonic() + deadline_s
-        answer: dict[str, Any] = await self._on_thread(self._run, id, path, fields)
+    async def call(self, call: Call) -> dict[str, Any]:
+        """The thread looks at every simulation step whether it has to stop."""
+        self._call = call
+        running = asyncio.ensure_future(self._on_thread(self._run, call))
+        try:
+            answer: dict[str, Any] = await asyncio.shield(running)
+        except asyncio.CancelledError:
+            await asyncio.wait({running})
+            raise
         return answer
 
-    def cancel(self) -> None:
-        self._is_cancelled.set()
-
     async def close(self) -> None:
-        """Stops what moves and leaves the animated picture of the mission."""
-        self.cancel()
-        await asyncio.wait([asyncio.wrap_future(self._building)])
-        if self._building.exception() is None:
-            await self._on_thread(self._finish)
+        """Leaves the animated picture of the mission."""
+        if self._building is not None:
+            await asyncio.wait([asyncio.wrap_future(self._building)])
+            if self._building.exception() is None:
+                await self._on_thread(self._finish)
         self._thread.shutdown()
 
     async def _on_thread(self, work: Any, *arguments: Any) -> Any:
@@ -68,29 +74,27 @@ class PybulletAdapter:
         self._world = world.build(seed)
         self._world.scene.watchers += [self._look_for_an_end, self._world.camera.watch, self._publish_in_time]
 
-    def _run(self, id: ActivationId, path: str, fields: dict[str, Any]) -> dict[str, Any]:
+    def _run(self, call: Call) -> dict[str, Any]:
         try:
             self._world.begin()
-            answer = self._skills[path](self._world, fields)
+            answer: dict[str, Any] = self._skills[call.target](self._world, call.fields)
         except (KeyError, TypeError, ValueError) as error:
             raise SkillError(
-                f"{path} cannot use the fields {fields}: {error!r}",
+                f"{call.target} cannot use the fields {call.fields}: {error!r}",
                 code="AOS502",
                 hint="Look at the parameters that the abstraction mapping assigns",
             ) from error
         finally:
             self._world.stop()
-            self._record(id, path)
+            self._record(call)
         self._publish_sensors()
-        self._world.camera.save_picture(self._run_dir / "pictures" / f"step-{id.step:03d}.png")
+        self._world.camera.save_picture(self._run_dir / "pictures" / f"step-{call.id.step:03d}.png")
         return answer
 
     def _look_for_an_end(self) -> None:
         """After every simulation step."""
-        if self._is_cancelled.is_set():
+        if self._call is not None and self._call.is_cancelled:
             raise SkillError("the skill was cancelled", code="AOS507")
-        if time.monotonic() > self._deadline_s:
-            raise SkillError("the skill took longer than it may", code="AOS503")
 
     def _publish_in_time(self) -> None:
         if self._world.scene.time_s >= self._next_publication_s:
@@ -99,13 +103,13 @@ class PybulletAdapter:
 
     def _publish_sensors(self) -> None:
         for topic, fields in self._world.sensors().items():
-            self._publish(topic, fields)
+            self._host.publish(topic, fields)
 
-    def _record(self, id: ActivationId, path: str) -> None:
+    def _record(self, call: Call) -> None:
         """The truth about the world, for reports; the robot is not told."""
         truth = {
-            "step": id.step,
-            "path": path,
+            "step": call.id.step,
+            "path": call.target,
             "time_s": round(self._world.scene.time_s, 3),
             **self._world.truth(),
             "drawn_faults": list(self._world.faults.drawn),

@@ -370,7 +370,7 @@ class Engine:
         await self._start_child()
         assert self._child is not None
         try:
-            for command in self._restoration(self._changes):
+            for command in [*self._restoration(self._changes), *self._world]:
                 await self._child.ask(command, _Done, ANSWER_DEADLINE_S)
         except AosError:
             await self._drop_child()

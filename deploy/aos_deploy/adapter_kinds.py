@@ -1,0 +1,58 @@
+"""The kinds of adapters that a deploy file can name, one line each; installed packages can add more.
+
+A package adds a kind by an entry point of the group `aos.adapters`, whose object is an adapter's class.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.metadata import entry_points
+
+import msgspec
+
+__all__ = ["COMMAND", "EXTERNAL", "MODEL", "Kind", "adapter_kinds"]
+
+
+class Kind(msgspec.Struct, frozen=True, kw_only=True):
+    """How an adapter of this kind is started.
+
+    `adapter` is `module:Class`, empty where no adapter class of Python runs. The value of the kind's own word
+    in the deploy file becomes the option `value`. `options` are those it knows, None for any. It may take
+    `start_s` to get ready, and `stop_s` to end; when it ends by itself it is started again `restarts` times.
+    """
+
+    adapter: str = ""
+    value: str = ""
+    options: tuple[str, ...] | None = ()
+    start_s: float = 20.0
+    stop_s: float = 5.0
+    restarts: int = 3
+
+
+COMMAND = "command"
+EXTERNAL = "external"
+MODEL = "model"
+
+_KINDS = {
+    "pybullet": Kind(
+        adapter="aos_skills.pybullet.adapter:PybulletAdapter",
+        value="world",
+        start_s=60.0,
+        stop_s=20.0,  # It makes the mission's picture while it stops.
+        restarts=0,  # Its world would begin anew.
+    ),
+    MODEL: Kind(adapter="aos_solver.model_adapter:ModelAdapter", value="note"),
+    "class": Kind(value="class", options=None),
+    COMMAND: Kind(value="command"),
+    EXTERNAL: Kind(value="note"),
+}
+
+
+@cache
+def adapter_kinds() -> dict[str, Kind]:
+    """All kinds by name, ours and installed ones; ours count where names collide."""
+    installed = {
+        point.name: Kind(adapter=point.value, value="value", options=None)
+        for point in entry_points(group="aos.adapters")
+    }
+    return installed | _KINDS

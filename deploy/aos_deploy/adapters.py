@@ -1,0 +1,195 @@
+"""The deploy file's `adapters:` and `bind:`: which adapters there are, and what each of them serves."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import msgspec
+
+from aos_deploy.adapter_kinds import COMMAND, EXTERNAL, MODEL, Kind, adapter_kinds
+from aos_deploy.typed import nearest, plain_value
+from aos_deploy.yaml_source import Findings, YamlMap, YamlNode, YamlScalar
+from aos_protocol.diagnostics import Span
+from aos_runtime.adapters import Binding
+from aos_runtime.adapters.expressions import check_expression
+
+__all__ = ["EVERYTHING_ELSE", "AdapterPlan", "played_by_model", "read_adapters"]
+
+EVERYTHING_ELSE = "*"
+
+_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
+_TAKEN = ("router", "registry", "middleware", "solver", "aos-up")
+_BINDING_KEYS = ("fields", "result")
+
+
+class AdapterPlan(msgspec.Struct, frozen=True, kw_only=True):
+    """One adapter: its kind, its options, and what is bound to it; see `AdapterSettings`."""
+
+    name: str
+    kind_name: str
+    kind: Kind
+    options: dict[str, Any] = {}
+    bind: dict[str, Binding] = {}
+    serves_others: bool = False
+    elsewhere: tuple[str, ...] = ()
+
+    @property
+    def is_process(self) -> bool:
+        """Whether aos-up starts a process for it."""
+        return self.kind_name != EXTERNAL
+
+    @property
+    def is_command(self) -> bool:
+        """Whether it is a program of the user's own."""
+        return self.kind_name == COMMAND
+
+
+def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[AdapterPlan, ...]:
+    """The adapters that something is bound to, in the order of the file. `world` is the simulated world's."""
+    named = _named(node.entries.get("adapters"), findings)
+    bind = node.entries.get("bind")
+    bound: dict[str, dict[str, Binding]] = {}
+    others = ""
+    for key, value in bind.entries.items() if isinstance(bind, YamlMap) else ():
+        assert isinstance(bind, YamlMap)
+        found = _bound(key, value, named, bind.keys[key], findings)
+        if found is None:
+            continue
+        name, binding = found
+        bound.setdefault(name, {})
+        if key == EVERYTHING_ELSE:
+            others = name
+        else:
+            bound[name]["/" + key.strip("/")] = binding
+    everywhere = [path for paths in bound.values() for path in paths]
+    plans = []
+    for name, paths in bound.items():
+        plan = named.get(name) or AdapterPlan(name=name, kind_name=name, kind=adapter_kinds()[name])
+        if plan.kind_name == "pybullet" and "world" not in plan.options:
+            plan = msgspec.structs.replace(plan, options=plan.options | {"world": world})
+        if plan.kind_name == COMMAND and "command" not in plan.options:
+            findings.error("AOS105", f"the adapter {name} has no command", node.span, _HOW_TO_NAME)
+            continue
+        elsewhere = tuple(path for path in everywhere if path not in paths)
+        plans.append(
+            msgspec.structs.replace(plan, bind=paths, serves_others=name == others, elsewhere=elsewhere)
+        )
+    return tuple(plans)
+
+
+def played_by_model() -> tuple[AdapterPlan, ...]:
+    """Every skill is played by its own document."""
+    return (AdapterPlan(name=MODEL, kind_name=MODEL, kind=adapter_kinds()[MODEL], serves_others=True),)
+
+
+_HOW_TO_NAME = "Write it as adapters: {NAME: {command: [PROGRAM, ARGUMENT]}}, and bind paths to NAME"
+
+
+def _named(node: YamlNode | None, findings: Findings) -> dict[str, AdapterPlan]:
+    """The adapters that are given a name and options."""
+    plans = {}
+    for name, item in node.entries.items() if isinstance(node, YamlMap) else ():
+        assert isinstance(node, YamlMap)
+        where = node.keys[name]
+        if not _NAME.fullmatch(name) or name in _TAKEN:
+            findings.error(
+                "AOS126", f"{name!r} is no name for an adapter", where, "Use letters, digits, - and _"
+            )
+        elif (plan := _plan(name, item, where, findings)) is not None:
+            plans[name] = plan
+    return plans
+
+
+def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> AdapterPlan | None:
+    kinds = adapter_kinds()
+    if isinstance(node, YamlScalar) and isinstance(node.value, str):
+        node = YamlMap({node.value: YamlScalar(None, node.span)}, {node.value: node.span}, node.span)
+    if not isinstance(node, YamlMap):
+        findings.error(
+            "AOS106", f"adapters.{name} is not a mapping", where, f"Name its kind: {', '.join(kinds)}"
+        )
+        return None
+    chosen = [word for word in node.entries if word in kinds]
+    if len(chosen) != 1:
+        said = " and ".join(chosen) or ", ".join(node.entries) or "nothing"
+        hint = f"Give it one kind of {', '.join(sorted(kinds))}"
+        findings.error("AOS106", f"adapters.{name} has no one kind but {said}", where, hint)
+        return None
+    kind = kinds[chosen[0]]
+    options = {}
+    for word, value in node.entries.items():
+        if word == chosen[0]:
+            given = plain_value(value)
+            if given is not None:
+                options[kind.value] = given
+        elif kind.options is None or word in kind.options:
+            options[word] = plain_value(value)
+        else:
+            hint = nearest(word, (chosen[0], *kind.options))
+            findings.error("AOS102", f"unknown key adapters.{name}.{word}", node.keys[word], hint)
+    if chosen[0] == COMMAND:
+        command = options.get("command")
+        if not (isinstance(command, list) and command and all(isinstance(word, str) for word in command)):
+            findings.error("AOS106", f"adapters.{name}.command is not a list of texts", where, _HOW_TO_NAME)
+            return None
+    if chosen[0] == "class":
+        kind = msgspec.structs.replace(kind, adapter=str(options.pop("class", "")))
+    return AdapterPlan(name=name, kind_name=chosen[0], kind=kind, options=options)
+
+
+def _bound(
+    path: str, node: YamlNode, named: dict[str, AdapterPlan], where: Span, findings: Findings
+) -> tuple[str, Binding] | None:
+    """The adapter's name and how the path is bound to it."""
+    if path != EVERYTHING_ELSE and not _PATH.fullmatch(path):
+        findings.error(
+            "AOS106", f"{path!r} is not an activation path", where, 'Write it as /pick, or "*" for all others'
+        )
+        return None
+    known = {**adapter_kinds(), **named}
+    if isinstance(node, YamlScalar) and isinstance(node.value, str):
+        if node.value in known:
+            return node.value, Binding()
+        hint = nearest(node.value, known)
+        findings.error("AOS110", f"bind.{path} names an unknown adapter, {node.value}", node.span, hint)
+        return None
+    if not isinstance(node, YamlMap):
+        findings.error("AOS106", f"bind.{path} is not an adapter's name, and no mapping", node.span)
+        return None
+    words = [word for word in node.entries if word not in _BINDING_KEYS]
+    if len(words) != 1:
+        hint = "Write it as {ADAPTER: what the adapter calls it}"
+        findings.error("AOS106", f"bind.{path} does not name one adapter", node.span, hint)
+        return None
+    if words[0] not in known:
+        hint = nearest(words[0], [*known, *_BINDING_KEYS])
+        findings.error(
+            "AOS110", f"bind.{path} names an unknown adapter, {words[0]}", node.keys[words[0]], hint
+        )
+        return None
+    binding = Binding(
+        target=plain_value(node.entries[words[0]]),
+        fields=_expressions(node, "fields", path, findings),
+        result=_expressions(node, "result", path, findings),
+    )
+    return words[0], binding
+
+
+def _expressions(node: YamlMap, key: str, path: str, findings: Findings) -> dict[str, str] | None:
+    """Field names with their expressions; numbers and truth values stand for themselves."""
+    given = node.entries.get(key)
+    if given is None:
+        return None
+    if not isinstance(given, YamlMap):
+        findings.error("AOS106", f"bind.{path}.{key} is not a mapping", given.span)
+        return None
+    texts = {}
+    for name, item in given.entries.items():
+        value = plain_value(item)
+        texts[name] = value if isinstance(value, str) else repr(value)
+        if wrong := check_expression(texts[name]):
+            hint = "It is a Python expression over the fields that come in; a text needs quotes within quotes"
+            findings.error("AOS106", f"bind.{path}.{key}.{name} is no expression: {wrong}", item.span, hint)
+    return texts

@@ -1,0 +1,93 @@
+"""The interface of an adapter, and a call as it sees it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+import msgspec
+
+from aos_protocol.messages import ActivationId
+
+__all__ = ["Adapter", "Answer", "Call", "Observed"]
+
+
+class Observed(msgspec.Struct, frozen=True):
+    """The answer of an adapter that knows the observation itself: then the mapping's rules do not run."""
+
+    response: str
+    numbers: dict[str, Any] = {}
+
+
+Answer = Mapping[str, Any] | Observed
+"""The fields of a skill's result, or the observation."""
+
+
+class Call:
+    """One run of a skill.
+
+    `path` is the path of the mapping, `target` what the deploy file binds it to, by default the path itself.
+    `fields` have the names that the adapter wants. `skill` and `parameters` are the action that was decided,
+    and empty in a call by hand.
+    """
+
+    def __init__(
+        self,
+        id: ActivationId,
+        path: str,
+        target: Any,
+        fields: dict[str, Any],
+        deadline_s: float,
+        skill: str = "",
+        parameters: dict[str, Any] | None = None,
+        on_progress: Callable[[float, str], None] = lambda progress, text: None,
+    ) -> None:
+        self.id = id
+        self.path = path
+        self.target = target
+        self.fields = fields
+        self.deadline_s = deadline_s
+        self.skill = skill
+        self.parameters = parameters or {}
+        self._on_progress = on_progress
+        self._is_cancelled = threading.Event()
+
+    def progress(self, progress: float, text: str = "") -> None:
+        """Tells how far it is, from 0 to 1, and what it does. From any thread, as often as you like."""
+        self._on_progress(progress, text)
+
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether it has to stop: for code in threads, which has to look by itself."""
+        return self._is_cancelled.is_set()
+
+    def cancel(self) -> None:
+        """Makes `is_cancelled` true."""
+        self._is_cancelled.set()
+
+
+class Adapter(Protocol):
+    """A class that is made with its `Host` as the only argument. Calls come one at a time.
+
+    `version` is told to whoever asks what serves a path.
+    """
+
+    version: str
+
+    async def start(self) -> None:
+        """Gets ready, and says what it serves with `Host.serve`. Whatever it raises ends the process."""
+        ...
+
+    async def call(self, call: Call) -> Answer:
+        """Runs a skill to its end.
+
+        SkillError AOS510 if the skill failed, AOS502 if it cannot be run at all; any other exception counts
+        as AOS510. The call is cancelled by cancelling this task: stop the robot, then let `CancelledError`
+        out.
+        """
+        ...
+
+    async def close(self) -> None:
+        """Ends the adapter; nothing runs any more."""
+        ...

@@ -1,0 +1,85 @@
+"""The ledger of calls: at most one motion for each id, whatever is sent twice or crashes.
+
+A repeat of an ended id gets the stored answer, or the same error. A repeat of one that started and never
+ended gets "outcome unknown", and nothing moves. An older epoch than the highest seen is a stale solver and is
+refused.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from aos_protocol.errors import AosError, SkillError, error_from_code
+from aos_protocol.messages import ActivationId, Fault, Message, SkillCall, SkillResult
+from aos_runtime.journal import Journal
+
+__all__ = ["Ledger"]
+
+
+class _Failure(Message, frozen=True):
+    id: ActivationId
+    fault: Fault
+
+
+class Ledger:
+    """Kept in a journal, so that it outlives the process."""
+
+    def __init__(self, path: Path) -> None:
+        self._journal = Journal.open(path)
+        self._started: set[ActivationId] = set()
+        self._ended: dict[ActivationId, SkillResult | Fault] = {}
+        self._epochs: dict[str, int] = {}
+        for row in self._journal.rows():
+            if row.kind == "started":
+                self._note(msgspec.json.decode(row.payload, type=SkillCall).id)
+            elif row.kind == "ended":
+                result = msgspec.json.decode(row.payload, type=SkillResult)
+                self._ended[result.id] = result
+            elif row.kind == "failed":
+                failure = msgspec.json.decode(row.payload, type=_Failure)
+                self._ended[failure.id] = failure.fault
+
+    def stored(self, id: ActivationId) -> SkillResult | None:
+        """The answer to an id that has ended; None for a new one.
+
+        The error with which it ended, or SkillError AOS504 or AOS506.
+        """
+        ended = self._ended.get(id)
+        if isinstance(ended, Fault):
+            raise error_from_code(ended.code, ended.message, hint=ended.hint)
+        if ended is not None:
+            return ended
+        if id in self._started:
+            raise SkillError(
+                f"activation {id} started and was never seen to end",
+                code="AOS504",
+                hint="Let the robot sense what became of it",
+            )
+        if id.epoch < self._epochs.get(id.mission, id.epoch):
+            raise SkillError(f"activation {id} comes from an older epoch", code="AOS506")
+        return None
+
+    def start(self, call: SkillCall) -> None:
+        """Before anything moves."""
+        self._journal.append("started", call)
+        self._note(call.id)
+
+    def end(self, result: SkillResult) -> None:
+        """After it moved."""
+        self._journal.append("ended", result)
+        self._ended[result.id] = result
+
+    def fail(self, id: ActivationId, error: AosError) -> None:
+        """After it moved, and failed."""
+        fault = Fault(error.code, error.message, error.hint)
+        self._journal.append("failed", _Failure(id, fault))
+        self._ended[id] = fault
+
+    def close(self) -> None:
+        self._journal.close()
+
+    def _note(self, id: ActivationId) -> None:
+        self._started.add(id)
+        self._epochs[id.mission] = max(id.epoch, self._epochs.get(id.mission, id.epoch))

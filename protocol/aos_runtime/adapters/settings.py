@@ -1,0 +1,41 @@
+"""What an adapter's process is started with."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from aos_runtime.service_settings import ServiceSettings
+
+__all__ = ["AdapterSettings", "Binding"]
+
+
+class Binding(msgspec.Struct, frozen=True, kw_only=True):
+    """What a path is bound to.
+
+    `target` is what the adapter calls it, None for the path itself. With `fields` the call has these fields,
+    with `result` the answer has these; each value is an expression over the fields that come in.
+    """
+
+    target: Any = None
+    fields: dict[str, str] | None = None
+    result: dict[str, str] | None = None
+
+
+class AdapterSettings(ServiceSettings, frozen=True, kw_only=True):
+    """`adapter` is `module:Class`. `options` are the adapter's own, from the deploy file in `folder`.
+
+    With `serves_others` it serves what it can beside `bind`, but none of `elsewhere`, which others serve. A
+    call that is cancelled has to end within `cancel_s`.
+    """
+
+    adapter: str
+    project: str = ""
+    folder: str = ""
+    options: dict[str, Any] = msgspec.field(default_factory=dict)
+    bind: dict[str, Binding] = msgspec.field(default_factory=dict)
+    serves_others: bool = False
+    elsewhere: tuple[str, ...] = ()
+    seed: int = 1
+    cancel_s: float = 2.0

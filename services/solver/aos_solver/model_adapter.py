@@ -1,0 +1,130 @@
+"""The adapter `model`: skills that are played by their own documents, where there is no robot.
+
+All skills that are bound to it share one hidden true state, drawn from the initial belief by the mission's
+seed and stepped by the model, as `aos simulate` does it. A call answers with the observation itself. The
+truth of each step is in `<run>/<adapter>.jsonl`; the planner is not told. A process that starts again plays
+the steps of that file once more, and so comes to the same state.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from aos_protocol.errors import AosError, SkillError
+from aos_protocol.messages import ProjectRevision
+from aos_runtime.adapters import Call, Host, Observed
+from aos_solver.child.engine import Engine
+from aos_solver.hot_plug import build_project
+
+__all__ = ["ModelAdapter", "PlayedStep"]
+
+_log = logging.getLogger("aos.model")
+
+
+class PlayedStep(msgspec.Struct, frozen=True):
+    """One line of the file: what was done, what came of it, and the state after it as text."""
+
+    action: str
+    response: str
+    reward: float
+    ending: str
+    state: str
+
+
+class _World(msgspec.Struct, frozen=True):
+    """A running model, and the number of each of its actions by skill and parameters."""
+
+    engine: Engine
+    names: tuple[str, ...]
+    skills: dict[str, list[tuple[dict[str, Any], int]]]
+
+
+class ModelAdapter:
+    """Serves the paths of all skills that fall to it, as soon as their model is built."""
+
+    version = "1"
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._cache_dir = Path(host.options["cache_dir"])
+        self._file = host.run_dir / f"{host.name}.jsonl"
+        self._played: list[str] = []
+        self._world: _World | None = None
+        self._following: asyncio.Task[None] | None = None
+        self._changing = asyncio.Lock()
+
+    async def start(self) -> None:
+        """Documents come after everything has started; a model takes its time to be compiled."""
+        if self._file.exists():
+            lines = self._file.read_bytes().splitlines()
+            self._played = [msgspec.json.decode(line, type=PlayedStep).action for line in lines]
+        self._following = asyncio.create_task(self._follow())
+
+    async def call(self, call: Call) -> Observed:
+        """A step of the hidden state."""
+        # A step takes far less than its cancellation could: it is done or not begun.
+        return await asyncio.shield(self._step(call))
+
+    async def close(self) -> None:
+        if self._following is not None:
+            self._following.cancel()
+            await asyncio.wait({self._following})
+        if self._world is not None:
+            await self._world.engine.close()
+
+    async def _step(self, call: Call) -> Observed:
+        async with self._changing:
+            world = self._world
+            if world is None:
+                raise SkillError("the model is not ready", code="AOS505")
+            index = _index(world, call)
+            step = await world.engine.step_world(index)
+            state = await world.engine.world_state()
+        name = world.names[index]
+        self._played.append(name)
+        played = PlayedStep(name, step.response, step.reward, step.ending, state)
+        with self._file.open("ab") as file:
+            file.write(msgspec.json.encode(played) + b"\n")
+        return Observed(step.response, step.numbers)
+
+    async def _follow(self) -> None:
+        async for revision in self._host.revisions():
+            try:
+                await self._adopt(revision)
+            except AosError as error:
+                _log.error("revision %d cannot be played: %s", revision.revision, error)
+
+    async def _adopt(self, revision: ProjectRevision) -> None:
+        """Goes over to new documents: the steps so far are played again by them."""
+        built = await build_project(revision.project, self._cache_dir, lambda remark: _log.info("%s", remark))
+        engine = await Engine.start(built, seed=self._host.seed, keeps_belief=False)
+        world = _World(engine, tuple(action.name for action in engine.description.actions), {})
+        for index, action in enumerate(engine.description.actions):
+            world.skills.setdefault(action.skill, []).append((action.parameters, index))
+        async with self._changing:
+            await engine.reset_world(self._host.seed)
+            for name in self._played:
+                if name in world.names:
+                    await engine.step_world(world.names.index(name))
+            outdated, self._world = self._world, world
+        if outdated is not None:
+            await outdated.engine.close()
+        paths = {"/" + skill.mapping.activation.path.strip("/") for skill in revision.project.skills}
+        bound = {path for path in paths if path in self._host.bound or self._host.wants(path)}
+        await self._host.serve(*sorted(bound))
+
+
+def _index(world: _World, call: Call) -> int:
+    for parameters, index in world.skills.get(call.skill, ()):
+        if parameters == call.parameters:
+            return index
+    raise SkillError(
+        f"the model has no action {call.skill} with {call.parameters}",
+        code="AOS502",
+        hint="A model plays what a planner has decided; a call by hand does not say which action it is",
+    )
