@@ -15,7 +15,7 @@ from packaging.requirements import Requirement
 
 from aos_protocol import keys, messages
 from aos_protocol.errors import CODES
-from aos_protocol.keys import Keys
+from aos_protocol.keys import Keys, Serving
 
 LOCKS = ("build", "runtime", "dev", "compiler")
 FIRST_SCREEN_LINES = 30
@@ -64,8 +64,11 @@ def test_generated_pages_are_current(root: Path) -> None:
 def test_the_table_of_keys_holds_every_key_that_can_be_built() -> None:
     robot = Keys("ROBOT")
     built = {robot.live("SERVICE"), robot.activate("SKILL"), robot.call("PATH"), robot.topic("PATH")}
+    built |= {robot.cancel("PATH"), robot.progress("PATH")}
+    built |= {robot.serve(Serving("ADAPTER", "VERSION", "INSTANCE", "PATH"))}
     built |= {getattr(robot, name) for name, kind in vars(Keys).items() if isinstance(kind, property)}
     stand_ins = [("ROBOT", "<robot>"), ("SERVICE", "<service>"), ("SKILL", "<skill>"), ("PATH", "<path>")]
+    stand_ins += [("ADAPTER", "<adapter>"), ("VERSION", "<version>"), ("INSTANCE", "<instance>")]
     documented = set(re.findall(r"^ +(aos/\S+)", keys.__doc__ or "", re.MULTILINE))
     for key in built:
         if key.endswith("*"):
