@@ -8,7 +8,7 @@ from textwrap import dedent
 from aos_middleware.emit import EmittedMapping, emit_mapping
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Project, Skill, SkillModel
-from aos_registry.documents.source import Findings
+from aos_protocol.findings import Findings
 from aos_registry.load import load_bundle
 from aos_registry.reading import read_documents
 

@@ -8,9 +8,10 @@ from typing import Any
 import msgspec
 
 from aos_deploy.adapter_kinds import COMMAND, EXTERNAL, MODEL, Kind, adapter_kinds
-from aos_deploy.typed import nearest, plain_value
-from aos_deploy.yaml_source import Findings, YamlMap, YamlNode, YamlScalar
+from aos_deploy.typed import known_names, plain_value
+from aos_deploy.yaml_source import YamlMap, YamlNode, YamlScalar
 from aos_protocol.diagnostics import Span
+from aos_protocol.findings import Findings
 from aos_runtime.adapters import Binding
 from aos_runtime.adapters.expressions import check_expression
 
@@ -127,8 +128,9 @@ def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> Adapter
         elif kind.options is None or word in kind.options:
             options[word] = plain_value(value)
         else:
-            hint = nearest(word, (chosen[0], *kind.options))
-            findings.error("AOS102", f"unknown key adapters.{name}.{word}", node.keys[word], hint)
+            words = (chosen[0], *kind.options)
+            message, otherwise = f"unknown key adapters.{name}.{word}", known_names(words)
+            findings.unknown(word, words, message, node.keys[word], otherwise, code="AOS102")
     if chosen[0] == COMMAND:
         command = options.get("command")
         if not (isinstance(command, list) and command and all(isinstance(word, str) for word in command)):
@@ -152,8 +154,8 @@ def _bound(
     if isinstance(node, YamlScalar) and isinstance(node.value, str):
         if node.value in known:
             return node.value, Binding()
-        hint = nearest(node.value, known)
-        findings.error("AOS110", f"bind.{path} names an unknown adapter, {node.value}", node.span, hint)
+        message = f"bind.{path} names an unknown adapter, {node.value}"
+        findings.unknown(node.value, known, message, node.span, known_names(known))
         return None
     if not isinstance(node, YamlMap):
         findings.error("AOS106", f"bind.{path} is not an adapter's name, and no mapping", node.span)
@@ -164,10 +166,9 @@ def _bound(
         findings.error("AOS106", f"bind.{path} does not name one adapter", node.span, hint)
         return None
     if words[0] not in known:
-        hint = nearest(words[0], [*known, *_BINDING_KEYS])
-        findings.error(
-            "AOS110", f"bind.{path} names an unknown adapter, {words[0]}", node.keys[words[0]], hint
-        )
+        names = [*known, *_BINDING_KEYS]
+        message = f"bind.{path} names an unknown adapter, {words[0]}"
+        findings.unknown(words[0], names, message, node.keys[words[0]], known_names(names))
         return None
     binding = Binding(
         target=plain_value(node.entries[words[0]]),

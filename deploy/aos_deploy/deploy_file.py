@@ -14,10 +14,11 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from aos_deploy.adapters import AdapterPlan, read_adapters
-from aos_deploy.typed import nearest, read_structure
-from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
-from aos_protocol.diagnostics import Span, has_errors
+from aos_deploy.typed import known_names, read_structure
+from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
+from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
+from aos_protocol.findings import Findings
 from aos_registry.archive import is_archive_name, read_archive
 
 __all__ = [
@@ -122,11 +123,11 @@ def read_deploy_file(path: Path) -> Deployment:
         file = read_structure(node, DeployFile, findings)
         if file is not None:
             deployment = _resolve(path.resolve(), file, node, findings)
-    if deployment is None or has_errors(findings.diagnostics):
+    if deployment is None or findings.has_errors:
         raise DeployError(
             f"the deploy file {named} has errors",
             code="AOS801",
-            diagnostics=tuple(sorted(findings.diagnostics, key=lambda finding: finding.span)),
+            diagnostics=findings.sorted(),
         )
     return deployment
 
@@ -186,7 +187,8 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
     skills = {skill_of_file(name) for bundle in bundles for name in _documents_in(bundle)}
     for skill, where in _texts(node, "leave_out"):
         if skill not in skills:
-            findings.error("AOS110", f"no bundle has a skill {skill}", where, nearest(skill, skills))
+            message = f"no bundle has a skill {skill}"
+            findings.unknown(skill, skills, message, where, known_names(skills))
     return bundles
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import types
 import typing
 from collections.abc import Iterable
@@ -11,10 +10,11 @@ from typing import Any, TypeVar
 import msgspec
 from msgspec import UNSET
 
-from aos_deploy.yaml_source import Findings, YamlList, YamlMap, YamlNode, YamlScalar
+from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar
 from aos_protocol.diagnostics import Span
+from aos_protocol.findings import Findings
 
-__all__ = ["nearest", "plain_value", "read_structure"]
+__all__ = ["known_names", "plain_value", "read_structure"]
 
 S = TypeVar("S", bound=msgspec.Struct)
 
@@ -33,7 +33,8 @@ def read_structure(node: YamlMap, kind: type[S], findings: Findings, prefix: str
     hints = typing.get_type_hints(kind, include_extras=True)
     for key, where in node.keys.items():
         if key not in fields:
-            findings.error("AOS102", f"unknown key {prefix}{key}", where, nearest(key, fields))
+            message = f"unknown key {prefix}{key}"
+            findings.unknown(key, fields, message, where, known_names(fields), code="AOS102")
     values: dict[str, Any] = {}
     for name, field in fields.items():
         if name in node.entries:
@@ -47,11 +48,9 @@ def read_structure(node: YamlMap, kind: type[S], findings: Findings, prefix: str
     return kind(**values)
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """A hint that names the known word closest to a wrong one, or all of them."""
-    known = sorted(known)
-    close = difflib.get_close_matches(word, known, n=1, cutoff=0.6)
-    return f"Did you mean {close[0]}?" if close else f"Known are {', '.join(known)}"
+def known_names(names: Iterable[str]) -> str:
+    """The hint that lists all names there are."""
+    return f"Known are {', '.join(sorted(names))}"
 
 
 def plain_value(node: YamlNode) -> Any:
@@ -99,14 +98,33 @@ def _read_scalar(node: YamlNode, kind: Any, findings: Findings, path: str) -> An
     if origin is typing.Literal:
         if any(type(value) is type(argument) and value == argument for argument in arguments):
             return value
-        return _refuse(findings, path, " or ".join(str(argument) for argument in arguments), node.span)
+        known = [str(argument) for argument in arguments]
+        message = f"{path} is {_shown(value)}, not {' or '.join(known)}"
+        findings.unknown(str(value), known, message, node.span, code="AOS106")
+        return UNSET
     base = arguments[0] if origin is typing.Annotated else kind
     try:
         return msgspec.convert(value, kind)
     except msgspec.ValidationError as error:
         # "Expected `int` >= 1" for what is beyond a limit, "Expected `int`, got `str`" for another type.
         limit = str(error).rpartition("`")[2].strip() if ", got " not in str(error) else ""
-        return _refuse(findings, path, f"{_KINDS[base]} {limit}".strip(), node.span)
+        expected = f"{_KINDS[base]} {_limit_text(limit)}".strip()
+        findings.error("AOS106", f"{path} is {_shown(value)}; it must be {expected}", node.span)
+        return UNSET
+
+
+def _limit_text(limit: str) -> str:
+    """A limit as msgspec writes it, in words: `<= 1.0` as `of at most 1`."""
+    sign, _, number = limit.partition(" ")
+    words = {"<=": "of at most", ">=": "of at least", ">": "above", "<": "below"}
+    return f"{words[sign]} {float(number):g}" if sign in words and abs(float(number)) < 1e6 else limit
+
+
+def _shown(value: Any) -> str:
+    """A value as it may be written in YAML; what is no scalar by its kind."""
+    if value is UNSET:
+        return "a list or a mapping"
+    return "nothing" if value is None else str(value).lower() if isinstance(value, bool) else f"{value}"
 
 
 def _refuse(findings: Findings, path: str, expected: str, where: Span) -> msgspec.UnsetType:

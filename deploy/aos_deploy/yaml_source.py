@@ -14,9 +14,10 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.diagnostics import Span
+from aos_protocol.findings import Findings
 
-__all__ = ["Findings", "YamlList", "YamlMap", "YamlNode", "YamlScalar", "read_yaml"]
+__all__ = ["YamlList", "YamlMap", "YamlNode", "YamlScalar", "read_yaml"]
 
 
 class YamlScalar(msgspec.Struct, frozen=True):
@@ -42,41 +43,23 @@ class YamlMap(msgspec.Struct, frozen=True):
 YamlNode = YamlScalar | YamlList | YamlMap
 
 
-class Findings:
-    """The diagnostics about one file, with its lines for the excerpts."""
-
-    def __init__(self, file: str, text: str) -> None:
-        self.file = file
-        self.diagnostics: list[Diagnostic] = []
-        self._lines = text.splitlines()
-
-    def error(self, code: str, message: str, span: Span, hint: str = "") -> None:
-        excerpt = self._lines[span.line - 1] if 0 < span.line <= len(self._lines) else ""
-        self.diagnostics.append(Diagnostic(Severity.ERROR, code, message, span, hint, excerpt))
-
-    def span(self, mark: Any) -> Span:
-        """The place of a position mark of the YAML reader."""
-        return Span(self.file, mark.line + 1, mark.column + 1)
-
-
 def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
     """The mapping a file holds, None if it cannot be read as one. `file` names it in the findings."""
+    findings = Findings()
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
-        findings = Findings(file, "")
         findings.error("AOS101", f"the file cannot be read: {error.strerror}", Span(file))
         return None, findings
     except UnicodeDecodeError as error:
-        findings = Findings(file, "")
         findings.error("AOS101", f"the file is not UTF-8 text (byte {error.start})", Span(file))
         return None, findings
-    findings = Findings(file, text)
+    findings.add_source(file, text.splitlines())
     try:
         root = YAML(typ="safe", pure=True).compose(text)
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        where = findings.span(mark) if mark else Span(file)
+        where = _span(file, mark) if mark else Span(file)
         context = f" {error.context}" if error.context else ""
         findings.error("AOS104", f"not well-formed YAML{context}: {error.problem}", where)
         return None, findings
@@ -86,51 +69,63 @@ def read_yaml(path: Path, file: str) -> tuple[YamlMap | None, Findings]:
     if not isinstance(root, MappingNode):
         findings.error("AOS104", "not a mapping of keys to values", Span(file, 1))
         return None, findings
-    return _map(root, findings), findings
+    return _Reader(file, findings).map(root), findings
 
 
-def _node(node: Node, findings: Findings) -> YamlNode:
-    if node.anchor:
-        findings.error("AOS104", "anchors and aliases are not used here", findings.span(node.start_mark))
-    if isinstance(node, MappingNode):
-        return _map(node, findings)
-    if isinstance(node, SequenceNode):
-        items = tuple(_node(item, findings) for item in node.value)
-        return YamlList(items, findings.span(node.start_mark))
-    return _scalar(str(node.value), str(node.tag), findings.span(node.start_mark), findings)
+class _Reader:
+    """Nodes to plain values with their places."""
+
+    def __init__(self, file: str, findings: Findings) -> None:
+        self._file = file
+        self._findings = findings
+
+    def map(self, node: MappingNode) -> YamlMap:
+        entries: dict[str, YamlNode] = {}
+        keys: dict[str, Span] = {}
+        for key_node, value_node in node.value:
+            where = self._place(key_node)
+            if not isinstance(key_node, ScalarNode):
+                self._findings.error("AOS104", "a key is not a text", where)
+                continue
+            key = str(key_node.value)
+            if key in entries:
+                hint = f"First in line {keys[key].line}"
+                self._findings.error("AOS103", f"the key {key} is given twice", where, hint)
+                continue
+            keys[key] = where
+            entries[key] = self._node(value_node)
+        return YamlMap(entries, keys, self._place(node))
+
+    def _node(self, node: Node) -> YamlNode:
+        where = self._place(node)
+        if node.anchor:
+            self._findings.error("AOS104", "anchors and aliases are not used here", where)
+        if isinstance(node, MappingNode):
+            return self.map(node)
+        if isinstance(node, SequenceNode):
+            return YamlList(tuple(self._node(item) for item in node.value), where)
+        return self._scalar(str(node.value), str(node.tag), where)
+
+    def _scalar(self, text: str, tag: str, where: Span) -> YamlScalar:
+        match tag.rpartition(":")[2]:
+            case "str":
+                return YamlScalar(text, where)
+            case "null":
+                return YamlScalar(None, where)
+            case "bool":
+                return YamlScalar(text.lower() == "true", where)
+            case "int" | "float":
+                return YamlScalar(_number(text), where)
+        self._findings.error("AOS104", f"the tag {tag} is not used here", where)
+        return YamlScalar(None, where)
+
+    def _place(self, node: Node) -> Span:
+        return _span(self._file, node.start_mark)
 
 
-def _map(node: MappingNode, findings: Findings) -> YamlMap:
-    entries: dict[str, YamlNode] = {}
-    keys: dict[str, Span] = {}
-    for key_node, value_node in node.value:
-        where = findings.span(key_node.start_mark)
-        if not isinstance(key_node, ScalarNode):
-            findings.error("AOS104", "a key is not a text", where)
-            continue
-        key = str(key_node.value)
-        if key in entries:
-            findings.error(
-                "AOS103", f"the key {key} is given twice", where, f"First in line {keys[key].line}"
-            )
-            continue
-        keys[key] = where
-        entries[key] = _node(value_node, findings)
-    return YamlMap(entries, keys, findings.span(node.start_mark))
-
-
-def _scalar(text: str, tag: str, where: Span, findings: Findings) -> YamlScalar:
-    match tag.rpartition(":")[2]:
-        case "str":
-            return YamlScalar(text, where)
-        case "null":
-            return YamlScalar(None, where)
-        case "bool":
-            return YamlScalar(text.lower() == "true", where)
-        case "int" | "float":
-            return YamlScalar(_number(text), where)
-    findings.error("AOS104", f"the tag {tag} is not used here", where)
-    return YamlScalar(None, where)
+def _span(file: str, mark: Any) -> Span:
+    """The place of a position mark of the YAML reader."""
+    return Span(file, mark.line + 1, mark.column + 1)
 
 
 def _number(text: str) -> int | float | str:

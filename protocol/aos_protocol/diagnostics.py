@@ -6,11 +6,12 @@ exceptions and live in `errors`.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import StrEnum
 
 import msgspec
 
-__all__ = ["Diagnostic", "Severity", "Span", "has_errors", "render"]
+__all__ = ["Diagnostic", "Mend", "Severity", "Span", "has_errors", "render"]
 
 
 _EXCERPT_WIDTH = 100
@@ -36,8 +37,19 @@ class Span(msgspec.Struct, frozen=True, order=True):
         return ":".join(parts)
 
 
+class Mend(msgspec.Struct, frozen=True):
+    """An edit that an editor may offer: at `span`, `length` characters of the line become `text`."""
+
+    span: Span
+    length: int
+    text: str
+
+
 class Diagnostic(msgspec.Struct, frozen=True):
-    """One finding. `code` is `AOS` and three digits, see `errors`; `hint` says what to do about it."""
+    """One finding. `code` is `AOS` and three digits, see `errors`; `hint` says what to do about it.
+
+    `mend` does what the hint says, where that is one edit.
+    """
 
     severity: Severity
     code: str
@@ -45,13 +57,14 @@ class Diagnostic(msgspec.Struct, frozen=True):
     span: Span
     hint: str = ""
     excerpt: str = ""
+    mend: Mend | None = None
 
     @property
     def is_error(self) -> bool:
         return self.severity is Severity.ERROR
 
 
-def has_errors(diagnostics: tuple[Diagnostic, ...] | list[Diagnostic]) -> bool:
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     """Whether any of them is an error."""
     return any(diagnostic.is_error for diagnostic in diagnostics)
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from json_values import plain
 
 from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.findings import Findings
 from aos_registry.documents.json_text import (
     JsonArray,
     JsonString,
@@ -18,13 +19,13 @@ from aos_registry.documents.json_text import (
     code_snippet,
     parse_json,
 )
-from aos_registry.documents.source import Findings, Source
+from aos_registry.documents.source import Source
 
 
 def parsed(text: str) -> tuple[JsonValue | None, tuple[Diagnostic, ...]]:
     findings = Findings()
     source = Source("a.json", text)
-    findings.add_source(source)
+    findings.add_source(source.name, source.lines)
     return parse_json(source, findings), findings.sorted()
 
 

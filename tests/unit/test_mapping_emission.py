@@ -25,7 +25,7 @@ from aos_protocol.documents import (
     Snippet,
 )
 from aos_protocol.errors import DocumentError
-from aos_registry.documents.source import Findings
+from aos_protocol.findings import Findings
 from aos_registry.reading import read_documents
 
 HEAD = """\

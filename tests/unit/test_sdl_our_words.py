@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from aos_protocol.documents import AbstractionMapping, Environment, LowLevelDocument, SkillModel
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document
-from aos_registry.documents.source import Findings
 from aos_registry.reading import read_documents
 
 HEADS = {

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.findings import Findings
 from aos_registry.documents.sdl_sections import GRAMMARS, places_of_words
 from aos_registry.documents.sdl_text import Section, parse_sdl
-from aos_registry.documents.source import Findings, Source
+from aos_registry.documents.source import Source
 
 
 def sections(text: str, suffix: str = ".sd") -> tuple[list[Section], tuple[Diagnostic, ...]]:
     findings = Findings()
     source = Source(f"a{suffix}", text)
-    findings.add_source(source)
+    findings.add_source(source.name, source.lines)
     return parse_sdl(source, GRAMMARS[suffix], places_of_words(suffix), findings), findings.sorted()
 
 

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from aos_protocol.diagnostics import Diagnostic
+from aos_protocol.findings import Findings
 from aos_registry.documents.sdl_sections import GRAMMARS
-from aos_registry.documents.source import Findings, open_source
+from aos_registry.documents.source import open_source
 from aos_registry.load import load_files, read_bundle_files, with_excerpts
 from aos_solver.emission.lower import lower
 

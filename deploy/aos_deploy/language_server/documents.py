@@ -9,9 +9,10 @@ from pathlib import PurePath
 import msgspec
 
 from aos_deploy.language_server.meanings import BUILT_INS, SECTIONS
+from aos_protocol.findings import Findings
 from aos_registry.documents.sdl_sections import GRAMMARS
 from aos_registry.documents.sdl_text import Body, Part, Section, parse_sdl
-from aos_registry.documents.source import Findings, Source
+from aos_registry.documents.source import Source
 
 __all__ = ["Entry", "Proposal", "meaning_at", "outline", "proposals_at"]
 

@@ -15,8 +15,8 @@ from aos_protocol.documents import (
     Skill,
     SkillModel,
 )
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document, DocumentKind
-from aos_registry.documents.source import Findings
 
 __all__ = ["Assembly", "assemble"]
 

@@ -10,8 +10,8 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import Snippet
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document, DocumentKind
-from aos_registry.documents.source import Findings
 from aos_registry.reading import read_documents
 from aos_registry.writing.json_writer import json_text
 from aos_registry.writing.sdl_writer import sdl_text

@@ -13,10 +13,11 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
+from aos_protocol.findings import Findings
 from aos_registry.archive import is_archive_name, read_archive
 from aos_registry.assembly import assemble
 from aos_registry.check import check
-from aos_registry.documents.source import Findings, open_source
+from aos_registry.documents.source import open_source
 from aos_registry.reading import MAX_BUNDLE_BYTES, MAX_BUNDLE_FILES, is_document_name, read_documents
 
 __all__ = ["LoadedBundle", "bundle_digest", "load_bundle", "load_files", "read_bundle_files", "with_excerpts"]
@@ -78,11 +79,12 @@ def bundle_digest(files: Mapping[str, bytes], documents: Iterable[str]) -> str:
 
 def with_excerpts(diagnostics: Iterable[Diagnostic], files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
     """Diagnostics of another service with the source lines they are about."""
+    diagnostics = tuple(diagnostics)
     findings = Findings()
-    for name, data in files.items():
-        source = open_source(name, data, Findings())
+    for name in {diagnostic.span.file for diagnostic in diagnostics} & files.keys():
+        source = open_source(name, files[name], Findings())
         if source is not None:
-            findings.add_source(source)
+            findings.add_source(name, source.lines)
     for diagnostic in diagnostics:
         findings.add(diagnostic)
     return findings.sorted()

@@ -8,8 +8,8 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Project
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document, DocumentKind
-from aos_registry.documents.source import Findings
 from aos_registry.documents.version import is_higher
 from aos_registry.reading import is_document_name, read_documents
 

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from pathlib import PurePath
 
 from aos_protocol.diagnostics import Span
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document
 from aos_registry.documents.json_document import read_json
 from aos_registry.documents.sdl_document import read_sdl
 from aos_registry.documents.sdl_sections import GRAMMARS
-from aos_registry.documents.source import Findings, open_source
+from aos_registry.documents.source import open_source
 
 __all__ = ["MAX_BUNDLE_BYTES", "MAX_BUNDLE_FILES", "is_document_name", "read_documents"]
 

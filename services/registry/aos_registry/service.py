@@ -22,8 +22,8 @@ from aos_protocol.messages import (
     RevisionsQuery,
 )
 from aos_protocol.messages import Catalogue as CatalogueAnswer
+from aos_protocol.spelling import did_you_mean, quoted
 from aos_registry.catalogue import Catalogue
-from aos_registry.documents.source import did_you_mean, quoted
 from aos_registry.intake import Intake
 from aos_registry.load import read_bundle_files
 from aos_registry.settings import Settings

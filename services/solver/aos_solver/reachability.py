@@ -5,10 +5,10 @@ from __future__ import annotations
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
 from aos_protocol.errors import ModelError
+from aos_protocol.findings import Findings
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Reach
 from aos_solver.child.engine import Engine
-from aos_solver.emission.findings import Findings
 
 __all__ = ["reachability_findings"]
 
@@ -44,7 +44,7 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         if unmet and skill.model.precondition:
             message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
             tell("AOS131", message, skill.model.precondition[0].span, _extent(reach))
-    return tuple(findings.diagnostics)
+    return findings.diagnostics
 
 
 def _as_warning(diagnostic: Diagnostic) -> Diagnostic:

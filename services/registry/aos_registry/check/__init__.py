@@ -9,6 +9,7 @@ mentions.
 from __future__ import annotations
 
 from aos_protocol.documents import AbstractionMapping
+from aos_protocol.findings import Findings
 from aos_protocol.local_types import told_variables
 from aos_registry.assembly import Assembly
 from aos_registry.check.declarations import check_environment_names, check_skill_declarations
@@ -28,7 +29,6 @@ from aos_registry.check.observed_numbers import (
 from aos_registry.check.responses import check_responses
 from aos_registry.check.scope import Scope
 from aos_registry.check.unused import check_unused_locals, check_unused_variables
-from aos_registry.documents.source import Findings
 from aos_runtime.observed import reported_numbers
 
 __all__ = ["check"]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from aos_protocol.diagnostics import Span
+from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import CompoundType, Environment, SkillModel
+from aos_protocol.findings import Findings
+from aos_protocol.spelling import quoted
 from aos_registry.check.scope import Scope
-from aos_registry.documents.source import Findings, did_you_mean, quoted
 from aos_runtime.cpp_keywords import CPP_KEYWORDS
 
 __all__ = ["check_environment_names", "check_skill_declarations"]
@@ -33,8 +34,8 @@ def check_environment_names(environment: Environment, scope: Scope, findings: Fi
         _check_low_level_type(variable.low_level_type, variable.span, scope, findings)
         for key in variable.key_types:
             if not key.startswith("(") and key not in scope.enums:
-                hint = did_you_mean(key, scope.enums) or "A key is an enum or (start,stop,step)"
-                findings.error("AOS110", f"unknown enum `{key}`", variable.span, hint)
+                otherwise = "A key is an enum or (start,stop,step)"
+                findings.unknown(key, scope.enums, f"unknown enum `{key}`", variable.span, otherwise)
 
 
 def check_skill_declarations(model: SkillModel, scope: Scope, findings: Findings) -> None:
@@ -74,15 +75,15 @@ def _check_type(name: str, span: Span, scope: Scope, findings: Findings) -> bool
     unknown = scope.unknown_type_name(name)
     if not unknown:
         return True
-    hint = did_you_mean(unknown, scope.type_names) or f"The types are {quoted(scope.type_names)}"
-    findings.error("AOS110", f"unknown type `{unknown}`", span, hint)
+    otherwise = f"The types are {quoted(scope.type_names)}"
+    findings.unknown(unknown, scope.type_names, f"unknown type `{unknown}`", span, otherwise)
     return False
 
 
 def _check_low_level_type(name: str | None, span: Span, scope: Scope, findings: Findings) -> None:
     if name is not None and name not in scope.low_level_types:
-        hint = did_you_mean(name, scope.low_level_types)
-        findings.warning("AOS110", f"unknown low-level type `{name}`", span, hint)
+        message = f"unknown low-level type `{name}`"
+        findings.unknown(name, scope.low_level_types, message, span, severity=Severity.WARNING)
 
 
 def _check_cycles(compounds: Iterable[CompoundType], scope: Scope, findings: Findings) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from aos_protocol.documents import Environment, SpecialState
+from aos_protocol.findings import Findings
 from aos_registry.check.blocks import SPECIAL, assignment_blocks
-from aos_registry.documents.source import Findings
 
 __all__ = ["check_endings"]
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from aos_protocol.documents import AbstractionMapping, Environment, SkillModel
+from aos_protocol.findings import Findings
 from aos_protocol.local_types import local_type, local_type_text, told_variables
 from aos_registry.check.blocks import given_observation_blocks
 from aos_registry.check.model_code import read_block
-from aos_registry.documents.source import Findings
 
 __all__ = ["check_given_observation", "check_told_variables", "names_in_given_observation"]
 

@@ -9,7 +9,7 @@ import re
 import warnings
 from collections.abc import Iterable
 
-from aos_protocol.diagnostics import Span
+from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import (
     AbstractionMapping,
     LocalSource,
@@ -20,8 +20,9 @@ from aos_protocol.documents import (
     SkillModel,
     Snippet,
 )
+from aos_protocol.findings import Findings
+from aos_protocol.spelling import quoted
 from aos_registry.check.scope import Scope
-from aos_registry.documents.source import Findings, did_you_mean, quoted
 
 __all__ = ["check_low_level", "check_mapping"]
 
@@ -54,7 +55,7 @@ def check_mapping(
     if mapping.response_variable and mapping.response_variable not in local_names:
         message = f"unknown local variable `{mapping.response_variable}`"
         span = mapping.response_variable_span or mapping.span
-        findings.error("AOS110", message, span, _hint(mapping.response_variable, local_names))
+        findings.unknown(mapping.response_variable, local_names, message, span, _listing(local_names))
 
 
 def check_low_level(document: LowLevelDocument, findings: Findings) -> None:
@@ -110,8 +111,8 @@ def _check_expression(snippet: Snippet | None, known: frozenset[str] | None, fin
         if isinstance(node, ast.Name) and node.id not in known | bound:
             column = _column(snippet, node.lineno, node.col_offset)
             span = snippet.locate(node.lineno, column)
-            hint = did_you_mean(node.id, sorted(known))
-            findings.warning("AOS110", f"no local variable gives `{node.id}`", span, hint)
+            message = f"no local variable gives `{node.id}`"
+            findings.unknown(node.id, sorted(known), message, span, severity=Severity.WARNING)
 
 
 def _check_variable(variable: LocalVariable, findings: Findings) -> None:
@@ -209,7 +210,7 @@ def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, f
     parameters = {parameter.name: parameter.type for parameter in model.parameters}
     if name not in parameters:
         message = f"the skill {model.name} has no parameter `{name}`"
-        findings.error("AOS110", message, span, _hint(name, parameters))
+        findings.unknown(name, parameters, message, span, _listing(parameters))
         return
     _field_type(parameters[name], fields, span, scope, findings)
 
@@ -223,7 +224,7 @@ def _check_assigned(
     types = {variable.name: variable.type for variable in scope.variables.values()} | parameters
     if name not in types:
         message = f"there is no parameter and no state variable `{name}`"
-        findings.error("AOS110", message, assignment.span, _hint(name, types))
+        findings.unknown(name, types, message, assignment.span, _listing(types))
         return
     kind = _field_type(types[name], fields, assignment.span, scope, findings)
     if kind not in ("", "anyValue"):
@@ -241,12 +242,13 @@ def _field_type(kind: str, fields: list[str], span: Span, scope: Scope, findings
             return ""
         types = {inner.name: inner.type for inner in compound.fields}
         if field not in types:
-            findings.error("AOS110", f"the type {kind} has no field `{field}`", span, _hint(field, types))
+            message = f"the type {kind} has no field `{field}`"
+            findings.unknown(field, types, message, span, _listing(types))
             return ""
         kind = types[field]
     return kind
 
 
-def _hint(name: str, known: Iterable[str]) -> str:
-    known = sorted(known)
-    return did_you_mean(name, known) or (f"There are {quoted(known)}" if known else "")
+def _listing(known: Iterable[str]) -> str:
+    names = quoted(sorted(known))
+    return f"There are {names}" if names else ""

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Environment, SkillModel
+from aos_protocol.findings import Findings
+from aos_protocol.spelling import quoted
 from aos_registry.check.blocks import Block, environment_blocks, skill_blocks
 from aos_registry.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_registry.check.weights import check_weights
-from aos_registry.documents.source import Findings, did_you_mean, quoted
 from aos_runtime.snippets import (
     Access,
     Call,
@@ -90,12 +91,12 @@ def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings
         if assignment.temporary is not None and not assignment.temporary.enum_name:
             temporary = assignment.temporary
             if scope.has_environment and (unknown := scope.unknown_type_name(temporary.type)):
-                hint = did_you_mean(unknown, scope.type_names)
-                findings.error("AOS110", f"unknown type `{unknown}`", temporary.span, hint)
+                findings.unknown(unknown, scope.type_names, f"unknown type `{unknown}`", temporary.span)
         for loop in (*assignment.over_previous, *assignment.over_next):
             if scope.has_environment and loop.type not in scope.compounds:
-                hint = did_you_mean(loop.type, scope.compounds) or "A loop runs over a compound type"
-                findings.error("AOS110", f"unknown compound type `{loop.type}`", loop.span, hint)
+                message = f"unknown compound type `{loop.type}`"
+                otherwise = "A loop runs over a compound type"
+                findings.unknown(loop.type, scope.compounds, message, loop.span, otherwise)
 
 
 class _BlockCheck:
@@ -139,10 +140,9 @@ class _BlockCheck:
         for call in self._cpp.calls:
             owner = call.name[0] if len(call.name) == 2 else ""
             if owner in _BUILT_INS and call.name[1] not in _BUILT_INS[owner]:
-                known = _BUILT_INS[owner]
-                hint = did_you_mean(call.name[1], known) or f"It has {quoted(known)}"
-                span = self._part_span(call.function, call.name[1])
-                self._findings.error("AOS110", f"{owner} has no `{call.name[1]}`", span, hint)
+                known, name = _BUILT_INS[owner], call.name[1]
+                span = self._part_span(call.function, name)
+                self._unknown(name, known, f"{owner} has no `{name}`", span, f"It has {quoted(known)}")
             elif owner in _BUILT_INS:
                 self._check_enum(call)
                 check_weights(call, self._cpp.code, self._enum_sizes, self._span, self._findings)
@@ -155,8 +155,8 @@ class _BlockCheck:
         name = self._cpp.code[place.start : place.end].strip()
         declared = {declaration.name for declaration in self._cpp.declarations}
         if name.isidentifier() and name not in self._enum_sizes and name not in declared:
-            hint = did_you_mean(name, self._enum_sizes) or _listing("The enums are", sorted(self._enum_sizes))
-            self._findings.error("AOS110", f"unknown enum `{name}`", self._span(place), hint)
+            otherwise = _listing("The enums are", sorted(self._enum_sizes))
+            self._unknown(name, self._enum_sizes, f"unknown enum `{name}`", self._span(place), otherwise)
 
     def _check_lone_name(self) -> None:
         """A default that is one name must be an enum's value, or low-level."""
@@ -168,8 +168,7 @@ class _BlockCheck:
         if name == self._block.snippet.code.strip() and not name.startswith("_") and name not in known:
             if name in _LITERAL_NAMES or name.isupper():
                 return
-            hint = did_you_mean(name, known)
-            self._findings.error("AOS110", f"unknown name `{name}`", self._span(mentions[0].root), hint)
+            self._unknown(name, known, f"unknown name `{name}`", self._span(mentions[0].root))
 
     # --- mentions --------------------------------------------------------------------------------------
 
@@ -190,8 +189,7 @@ class _BlockCheck:
     def _check_reserved_name(self, mention: Mention, root: str) -> None:
         known = (*SPECIAL_NAMES, *self._scope.low_level_names)
         if root not in known:
-            hint = did_you_mean(root, known)
-            self._findings.error("AOS110", f"unknown name `{root}`", self._span(mention.root), hint)
+            self._unknown(root, known, f"unknown name `{root}`", self._span(mention.root))
 
     def _check_copy(self, mention: Mention, root: str) -> None:
         role = self._block.role
@@ -213,9 +211,9 @@ class _BlockCheck:
         found = self._scope.state_member(name)
         if found is None:
             known = self._scope.state_member_names()
-            hint = did_you_mean(name, known) or _listing("The variables are", self._scope.variables)
+            otherwise = _listing("The variables are", self._scope.variables)
             span = self._part_span(mention.extent, name)
-            self._findings.error("AOS110", f"unknown state variable `{name}`", span, hint)
+            self._unknown(name, known, f"unknown state variable `{name}`", span, otherwise)
             return
         self._check_fields(mention, found, start=2)
         variable = self._scope.variables.get(name)
@@ -240,9 +238,8 @@ class _BlockCheck:
         if name in parameters:
             self._check_fields(mention, ValueType(parameters[name]), start=2)
             return
-        hint = did_you_mean(name, parameters)
         span = self._part_span(mention.extent, name)
-        self._findings.error("AOS110", f"the skill {root} has no parameter `{name}`", span, hint)
+        self._unknown(name, parameters, f"the skill {root} has no parameter `{name}`", span)
 
     def _check_fields(self, mention: Mention, kind: ValueType, *, start: int) -> None:
         """Walks an access path through compound types; stops where a type is not of the documents."""
@@ -263,11 +260,16 @@ class _BlockCheck:
                 return
             fields = {field.name: field.type for field in compound.fields}
             if part not in fields:
-                hint = did_you_mean(part, fields) or _listing("It has", fields)
                 span = self._part_span(mention.extent, part)
-                self._findings.error("AOS110", f"the type {name} has no field `{part}`", span, hint)
+                message = f"the type {name} has no field `{part}`"
+                self._unknown(part, fields, message, span, _listing("It has", fields))
                 return
             name = fields[part]
+
+    def _unknown(
+        self, name: str, known: Iterable[str], message: str, span: Span, otherwise: str = ""
+    ) -> None:
+        self._findings.unknown(name, known, message, span, otherwise)
 
     # --- places ----------------------------------------------------------------------------------------
 

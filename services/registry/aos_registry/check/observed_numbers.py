@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from aos_protocol.documents import AbstractionMapping, Environment, LocalVariable, SkillModel
+from aos_protocol.findings import Findings
 from aos_protocol.local_types import local_type, told_variables
 from aos_registry.check.blocks import DYNAMIC, Block, environment_blocks, skill_blocks
 from aos_registry.check.model_code import read_block
-from aos_registry.documents.source import Findings, did_you_mean
 from aos_runtime.observed import OBSERVED, ReportedNumber, misuses_of, reported_numbers, reports_in
 
 __all__ = ["check_environment_reports", "check_observed_numbers", "check_reports"]
@@ -52,8 +52,8 @@ def check_observed_numbers(
         variable = variables.get(number.name)
         if variable is None:
             message = f"the abstraction mapping of {model.name} has no local variable `{number.name}`"
-            hint = did_you_mean(number.name, variables) or f"Give it one, of type {_wanted(number)}"
-            findings.error("AOS136", message, span, hint)
+            otherwise = f"Give it one, of type {_wanted(number)}"
+            findings.unknown(number.name, variables, message, span, otherwise, code="AOS136")
         elif not _fits(number, variable):
             kind = f"is of type {variable.type}" if variable.type else "has no type"
             message = f"the local variable {variable.name} {kind}, and model code reports {_what(number)}"

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from aos_protocol.documents import AbstractionMapping, SkillModel
+from aos_protocol.findings import Findings
+from aos_protocol.spelling import quoted
 from aos_registry.check.blocks import DYNAMIC, Block, assignment_blocks
 from aos_registry.check.model_code import SPECIAL_NAMES, read_block
 from aos_registry.check.scope import STATE_COPIES, Scope
-from aos_registry.documents.source import Findings, did_you_mean, quoted
 from aos_runtime.snippets import Access, Cpp, DeclarationKind, Mention
 
 __all__ = ["check_responses"]
@@ -35,7 +36,8 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
         if name in given or name in known:
             continue
         message = f"the abstraction mapping of {model.name} has no response `{name}`"
-        findings.error("AOS116", message, span, _hint(name, given))
+        otherwise = f"It has {quoted(given)}" if given else "Add a response with its rule to the mapping"
+        findings.unknown(name, given, message, span, otherwise, code="AOS116")
     _check_text_response(model, mapping, read, findings)
     mentioned = {mention.path[0] for _, cpp in read for mention in cpp.mentions if len(mention.path) == 1}
     for rule in mapping.rules:
@@ -46,12 +48,6 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
             message = f"the skill document of {model.name} never produces the response {rule.response}"
             hint = "When it comes, the belief has no explanation for it"
             findings.warning("AOS117", message, rule.span, hint)
-
-
-def _hint(name: str, given: tuple[str, ...]) -> str:
-    if hint := did_you_mean(name, given):
-        return hint
-    return f"It has {quoted(given)}" if given else "Add a response with its rule to the mapping"
 
 
 def _check_text_response(

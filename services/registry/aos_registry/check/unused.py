@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, SkillModel, Snippet
+from aos_protocol.findings import Findings
 from aos_registry.check.blocks import environment_blocks, skill_blocks
-from aos_registry.documents.source import Findings
 
 __all__ = ["check_unused_locals", "check_unused_variables"]
 

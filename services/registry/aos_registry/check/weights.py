@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from aos_protocol.diagnostics import Span
-from aos_registry.documents.source import Findings
+from aos_protocol.findings import Findings
 from aos_runtime.snippets import Call, Extent
 
 __all__ = ["check_weights"]

@@ -10,7 +10,8 @@ import msgspec
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import AbstractionMapping, EnumType, Environment, LowLevelDocument, SkillModel
-from aos_registry.documents.source import Findings, Text
+from aos_protocol.findings import Findings
+from aos_registry.documents.source import Text
 
 __all__ = ["Document", "DocumentKind", "check_name", "enum_type", "normal_type"]
 

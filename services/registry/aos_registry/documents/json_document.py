@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from aos_protocol.documents import AbstractionMapping, Environment, LowLevelDocument, SkillModel
+from aos_protocol.findings import Findings
+from aos_protocol.spelling import nearest
 from aos_registry.documents.document import Document, DocumentKind, check_name
 from aos_registry.documents.json_environment import read_environment, read_low_level
 from aos_registry.documents.json_mapping import read_mapping
 from aos_registry.documents.json_record import Record
 from aos_registry.documents.json_skill import read_skill
 from aos_registry.documents.json_text import JsonObject, parse_json
-from aos_registry.documents.source import Findings, Source, Text, nearest
+from aos_registry.documents.source import Source, Text
 from aos_registry.documents.version import read_version
 
 __all__ = ["read_json"]
@@ -69,7 +71,7 @@ def _without_header(record: Record, value: JsonObject, findings: Findings) -> No
     for key, _ in value.members:
         if close := nearest(key.text, _HEADERS):
             span = record.source.span(key.start + 1)
-            findings.error("AOS102", f'unknown key "{key.text}"', span, f'Did you mean "{close}"?')
+            findings.unknown(key.text, (close,), f'unknown key "{key.text}"', span, code="AOS102")
             return
     if any(key.text in _SECTIONS for key, _ in value.members):
         hint = 'Add "PlpMain": {"Project": ..., "Name": ..., "Type": ...}'
@@ -92,9 +94,9 @@ def _read(record: Record, header_key: str, source: Source, findings: Findings) -
         return None
     kind = _KINDS.get(kind_name.text)
     if kind is None:
-        close = nearest(kind_name.text, _KINDS)
-        hint = f"Did you mean {close}?" if close else f"It is one of {', '.join(_KINDS)}"
-        findings.error("AOS106", f"unknown kind of document {kind_name.text!r}", kind_name.span, hint)
+        message = f"unknown kind of document {kind_name.text!r}"
+        otherwise = f"It is one of {', '.join(_KINDS)}"
+        findings.unknown(kind_name.text, _KINDS, message, kind_name.span, otherwise, code="AOS106")
         return None
     record.what = f"the {kind.value}"
     name = name or _skill_name(header, kind, findings)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TypeVar
 
 import msgspec
 
-from aos_protocol.diagnostics import Span
+from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import Snippet
+from aos_protocol.findings import Findings
 from aos_registry.documents.code import expression, without_blank_lines
 from aos_registry.documents.json_text import (
     JsonArray,
@@ -20,7 +22,7 @@ from aos_registry.documents.json_text import (
     code_snippet,
     describe,
 )
-from aos_registry.documents.source import Findings, Source, Text, nearest
+from aos_registry.documents.source import Source, Text
 
 __all__ = ["Record"]
 
@@ -86,10 +88,9 @@ class Record:
         """Reports the keys that nobody asked for."""
         for name, (key, _) in self._members.items():
             if name not in self._known:
-                close = nearest(name, self._known)
-                hint = f'Did you mean "{close}"?' if close else "It is ignored"
-                span = self.source.span(key.start + 1)
-                self.findings.warning("AOS102", f'unknown key "{name}" in {self.what}', span, hint)
+                message, span = f'unknown key "{name}" in {self.what}', self.source.span(key.start + 1)
+                unknown = partial(self.findings.unknown, code="AOS102", severity=Severity.WARNING)
+                unknown(name, self._known, message, span, "It is ignored")
 
     # --- scalars ---------------------------------------------------------------------------------------
 

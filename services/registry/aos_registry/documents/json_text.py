@@ -14,7 +14,8 @@ import msgspec
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
-from aos_registry.documents.source import Findings, Source
+from aos_protocol.findings import Findings
+from aos_registry.documents.source import Source
 
 __all__ = [
     "JsonArray",

@@ -6,8 +6,9 @@ import msgspec
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Import, LocalSource, LocalVariable, Snippet
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import check_name
-from aos_registry.documents.source import Findings, Text
+from aos_registry.documents.source import Text
 
 __all__ = ["LocalVariableParts", "build_local_variable"]
 

@@ -8,10 +8,11 @@ import msgspec
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Iteration, Snippet, TemporaryVariable
+from aos_protocol.findings import Findings
 from aos_registry.documents.code import expression
 from aos_registry.documents.document import check_name, enum_type, normal_type
 from aos_registry.documents.sdl_text import Part, Section, enum_values
-from aos_registry.documents.source import Findings, Text
+from aos_registry.documents.source import Text
 
 __all__ = ["read_block"]
 

@@ -6,9 +6,10 @@ import re
 
 import msgspec
 
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import check_name, normal_type
 from aos_registry.documents.sdl_text import Part
-from aos_registry.documents.source import Findings, Text
+from aos_registry.documents.source import Text
 
 __all__ = ["Declaration", "read_declaration", "read_number", "read_truth"]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document, DocumentKind, check_name
 from aos_registry.documents.sdl_environment import read_environment
 from aos_registry.documents.sdl_low_level import read_low_level
@@ -11,7 +12,7 @@ from aos_registry.documents.sdl_mapping import read_mapping
 from aos_registry.documents.sdl_sections import GRAMMARS, Sections, places_of_words
 from aos_registry.documents.sdl_skill import read_skill
 from aos_registry.documents.sdl_text import Section, parse_sdl
-from aos_registry.documents.source import Findings, Source, Text
+from aos_registry.documents.source import Source, Text
 from aos_registry.documents.version import read_version
 
 __all__ = ["read_sdl"]

@@ -14,6 +14,7 @@ from aos_protocol.documents import (
     SpecialState,
     StateVariable,
 )
+from aos_protocol.findings import Findings
 from aos_registry.documents.code import expression
 from aos_registry.documents.document import check_name, enum_type
 from aos_registry.documents.sdl_blocks import read_block
@@ -25,7 +26,7 @@ from aos_registry.documents.sdl_declaration import (
 )
 from aos_registry.documents.sdl_sections import DEFAULT_DISCOUNT, Sections
 from aos_registry.documents.sdl_text import Part, Section, listed_values
-from aos_registry.documents.source import Findings, Text
+from aos_registry.documents.source import Text
 
 __all__ = ["read_environment"]
 

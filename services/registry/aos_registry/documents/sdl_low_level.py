@@ -6,10 +6,11 @@ import re
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import LowLevelConstant, LowLevelDocument, LowLevelType, Parameter
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import check_name
 from aos_registry.documents.sdl_sections import Sections
 from aos_registry.documents.sdl_text import Part, Section
-from aos_registry.documents.source import Findings, Text
+from aos_registry.documents.source import Text
 
 __all__ = ["read_low_level"]
 

@@ -15,12 +15,13 @@ from aos_protocol.documents import (
     LowLevelAssignment,
     ResponseRule,
 )
+from aos_protocol.findings import Findings
 from aos_registry.documents.document import check_name, normal_type
 from aos_registry.documents.local_variable import LocalVariableParts, build_local_variable
 from aos_registry.documents.sdl_declaration import read_number, read_truth
 from aos_registry.documents.sdl_sections import Sections
 from aos_registry.documents.sdl_text import Part, Section
-from aos_registry.documents.source import Findings, Text, nearest
+from aos_registry.documents.source import Text
 
 __all__ = ["read_mapping"]
 
@@ -90,10 +91,10 @@ def _assignments(section: Section, findings: Findings) -> tuple[LowLevelAssignme
 def _activation(section: Section, findings: Findings) -> Activation | None:
     kind = section.value.text.lower()
     if kind not in _ACTIVATION_KINDS:
-        close = nearest(kind, _ACTIVATION_KINDS)
-        hint = f"Did you mean {close}?" if close else f"It is one of {', '.join(_ACTIVATION_KINDS)}"
-        span = section.value.span if kind else section.span
-        findings.error("AOS106", f"unknown activation {section.value.text!r}", span, hint)
+        name, span = section.value.text, section.value.span if kind else section.span
+        otherwise = f"It is one of {', '.join(_ACTIVATION_KINDS)}"
+        message = f"unknown activation {name!r}"
+        findings.unknown(name, _ACTIVATION_KINDS, message, span, otherwise, code="AOS106")
         return None
     path, service = section.last("path", findings), section.last("srv", findings)
     duration = section.last("max_duration", findings)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment
+from aos_protocol.findings import Findings
 from aos_registry.documents.sdl_blocks import read_block
 from aos_registry.documents.sdl_text import Body, Grammar, Section, Word, last_of
-from aos_registry.documents.source import Findings
 
 __all__ = ["DEFAULT_DISCOUNT", "GRAMMARS", "Sections", "places_of_words"]
 

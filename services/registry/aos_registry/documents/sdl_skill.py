@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Parameter, SkillModel
+from aos_protocol.findings import Findings
 from aos_registry.documents.sdl_declaration import read_declaration, read_number
 from aos_registry.documents.sdl_sections import Sections
-from aos_registry.documents.source import Findings
 
 __all__ = ["read_skill"]
 

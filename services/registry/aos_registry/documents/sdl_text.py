@@ -16,8 +16,10 @@ import msgspec
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
+from aos_protocol.findings import Findings
+from aos_protocol.spelling import nearest
 from aos_registry.documents.code import dedented, expression, without_blank_lines
-from aos_registry.documents.source import Findings, Source, Text, nearest
+from aos_registry.documents.source import Source, Text
 
 __all__ = [
     "Body",

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from aos_registry.documents.source import Findings, Text
+from aos_protocol.findings import Findings
+from aos_registry.documents.source import Text
 
 __all__ = ["is_higher", "read_version"]
 

@@ -11,12 +11,12 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
+from aos_protocol.findings import Findings
 from aos_protocol.local_types import LocalType, local_type, told_variables
 from aos_runtime.document_code import snippets_of
 from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import read_cpp_expression
 from aos_solver.emission.cpp_library import headers_for
-from aos_solver.emission.findings import Findings
 from aos_solver.emission.lower_code import (
     BELIEF,
     DYNAMIC,
@@ -51,11 +51,10 @@ def lower(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     """The program, and what is to be said about the documents; no program if there are errors."""
     findings = Findings()
     check_names(project, findings)
-    if any(diagnostic.is_error for diagnostic in findings.diagnostics):
-        return None, tuple(findings.diagnostics)
+    if findings.has_errors:
+        return None, findings.diagnostics
     program = _Lowering(project, findings).program()
-    has_errors = any(diagnostic.is_error for diagnostic in findings.diagnostics)
-    return None if has_errors else program, tuple(findings.diagnostics)
+    return None if findings.has_errors else program, findings.diagnostics
 
 
 class _Lowering:

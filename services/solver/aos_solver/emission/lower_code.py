@@ -17,6 +17,7 @@ from aos_protocol.documents import (
     Snippet,
     TemporaryVariable,
 )
+from aos_protocol.findings import Findings
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
     Cpp,
@@ -27,7 +28,6 @@ from aos_runtime.snippets import (
     strip_comments,
 )
 from aos_solver.emission.cpp_library import unrepeatable_names
-from aos_solver.emission.findings import Findings
 from aos_solver.emission.lower_types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
 from aos_solver.emission.rewrite import EnumValues, Rewriting, rewrite

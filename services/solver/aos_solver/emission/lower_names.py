@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Assignment, Environment, Project, SkillModel
+from aos_protocol.findings import Findings
 from aos_runtime.cpp_keywords import CPP_KEYWORDS
-from aos_solver.emission.findings import Findings
 
 __all__ = ["assignments_of", "check_names"]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from aos_protocol.documents import Environment, Project, StateVariable
+from aos_protocol.findings import Findings
 from aos_protocol.local_types import told_variables
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import read_cpp
-from aos_solver.emission.findings import Findings
 from aos_solver.emission.lower_code import Pieces, environment_sections, skill_sections
 from aos_solver.emission.lower_rooms import Rooms
 from aos_solver.emission.lower_types import Types, ordered_compounds

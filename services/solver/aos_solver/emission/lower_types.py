@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, EnumType
-from aos_solver.emission.findings import Findings
+from aos_protocol.findings import Findings
 from aos_solver.emission.lower_rooms import Rooms
 from aos_solver.emission.program import Axis, Enum
 

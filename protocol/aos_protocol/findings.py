@@ -1,0 +1,85 @@
+"""The collector of what is found in documents: every check adds to it, nothing is raised."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Mend, Severity, Span, has_errors
+from aos_protocol.spelling import nearest
+
+__all__ = ["Findings"]
+
+_LONGEST_EXCERPT = 4000
+_EXCERPT_MARGIN = 200
+
+
+class Findings:
+    """The diagnostics of one run, each with the source line it is about where its file's lines are known."""
+
+    def __init__(self, lines: Mapping[str, Sequence[str]] | None = None) -> None:
+        self._diagnostics: list[Diagnostic] = []
+        self._lines: dict[str, Sequence[str]] = dict(lines or {})
+
+    def add_source(self, file: str, lines: Sequence[str]) -> None:
+        """From now on what is found in the file shows its line."""
+        self._lines[file] = lines
+
+    def error(self, code: str, message: str, span: Span, hint: str = "", mend: Mend | None = None) -> None:
+        self.add(Diagnostic(Severity.ERROR, code, message, span, hint, mend=mend))
+
+    def warning(self, code: str, message: str, span: Span, hint: str = "", mend: Mend | None = None) -> None:
+        self.add(Diagnostic(Severity.WARNING, code, message, span, hint, mend=mend))
+
+    def remark(self, code: str, message: str, span: Span, hint: str = "", mend: Mend | None = None) -> None:
+        self.add(Diagnostic(Severity.REMARK, code, message, span, hint, mend=mend))
+
+    def unknown(
+        self,
+        name: str,
+        known: Iterable[str],
+        message: str,
+        span: Span,
+        otherwise: str = "",
+        *,
+        code: str = "AOS110",
+        severity: Severity = Severity.ERROR,
+    ) -> None:
+        """A name that means nothing. The hint is the nearest known name, else what stands in `otherwise`."""
+        close = nearest(name, known)
+        hint = f"Did you mean `{close}`?" if close else otherwise
+        mend = Mend(span, len(name), close) if close and self._stands_at(name, span) else None
+        self.add(Diagnostic(severity, code, message, span, hint, mend=mend))
+
+    def add(self, diagnostic: Diagnostic) -> None:
+        """A finding, which gets the source line it is about where it has none."""
+        excerpt = diagnostic.excerpt or self._excerpt(diagnostic.span)
+        self._diagnostics.append(msgspec.structs.replace(diagnostic, excerpt=excerpt))
+
+    def __len__(self) -> int:
+        return len(self._diagnostics)
+
+    @property
+    def has_errors(self) -> bool:
+        return has_errors(self._diagnostics)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """In the order in which they were found."""
+        return tuple(self._diagnostics)
+
+    def sorted(self) -> tuple[Diagnostic, ...]:
+        """By file and place; what is said twice is said once."""
+        unique = dict.fromkeys(self._diagnostics)
+        return tuple(sorted(unique, key=lambda diagnostic: (diagnostic.span, diagnostic.code)))
+
+    def _line(self, span: Span) -> str:
+        lines = self._lines.get(span.file, ())
+        return lines[span.line - 1].rstrip() if 0 < span.line <= len(lines) else ""
+
+    def _excerpt(self, span: Span) -> str:
+        return self._line(span)[: span.column + _EXCERPT_MARGIN] if span.column <= _LONGEST_EXCERPT else ""
+
+    def _stands_at(self, name: str, span: Span) -> bool:
+        return span.column > 0 and self._line(span).startswith(name, span.column - 1)

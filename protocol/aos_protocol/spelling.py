@@ -1,0 +1,29 @@
+"""Names that were probably meant: what a message suggests for a name that does not exist."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = ["did_you_mean", "nearest", "quoted"]
+
+_ALIKE = 0.65
+"""How much of two names has to be the same, from 0 to 1: of `itn` and `int` it is 0.67."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The known name that is most like `name`, or nothing where none is alike; letter case counts little."""
+    by_lower = {candidate.lower(): candidate for candidate in reversed([*known])}
+    close = difflib.get_close_matches(name.lower(), by_lower, n=1, cutoff=_ALIKE)
+    return by_lower[close[0]] if close else ""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """The hint that names the nearest known name; empty where none is near."""
+    close = nearest(name, known)
+    return f"Did you mean `{close}`?" if close else ""
+
+
+def quoted(names: Iterable[str]) -> str:
+    """Names for a message, in order: `a`, `b`."""
+    return ", ".join(f"`{name}`" for name in names)
