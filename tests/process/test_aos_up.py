@@ -31,7 +31,7 @@ def deploy_file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = (root / "deploy" / "armadillo.yaml").read_text()
     replaced = {
         "tcp/127.0.0.1:7447": "tcp/127.0.0.1:0",
-        "[bundles/": f"[{root}/deploy/bundles/",
+        "- bundles/": f"- {root}/deploy/bundles/",
         "world: worlds/": f"world: {root}/deploy/worlds/",
         "simulations: 100_000": "simulations: 5_000",
         "runs: ../runs": "runs: runs",

@@ -129,6 +129,28 @@ def test_the_picking_skill_has_the_figures_of_its_statistics(bundles: Path, name
     assert {figure.strip() for each in lists for figure in each.split(",")} == FIGURES[name]
 
 
+@pytest.mark.parametrize("name", FIGURES)
+def test_without_sensing_and_with_the_enhanced_pick_the_rest_is_the_same(bundles: Path, name: str) -> None:
+    whole, blind, enhanced = (
+        load_bundle(bundles / f"armadillo-{name}{kind}").files for kind in ("", "-blind", "-enhanced")
+    )
+    sensing = {file for file in whole if file.startswith("observe_")}
+    assert blind == {file: text for file, text in whole.items() if file not in sensing}
+    assert set(enhanced) == set(blind)
+    others = {"armadillo.ef", "pick.am", "pick.sd"}  # The environment has another horizon.
+    assert {file for file in enhanced if enhanced[file] != whole[file]} == others
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_the_enhanced_pick_has_the_figures_of_the_plain_one(bundles: Path, name: str) -> None:
+    """The original's enhanced finer pick gave four weights to five endings, and so other probabilities."""
+    weights = [
+        re.findall(r"SampleDiscrete\(Ending, \{(.*?)\}", (bundles / path / "pick.sd").read_text())
+        for path in (f"armadillo-{name}", f"armadillo-{name}-enhanced")
+    ]
+    assert weights[0] == weights[1]
+
+
 def test_the_two_bundles_differ_in_the_picking_model_only(bundles: Path) -> None:
     rough, finer = (load_bundle(bundles / f"armadillo-{name}").files for name in FIGURES)
     assert {name for name in finer if finer[name] != rough[name]} == {"pick.sd"}

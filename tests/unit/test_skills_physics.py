@@ -15,7 +15,7 @@ import pytest
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.armadillo import KIND
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile, FaultModel
-from aos_skills.pybullet.worlds.armadillo.pick import can_in_reach
+from aos_skills.pybullet.worlds.armadillo.pick import STRETCHED, can_in_reach
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 
 pytestmark = pytest.mark.physics
@@ -116,6 +116,23 @@ def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Mak
     call(world, "/navigate", CORRIDOR)
     call(world, "/serve")
     assert world.has_injured
+
+
+def test_an_arm_that_stayed_out_is_folded_with_the_can_in_the_hand(make: Make) -> None:
+    world = make(FaultModel(arm_stays_out=1.0))
+    call(world, "/navigate", EASY_TABLE)
+    assert not call(world, "/pick")["success"]
+    assert call(world, "/retract")["success"]
+    assert world.robot.arm.angles[3] < -2.3
+    assert world.is_holding
+
+
+def test_an_arm_may_stay_out_again(make: Make) -> None:
+    world = make(FaultModel(arm_stays_out_again=1.0))
+    assert call(world, "/retract")["success"]  # It was folded all the time.
+    world.robot.arm.move(STRETCHED)
+    assert not call(world, "/retract")["success"]
+    assert world.robot.arm.angles[3] > -2.3
 
 
 def test_the_same_seed_gives_the_same_world(make: Make, file: ArmadilloFile) -> None:

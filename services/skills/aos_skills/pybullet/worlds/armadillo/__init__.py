@@ -4,6 +4,7 @@ from aos_skills.pybullet.parts.world import WorldKind
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile
 from aos_skills.pybullet.worlds.armadillo.navigate import navigate
 from aos_skills.pybullet.worlds.armadillo.pick import pick
+from aos_skills.pybullet.worlds.armadillo.retract import retract
 from aos_skills.pybullet.worlds.armadillo.sense import sense
 from aos_skills.pybullet.worlds.armadillo.serve import serve
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
@@ -11,5 +12,7 @@ from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 __all__ = ["KIND"]
 
 KIND = WorldKind(
-    ArmadilloFile, Armadillo, {"/navigate": navigate, "/pick": pick, "/sense": sense, "/serve": serve}
+    ArmadilloFile,
+    Armadillo,
+    {"/navigate": navigate, "/pick": pick, "/sense": sense, "/serve": serve, "/retract": retract},
 )

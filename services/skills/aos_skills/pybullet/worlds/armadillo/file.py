@@ -36,6 +36,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     pose_noise_m: float = 0.0
     height_noise_m: float = 0.0
     arm_stays_out: float = 0.0
+    arm_stays_out_again: float = 0.0
     silent_fingers: float = 0.0
 
 
