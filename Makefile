@@ -32,8 +32,8 @@ promote:  ## accept the emitted code as it is now as the golden files
 
 lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.venv/bin/pip install uv)
 	$(COMPILE) --output-file $(LOCK)/build.txt $(LOCK)/build.in
-	$(COMPILE) --output-file $(LOCK)/runtime.txt --constraint $(LOCK)/build.txt pyproject.toml
-	$(COMPILE) --output-file $(LOCK)/dev.txt --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
+	$(COMPILE) --output-file $(LOCK)/runtime.txt --extra sim --constraint $(LOCK)/build.txt pyproject.toml
+	$(COMPILE) --output-file $(LOCK)/dev.txt --extra sim --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
 	printf 'ziglang>=0.15\n' | $(COMPILE) --output-file $(LOCK)/compiler.txt -
 
 newcomer:  ## run README's two commands in a fresh clone, an empty home and without a compiler

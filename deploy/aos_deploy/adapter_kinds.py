@@ -7,10 +7,14 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.metadata import entry_points
+from importlib.util import find_spec
 
 import msgspec
 
-__all__ = ["COMMAND", "EXTERNAL", "MODEL", "Kind", "adapter_kinds"]
+from aos_protocol.distribution import Extra, pip_install
+from aos_protocol.errors import DeployError
+
+__all__ = ["COMMAND", "EXTERNAL", "MODEL", "Kind", "adapter_kinds", "check_installed"]
 
 
 class Kind(msgspec.Struct, frozen=True, kw_only=True):
@@ -19,6 +23,7 @@ class Kind(msgspec.Struct, frozen=True, kw_only=True):
     `adapter` is `module:Class`, empty where no adapter class of Python runs. The value of the kind's own word
     in the deploy file becomes the option `value`. `options` are those it knows, None for any. It may take
     `start_s` to get ready, and `stop_s` to end; when it ends by itself it is started again `restarts` times.
+    It imports the module `needs`, which comes with the `extra` of our package.
     """
 
     adapter: str = ""
@@ -27,6 +32,8 @@ class Kind(msgspec.Struct, frozen=True, kw_only=True):
     start_s: float = 20.0
     stop_s: float = 5.0
     restarts: int = 3
+    needs: str = ""
+    extra: Extra = ""
 
 
 COMMAND = "command"
@@ -40,6 +47,8 @@ _KINDS = {
         start_s=60.0,
         stop_s=20.0,  # It makes the mission's picture while it stops.
         restarts=0,  # Its world would begin anew.
+        needs="pybullet",
+        extra="sim",
     ),
     MODEL: Kind(adapter="aos_solver.model_adapter:ModelAdapter", value="note"),
     "class": Kind(value="class", options=None),
@@ -56,3 +65,13 @@ def adapter_kinds() -> dict[str, Kind]:
         for point in entry_points(group="aos.adapters")
     }
     return installed | _KINDS
+
+
+def check_installed(adapter: str, kind: Kind) -> None:
+    """DeployError AOS805 if an adapter of this kind needs a package that is not installed."""
+    if kind.needs and find_spec(kind.needs) is None:
+        raise DeployError(
+            f"the adapter {adapter} needs the package {kind.needs}, which is not installed",
+            code="AOS805",
+            hint=f"Run {pip_install(kind.extra)}",
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -11,6 +12,7 @@ import typer
 
 from aos_deploy.exit_codes import exit_code_of_error
 from aos_deploy.faults import print_fault
+from aos_deploy.options import HELP_NAMES, Version
 from aos_protocol.errors import AosError
 
 __all__ = ["aos_app", "main", "up_main"]
@@ -33,7 +35,6 @@ _COMMANDS = {
 """The modules in `commands`, in the order of the help, with what each registers."""
 
 _STYLE: dict[str, Any] = {
-    "add_completion": False,
     "pretty_exceptions_enable": False,
     # Rich would keep the line breaks of the docstrings, and takes a fifth of a second to import.
     "rich_markup_mode": None,
@@ -51,10 +52,11 @@ def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
         name="aos",
         no_args_is_help=True,
         help="Task-level autonomy for robots: documents in, decisions out.",
-        epilog="Example: aos plan deploy/bundles/armadillo-finer --exact",
+        epilog="Example: aos new example armadillo, then aos-up armadillo/armadillo.yaml",
+        context_settings=HELP_NAMES,
         **_STYLE,
     )
-    app.callback()(_no_options)
+    app.callback()(_own_options)
     for module in _needed_modules(arguments):
         import_module(f"aos_deploy.commands.{module}").register(app)
     return app
@@ -69,11 +71,18 @@ def up_main() -> NoReturn:
 
 def _needed_modules(arguments: Sequence[str]) -> list[str]:
     """Only the module of the command that is called, so that others' imports cost nothing."""
-    called = [module for module, names in _COMMANDS.items() if arguments and arguments[0] in names]
+    words = arguments or _words_to_complete()
+    called = [module for module, names in _COMMANDS.items() if words and words[0] in names]
     return called or list(_COMMANDS)
 
 
-def _no_options() -> None:
+def _words_to_complete() -> list[str]:
+    """What stands before the word that a shell wants completed; empty if no shell asks."""
+    line = os.environ.get("COMP_WORDS") or os.environ.get("_TYPER_COMPLETE_ARGS") or ""
+    return line.split()[1:]
+
+
+def _own_options(version: Version = False) -> None:
     """Without a callback typer would take a lone command for the whole program."""
 
 

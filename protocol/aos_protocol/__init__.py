@@ -2,3 +2,5 @@
 
 Imports the standard library and msgspec only. Start with `messages`.
 """
+
+__version__ = "0.1.0"

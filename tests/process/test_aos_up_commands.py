@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from aos_deploy.commands.machine import examine_machine
+from aos_protocol import __version__
 
 BIN = Path(sys.executable).parent
 
@@ -72,6 +73,36 @@ def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(
     (cache,) = [finding for finding in examine_machine() if finding.subject == "cache"]
     assert cache.state == "missing"
     assert "AOS_CACHE_DIR" in cache.advice
+
+
+@pytest.mark.parametrize("command", ["aos", "aos-up"])
+def test_every_program_tells_its_version_and_has_a_short_help(command: str) -> None:
+    assert run(command, "--version").stdout == f"aos {__version__}\n"
+    assert run(command, "-h").stdout == run(command, "--help").stdout
+    assert "--install-completion" in run(command, "-h").stdout
+
+
+def test_short_help_reaches_the_commands_below() -> None:
+    assert "Example: aos bundle push" in run("aos", "bundle", "push", "-h").stdout
+
+
+@pytest.mark.parametrize(
+    ("line", "completed"),
+    [
+        ("aos si", ["simulate"]),
+        ("aos simulate --pl", ["--planner"]),
+        ("aos plan --planner p", ["pomcp"]),
+        ("aos-up --li", ["--listen"]),
+    ],
+)
+def test_a_shell_completes_commands_options_and_values(
+    line: str, completed: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = line.split()[0]
+    monkeypatch.setenv(f"_{name.upper().replace('-', '_')}_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", line)
+    monkeypatch.setenv("COMP_CWORD", str(len(line.split()) - 1))
+    assert run(name).stdout.split() == completed
 
 
 def test_version_names_what_it_stands_on() -> None:

@@ -60,6 +60,12 @@ def test_a_return_is_told_with_and_without_the_documents_rollout_policy(cache_di
     assert metrics == ["return, pomcp", "return, pomcp, no rollout policy"]
 
 
+def test_a_bundle_of_ones_own_is_measured_by_its_folder(bundles: Path, cache_dir: Path) -> None:
+    done = run_bench(cache_dir, str(bundles / "bench" / "tiger"), "--metric", "steps", "--quick", "--json")
+    assert done.returncode == 0, done.stderr
+    assert {row["problem"] for row in json.loads(done.stdout)["rows"]} == {"tiger"}
+
+
 def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path) -> None:
     done = run_bench(cache_dir, "lion")
     assert done.returncode == 2

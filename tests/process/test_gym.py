@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos[gym]'")
+pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-autonomy[gym]'")
 
 import numpy as np
 from gymnasium.utils.env_checker import check_env

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import msgspec
 
-from aos_deploy.bench.problems import CHECKOUT
+from aos_deploy.shipped import shipped
 from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child
 from aos_solver.building.compiler import Compiler
@@ -16,7 +16,7 @@ from aos_solver.building.compiler import Compiler
 __all__ = ["NAME", "PROBLEMS", "WITHOUT_KNOWLEDGE", "BaselineFigure", "Baselines"]
 
 NAME = "by hand"
-SOURCE = CHECKOUT / "tests/bench/baseline.cpp"
+SOURCE = shipped("tests/bench/baseline.cpp")
 WITHOUT_KNOWLEDGE = "simulations, uniform"
 PROBLEMS = ("tiger", "rocksample-7-8", "navigation")
 

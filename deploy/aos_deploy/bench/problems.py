@@ -6,12 +6,9 @@ from pathlib import Path
 
 import msgspec
 
-from aos_protocol.errors import DeployError
+from aos_deploy.shipped import shipped
 
-__all__ = ["CHECKOUT", "Problem", "problem_names", "problems_named"]
-
-CHECKOUT = Path(__file__).resolve().parents[3]
-"""Documents and baselines are measured where they are developed, and not part of an installation."""
+__all__ = ["Problem", "problem_names", "problems_named"]
 
 
 class Problem(msgspec.Struct, frozen=True):
@@ -21,15 +18,14 @@ class Problem(msgspec.Struct, frozen=True):
     bundle: Path
     runs: int = 0
     steps: int = 90
-    is_searched: bool = True
+
+
+def _own_bundle(folder: Path) -> Problem:
+    return Problem(folder.resolve().name, folder, runs=50)
 
 
 def _ours(name: str, runs: int = 0, steps: int = 90) -> Problem:
-    return Problem(name, CHECKOUT / "deploy/bundles/bench" / name, runs, steps)
-
-
-def _theirs(name: str) -> Problem:
-    return Problem(name, CHECKOUT.parent / "shared/corpus" / name, is_searched=False)
+    return Problem(name, shipped(f"deploy/bundles/bench/{name}"), runs, steps)
 
 
 _PROBLEMS = {
@@ -49,8 +45,6 @@ _PROBLEMS = {
         _ours("lightdark-normal", runs=100),
         _ours("laser-normal", runs=100),
         _ours("navigation"),
-        _theirs("sampling-rate"),
-        _theirs("wildfire"),
     )
 }
 
@@ -61,11 +55,10 @@ def problem_names() -> list[str]:
 
 
 def problems_named(names: list[str]) -> list[Problem]:
-    """The problems of these names in their usual order, all for none; AOS805 without a checkout."""
-    if not (CHECKOUT / "deploy/bundles/bench").is_dir():
-        raise DeployError(
-            "the benchmark problems are not installed with AOS",
-            code="AOS805",
-            hint="Run aos bench from a checkout of the sources",
-        )
-    return [problem for name, problem in _PROBLEMS.items() if not names or name in names]
+    """The problems of these names in their usual order, all for none, and then bundles of the user's own.
+
+    Whatever is not the name of a problem is the folder of a bundle.
+    """
+    ours = [problem for name, problem in _PROBLEMS.items() if not names or name in names]
+    bundles = [Path(name) for name in names if name not in _PROBLEMS]
+    return [*ours, *(_own_bundle(bundle) for bundle in bundles)]

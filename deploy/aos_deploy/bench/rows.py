@@ -12,6 +12,8 @@ from pathlib import Path
 
 import msgspec
 
+from aos_protocol import __version__
+
 __all__ = ["OURS", "Machine", "Report", "Row", "Skipped", "figure", "this_machine", "with_ratios"]
 
 OURS = "aos"
@@ -91,14 +93,14 @@ def with_ratios(rows: Iterable[Row]) -> tuple[Row, ...]:
 
 def this_machine(compiler: str, seed: int, budget_s: float) -> Machine:
     """The machine as it is now, and the settings of a run."""
-    packages = [name for name in ("aos", "pomdp-py") if _version(name)]
+    peers = {name: _version(name) for name in ("pomdp-py",) if _version(name)}
     return Machine(
         processor=_processor(),
         cores=len(os.sched_getaffinity(0)),
         system=f"{platform.system()} {platform.release()}, Python {platform.python_version()}",
         load=os.getloadavg()[0],
         date=datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC"),
-        versions={name: _version(name) for name in packages},
+        versions={"aos": __version__, **peers},
         compiler=compiler,
         seed=seed,
         budget_s=budget_s,

@@ -18,6 +18,7 @@ from aos_deploy.bench.measure import (
 )
 from aos_deploy.bench.problems import Problem
 from aos_deploy.bench.rows import OURS, Report, Row, Skipped, figure, this_machine, with_ratios
+from aos_protocol.distribution import pip_install
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError
 from aos_registry.load import load_bundle
@@ -77,7 +78,7 @@ class Suite:
         compiler = await find_compiler()
         machine = this_machine(compiler.version, self._effort.seed, self._effort.budget_s)
         if not pomdp_py_peer.is_installed():
-            self._skip(pomdp_py_peer.NAME, "it is not installed: pip install 'aos[bench]'")
+            self._skip(pomdp_py_peer.NAME, f"it is not installed: {pip_install('bench')}")
         for problem in self._problems:
             if not problem.bundle.is_dir():
                 self._skip(problem.name, "its documents are not there")
@@ -99,7 +100,7 @@ class Suite:
             self._on_step(f"{problem.name}: rates")
             if "steps" in effort.metrics:
                 await self._sampling_rates(engine, problem)
-            if "simulations" in effort.metrics and problem.is_searched:
+            if "simulations" in effort.metrics:
                 await self._search_rate(engine, problem, "simulations")
                 async with self._engine(project) as other:
                     await self._two_threads({1: engine, 2: other}, problem)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from pathlib import Path
 from typing import Annotated, get_args
 
 import typer
@@ -31,7 +32,10 @@ def register(app: typer.Typer) -> None:
 def bench(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[NAME]...", help=f"Of {', '.join(problem_names())}; else all"),
+        typer.Argument(
+            metavar="[NAME]...",
+            help=f"Of {', '.join(problem_names())}, or a bundle's folder; all the named if left out",
+        ),
     ] = None,
     metric: Annotated[
         list[str] | None, typer.Option(help=f"Of {', '.join(METRICS)}, repeatable; else all")
@@ -56,7 +60,7 @@ def bench(
     Against hand-written C++, and against pomdp-py if it is installed. All of it
     takes an hour, with --quick some minutes.
     """
-    problems = problems_named(_known(names or [], problem_names(), "NAME"))
+    problems = problems_named(_bundles_or_known(names or []))
     effort = Effort(
         metrics=tuple(_known(metric or [], METRICS, "--metric")) or METRICS,
         repetitions=2 if quick else 5,
@@ -84,6 +88,11 @@ def bench(
         typer.echo(markdown(report))
     else:
         print_report(report)
+
+
+def _bundles_or_known(names: list[str]) -> list[str]:
+    _known([name for name in names if not Path(name).is_dir()], problem_names(), "NAME")
+    return names
 
 
 def _planners(names: list[str]) -> tuple[Planner, ...]:

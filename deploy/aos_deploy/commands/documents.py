@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from enum import StrEnum
-from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -13,6 +12,7 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.printing import count, print_diagnostics, print_json
+from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError
@@ -79,7 +79,7 @@ def lint(
             }
         )
     elif form is Format.SARIF:
-        print_json(sarif_log(found, folder=str(path), version=version("aos")))
+        print_json(sarif_log(found, folder=str(path), version=__version__))
     else:
         print_diagnostics(found)
         errors, warnings = counts[Severity.ERROR], counts[Severity.WARNING]

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from aos_deploy.printing import print_json
+from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def gym(
     Prints its spaces and a program to start from.
     """
     if importlib.util.find_spec("gymnasium") is None:
-        raise DeployError("gymnasium is not installed", code="AOS805", hint="Run pip install 'aos[gym]'")
+        raise DeployError("gymnasium is not installed", code="AOS805", hint=f"Run {pip_install('gym')}")
     from aos_deploy.gym import AosVectorEnv
 
     environment = AosVectorEnv(bundle, worlds)

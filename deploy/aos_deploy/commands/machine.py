@@ -18,10 +18,13 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.program import cache_dir
+from aos_protocol import __version__
+from aos_protocol.distribution import DISTRIBUTION, pip_install
 
 __all__ = ["Finding", "examine_machine", "register"]
 
-_PACKAGES = ("eclipse-zenoh", "msgspec", "numpy", "pybullet", "tree-sitter", "rich")
+_PACKAGES = ("eclipse-zenoh", "msgspec", "numpy", "tree-sitter", "rich")
+_SIMULATOR = "pybullet"
 _SUGGESTED_MEMORY_GB = 2.0
 _VERSION_TIMEOUT_S = 60.0
 
@@ -63,9 +66,9 @@ def doctor(
 
 def version() -> None:
     """Print the versions of AOS and of what it stands on."""
-    typer.echo(f"aos {importlib.metadata.version('aos')}")
+    typer.echo(f"aos {__version__}, installed as {DISTRIBUTION}")
     typer.echo(f"python {platform.python_version()}")
-    for package in _PACKAGES:
+    for package in (*_PACKAGES, _SIMULATOR):
         typer.echo(f"{package} {_version_of(package) or 'not installed'}")
 
 
@@ -74,6 +77,7 @@ def examine_machine() -> list[Finding]:
     return [
         _python(),
         *(_package(name) for name in _PACKAGES),
+        _simulator(),
         _compiler(),
         _loopback(),
         _processors(),
@@ -93,8 +97,17 @@ def _python() -> Finding:
 def _package(name: str) -> Finding:
     found = _version_of(name)
     if found is None:
-        return Finding(name, "missing", "not installed", "Run ./setup.sh")
+        return Finding(name, "missing", "not installed", f"Run {pip_install()}")
     return Finding(name, "ok", found)
+
+
+def _simulator() -> Finding:
+    """Real robots and robots simulated by their own documents need none."""
+    found = _version_of(_SIMULATOR)
+    if found is None:
+        advice = f"Only simulated rooms need it: {pip_install('sim')}"
+        return Finding(_SIMULATOR, "absent", "not installed", advice)
+    return Finding(_SIMULATOR, "ok", found)
 
 
 def _version_of(package: str) -> str | None:
@@ -114,7 +127,7 @@ def _compiler() -> Finding:
     ziglang = _version_of("ziglang")
     if ziglang is not None:
         return Finding("C++ compiler", "ok", f"ziglang {ziglang}, from the Python package")
-    advice = "Install g++ (apt-get install g++), or run ./setup.sh, which then takes the ziglang wheel"
+    advice = f"Install g++ (apt-get install g++), or one from the package index: {pip_install('compiler')}"
     return Finding("C++ compiler", "missing", "none of $CXX, g++, clang++, ziglang", advice)
 
 

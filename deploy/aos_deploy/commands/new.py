@@ -1,8 +1,10 @@
-"""`aos new`: documents to start from, that lint clean and can be planned with at once."""
+"""`aos new`: documents to start from, that lint clean and can be planned with at once, and examples."""
 
 from __future__ import annotations
 
+import os
 import re
+import shutil
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -10,6 +12,9 @@ from typing import Annotated
 
 import typer
 
+from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.shipped import deploy_files, shipped
+from aos_deploy.typed import nearest
 from aos_protocol.errors import DocumentError
 from aos_registry.convert import Dialect, convert
 from aos_registry.load import read_bundle_files
@@ -19,7 +24,7 @@ __all__ = ["register"]
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
-new_app = typer.Typer(no_args_is_help=True, help="Write documents to start from.")
+new_app = typer.Typer(no_args_is_help=True, help="Write documents or a whole example to start from.")
 
 
 def register(app: typer.Typer) -> None:
@@ -66,6 +71,47 @@ def skill(
     is_json = all(file.endswith(".json") for file in documents)
     _write(bundle, _in_dialect(texts, Dialect.JSON if is_json else Dialect.SDL))
     typer.echo(f"Check it: aos lint {bundle}")
+
+
+@new_app.command(epilog="Example: aos new example armadillo")
+def example(
+    name: Annotated[str, typer.Argument(help=f"Of {', '.join(deploy_files())}")],
+    folder: Annotated[Path | None, typer.Option("--in", help="A new directory; without it NAME here")] = None,
+) -> None:
+    """Write a system that runs: a deploy file with its bundles and its world.
+
+    They are copies, to be run and to be changed.
+    """
+    if name not in deploy_files():
+        hint = nearest(name, deploy_files())
+        raise DocumentError(f"there is no example {name}", code="AOS101", hint=hint)
+    target = folder or Path(name)
+    _copy(deploy_files()[name], target)
+    deploy = target / f"{name}.yaml"
+    typer.echo(f"Run it:      aos-up {deploy}")
+    for bundle in read_deploy_file(deploy).bundles:
+        typer.echo(f"Look at it:  aos plan {os.path.relpath(bundle)} --exact")
+
+
+def _copy(deploy: Path, target: Path) -> None:
+    """A deploy file and what it names, at the same places beside it, into a directory that is new."""
+    named = read_deploy_file(deploy)
+    found = [deploy, *named.bundles, *(path for path in (named.world, named.policy) if path is not None)]
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        if any(target.iterdir()):
+            hint = "Nothing was written; name another directory with --in"
+            raise DocumentError(f"{target} is not empty", code="AOS111", hint=hint)
+        for source in found:
+            copy = target / source.resolve().relative_to(shipped("deploy"))
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            if source.is_dir():
+                shutil.copytree(source, copy)
+            else:
+                shutil.copy(source, copy)
+            typer.echo(f"wrote {copy}")
+    except OSError as error:
+        raise DocumentError(f"{target} cannot be written: {error.strerror}", code="AOS101") from error
 
 
 def _check_name(name: str, kind: str) -> None:

@@ -11,6 +11,7 @@ import typer
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
+from aos_deploy.options import HELP_NAMES, Version
 
 __all__ = ["register", "up"]
 
@@ -22,7 +23,7 @@ _EPILOG = (
 
 def register(app: typer.Typer) -> None:
     """Adds the command to `aos`, or makes it the whole of `aos-up`."""
-    app.command(epilog=_EPILOG)(up)
+    app.command(epilog=_EPILOG, context_settings=HELP_NAMES)(up)
 
 
 def up(
@@ -42,6 +43,7 @@ def up(
     ] = False,
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
+    version: Version = False,
 ) -> None:
     """Bring a robot's system up and run its mission.
 
@@ -52,6 +54,7 @@ def up(
     # For --help, and for a word about a wrong option, none of this is needed.
     import asyncio
 
+    from aos_deploy.adapter_kinds import check_installed
     from aos_deploy.adapters import played_by_model
     from aos_deploy.deploy_file import check_endpoint, read_deploy_file
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
@@ -70,6 +73,8 @@ def up(
     )
     if model:
         deployment = msgspec.structs.replace(deployment, adapters=played_by_model())
+    for adapter in deployment.adapters:
+        check_installed(adapter.name, adapter.kind)
     title = f"{file.robot} · {deploy.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
     mission = MissionRun(deployment, view, SystemClock())

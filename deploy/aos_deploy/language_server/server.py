@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterator, Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 from lsprotocol import types
@@ -14,6 +13,7 @@ from pygls.workspace import PositionCodec, ServerTextPosition
 
 from aos_deploy.language_server.checking import check_folder, end_column
 from aos_deploy.language_server.documents import Entry, meaning_at, outline, proposals_at
+from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity
 
 __all__ = ["language_server"]
@@ -42,7 +42,7 @@ class BundleServer(LanguageServer):
     """Keeps the findings of every folder with an open document current in the editor."""
 
     def __init__(self) -> None:
-        super().__init__("aos", version("aos"))
+        super().__init__("aos", __version__)
         self._pending: dict[Path, asyncio.TimerHandle] = {}
         self._told: dict[Path, set[str]] = {}
 

@@ -17,6 +17,7 @@ from collections.abc import Iterator, Mapping
 
 import msgspec
 
+from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError, ModelError
 from aos_runtime.children import PIPE, Child
 
@@ -27,7 +28,7 @@ Family = str
 
 _OLDEST = {"gcc": 11, "clang": 15}
 _VERSION_TIMEOUT_S = 30.0
-_HINT = "Install g++ 11 or newer (apt install g++), or the `ziglang` wheel (pip install 'aos[compiler]')"
+_HINT = f"Install g++ 11 or newer (apt install g++), or the `ziglang` wheel ({pip_install('compiler')})"
 
 
 class Compiler(msgspec.Struct, frozen=True):

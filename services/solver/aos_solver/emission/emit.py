@@ -10,12 +10,12 @@ import hashlib
 import json
 import re
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 import jinja2
 import msgspec
 
+from aos_protocol import __version__
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.program import Local, ObjectList, Observed, Piece, Program, Skill, Variable
 
@@ -81,7 +81,7 @@ def emit(program: Program) -> EmittedModel:
     text = _templates().get_template("model.cpp.jinja").render(
         program=program,
         its=own_names,
-        version=version("aos"),
+        version=__version__,
         title=_one_line(program.project),
         before="" if program.is_one_state else "const ",
         flags_type=_flags_type(program),

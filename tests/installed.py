@@ -1,0 +1,88 @@
+"""AOS installed from its wheel, as a user has it: commands in an environment that knows no checkout."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+__all__ = ["SIMULATOR", "Installation", "built_wheel", "install"]
+
+SIMULATOR = ("pybullet", "PIL")
+"""The beginnings of what the extra `sim` adds to the packages."""
+
+_PATIENCE_S = 300.0
+
+
+class Installation:
+    """The commands of an environment, run in a folder that was empty at first."""
+
+    def __init__(self, environment: Path, folder: Path, cache_dir: Path) -> None:
+        self.commands = environment / "bin"
+        self.folder = folder
+        own = {"AOS_CACHE_DIR": str(cache_dir), "XDG_RUNTIME_DIR": str(folder.parent)}
+        self.environment = {**os.environ, **own}
+
+    def run(self, *command: str) -> subprocess.CompletedProcess[str]:
+        """What a command said, after its end."""
+        name, *arguments = command
+        return subprocess.run(
+            [self.commands / name, *arguments],
+            cwd=self.folder,
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=_PATIENCE_S,
+        )
+
+    def start(self, *command: str) -> subprocess.Popen[str]:
+        """A command that goes on."""
+        name, *arguments = command
+        return subprocess.Popen(
+            [self.commands / name, *arguments],
+            cwd=self.folder,
+            env=self.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+
+def built_wheel(root: Path, folder: Path) -> Path:
+    """The wheel of a checkout's files, built in a copy, so that the checkout stays as it is."""
+    source = folder / "source"
+    left = shutil.ignore_patterns(".*", "build", "runs", "*.egg-info", "__pycache__")
+    shutil.copytree(root, source, ignore=left)
+    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check"]
+    subprocess.run(
+        [*pip, "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", folder, source],
+        check=True,
+        stdin=subprocess.DEVNULL,
+        timeout=_PATIENCE_S,
+    )
+    (wheel,) = folder.glob("*.whl")
+    return wheel
+
+
+def install(wheel: Path, environment: Path, *, without: tuple[str, ...] = ()) -> None:
+    """Makes an environment with the wheel in it.
+
+    What it depends on is linked from the environment of the tests, which has it already, but for packages
+    that begin with one of `without`.
+    """
+    venv.create(environment, symlinks=True)
+    pip = [sys.executable, "-m", "pip", "--python", environment / "bin" / "python", "install"]
+    options = ["--quiet", "--disable-pip-version-check", "--no-deps", "--no-index"]
+    subprocess.run([*pip, *options, wheel], check=True, stdin=subprocess.DEVNULL, timeout=_PATIENCE_S)
+    (packages,) = environment.glob("lib/python*/site-packages")
+    (available,) = Path(sys.prefix).glob("lib/python*/site-packages")
+    for package in available.iterdir():
+        ours = package.name.startswith(("aos", "__editable__", "_", *without)) or package.suffix == ".pth"
+        if not ours and not (packages / package.name).exists():
+            (packages / package.name).symlink_to(package)

@@ -1,0 +1,74 @@
+"""AOS from its wheel in an empty folder: the examples, the benchmarks and the main job are all there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from installed import SIMULATOR, Installation, built_wheel, install
+
+ANY_PORT = ("--listen", "tcp/127.0.0.1:0")
+
+
+@pytest.fixture(scope="module")
+def wheel(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return built_wheel(root, tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
+def aos(wheel: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
+    """With the extra `sim`."""
+    place = tmp_path_factory.mktemp("with-sim")
+    install(wheel, place / "environment")
+    (place / "empty").mkdir()
+    return Installation(place / "environment", place / "empty", cache_dir)
+
+
+@pytest.fixture(scope="module")
+def aos_without_sim(wheel: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
+    place = tmp_path_factory.mktemp("without-sim")
+    install(wheel, place / "environment", without=SIMULATOR)
+    (place / "empty").mkdir()
+    return Installation(place / "environment", place / "empty", cache_dir)
+
+
+def test_the_wheel_has_a_name_of_its_own(wheel: Path) -> None:
+    assert wheel.name.startswith("aos_autonomy-")
+
+
+@pytest.mark.physics
+def test_the_main_job_runs_from_an_empty_folder(aos: Installation) -> None:
+    assert aos.run("aos", "new", "example", "armadillo").returncode == 0
+    deploy = aos.folder / "armadillo" / "armadillo.yaml"
+    deploy.write_text(deploy.read_text().replace("step_limit: 30", "step_limit: 2"))
+    done = aos.run("aos-up", "armadillo/armadillo.yaml", *ANY_PORT)
+    assert "step  2: pick -> " in done.stdout, done.stderr
+    assert done.returncode == 6, done.stderr
+    assert (aos.folder / "runs" / "latest" / "summary.json").is_file()
+
+
+def test_an_example_is_written_once(aos_without_sim: Installation) -> None:
+    assert aos_without_sim.run("aos", "new", "example", "armadillo", "--in", "once").returncode == 0
+    again = aos_without_sim.run("aos", "new", "example", "armadillo", "--in", "once")
+    assert again.returncode == 1
+    assert "once is not empty. Nothing was written" in again.stderr
+
+
+def test_a_benchmark_runs_from_an_empty_folder(aos_without_sim: Installation) -> None:
+    done = aos_without_sim.run("aos", "bench", "tiger", "--metric", "steps", "--quick", "--json")
+    assert done.returncode == 0, done.stderr
+    assert '"name": "by hand"' in done.stdout
+
+
+def test_a_simulated_room_without_the_extra_says_what_to_install(aos_without_sim: Installation) -> None:
+    aos_without_sim.run("aos", "new", "example", "armadillo")
+    done = aos_without_sim.run("aos-up", "armadillo/armadillo.yaml", *ANY_PORT)
+    assert done.returncode == 3
+    assert "needs the package pybullet" in done.stderr
+    assert "pip install 'aos-autonomy[sim]'" in done.stderr
+
+
+def test_the_doctor_can_do_without_the_simulator(aos_without_sim: Installation) -> None:
+    done = aos_without_sim.run("aos", "doctor")
+    assert done.returncode == 0
+    assert "pip install 'aos-autonomy[sim]'" in done.stdout
