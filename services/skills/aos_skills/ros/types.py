@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError, SkillError
 from aos_skills.ros.definitions import (
     SHIPPED,
@@ -33,7 +34,7 @@ except ImportError as error:  # pragma: no cover - the extra is not installed
     raise DeployError(
         "the adapters for ROS 2 need the package rosbags",
         code="AOS805",
-        hint="Install it with: .venv/bin/pip install 'aos[ros]'",
+        hint=f"Run {pip_install('ros')}",
     ) from error
 
 __all__ = ["DISTRIBUTIONS", "Field", "RosTypes"]
