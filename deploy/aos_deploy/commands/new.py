@@ -14,8 +14,8 @@ import typer
 
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files, shipped
-from aos_deploy.typed import nearest
 from aos_protocol.errors import DocumentError
+from aos_protocol.spelling import did_you_mean
 from aos_registry.convert import Dialect, convert
 from aos_registry.load import read_bundle_files
 from aos_registry.merge import pushed_project
@@ -83,7 +83,7 @@ def example(
     They are copies, to be run and to be changed.
     """
     if name not in deploy_files():
-        hint = nearest(name, deploy_files())
+        hint = did_you_mean(name, deploy_files())
         raise DocumentError(f"there is no example {name}", code="AOS101", hint=hint)
     target = folder or Path(name)
     _copy(deploy_files()[name], target)
