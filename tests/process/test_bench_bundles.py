@@ -33,6 +33,7 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(
             belief = initial_belief(model)
             await engine.reset_belief()
             await engine.reset_world(seed=walk)
+            ending = ""
             for _ in range(STEPS_OF_A_WALK):
                 for value in (await engine.exact(horizon=1)).actions:
                     assert value.q == pytest.approx(expected_reward(model, belief, value.action), abs=1e-9)
@@ -42,11 +43,12 @@ async def test_rewards_observations_and_beliefs_are_the_literatures(
                 probability, belief = observed(model, belief, action, step.response)
                 update = await engine.update(action, step.response)
                 assert update.probability == pytest.approx(probability, abs=1e-9)
+                ending = step.ending
                 if not belief:
-                    assert step.ending == "goal"
                     break
                 entropy = -sum(weight * math.log(weight) for weight in belief.values())
                 assert update.summary.entropy == pytest.approx(entropy, abs=1e-6)
+            assert (ending == "goal") == (not belief)
 
 
 async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_dir: Path) -> None:

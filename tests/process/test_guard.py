@@ -109,16 +109,22 @@ async def test_the_command_ends_when_the_guard_itself_is_killed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("limits", "code", "status"),
+    ("limits", "code", "status", "written"),
     [
-        (Limits(address_space_bytes=300_000_000), "bytearray(2 * 10**9)", 1),
-        (Limits(cpu_s=1), "while True: pass", -signal.SIGKILL),
-        (Limits(file_bytes=1000), "open('out', 'wb').write(bytes(10**6))", 1),
+        (Limits(address_space_bytes=300_000_000), "bytearray(2 * 10**9)", 1, {}),
+        (Limits(cpu_s=1), "while True: pass", -signal.SIGKILL, {}),
+        (Limits(file_bytes=1000), "open('out', 'wb').write(bytes(10**6))", 1, {"out": 1000}),
     ],
     ids=["memory", "processor time", "file size"],
 )
-async def test_limits_hold(limits: Limits, code: str, status: int, tmp_path: Path) -> None:
+async def test_limits_hold(
+    limits: Limits, code: str, status: int, written: dict[str, int], tmp_path: Path
+) -> None:
     child = await Child.start(guarded([sys.executable, "-c", code], limits), cwd=tmp_path, stderr=PIPE)
     assert await child.wait() == status
-    if (tmp_path / "out").exists():
-        assert (tmp_path / "out").stat().st_size == 1000
+    assert sizes(tmp_path) == written
+
+
+def sizes(folder: Path) -> dict[str, int]:
+    """The bytes of each file."""
+    return {path.name: path.stat().st_size for path in folder.iterdir()}

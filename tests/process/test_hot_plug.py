@@ -15,16 +15,52 @@ BIN = Path(sys.executable).parent
 SENSING = ("observe_holding", "observe_arm_outstretched")
 
 
+PATIENT_PICK = """
+import asyncio
+from pathlib import Path
+
+class Patient:
+    version = "1"
+
+    def __init__(self, host):
+        self.host = host
+
+    async def start(self):
+        await self.host.serve(*self.host.chosen(["/pick"]))
+
+    async def call(self, call):
+        while not Path(self.host.options["until"]).exists():
+            await asyncio.sleep(0.02)
+        return {"success": True}
+
+    async def close(self):
+        pass
+"""
+"""A pick that ends when a file is there: the mission waits for the pushes, and no clock decides."""
+
+
 @pytest.fixture
-def deploy_file(root: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The shipped hot-plug deploy file on a free port, with runs of its own."""
+def picked(tmp_path: Path) -> Path:
+    """The file that lets the pick end."""
+    return tmp_path / "picked"
+
+
+@pytest.fixture
+def deploy_file(
+    root: Path, tmp_path: Path, picked: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> Path:
+    """The shipped hot-plug deploy file on a free port, with runs of its own and the patient pick."""
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    (tmp_path / "patient.py").write_text(PATIENT_PICK)
     text = (root / "deploy" / "armadillo-hotplug.yaml").read_text()
     for old, new in {
         "tcp/127.0.0.1:7447": "tcp/127.0.0.1:0",
         "[bundles/": f"[{root}/deploy/bundles/",
         "world: worlds/": f"world: {root}/deploy/worlds/",
         "runs: ../runs": "runs: runs",
+        "/pick: pybullet": "/pick: patient",
+        "\nbind:": f'\nadapters: {{patient: {{class: "patient:Patient", until: {picked}}}}}\nbind:',
     }.items():
         assert old in text
         text = text.replace(old, new)
@@ -46,8 +82,8 @@ def _push(bundle: Path, runs: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.physics
-def test_sensing_skills_pushed_after_the_pick_are_used_before_serving(
-    root: Path, deploy_file: Path, tmp_path: Path
+def test_sensing_skills_pushed_during_the_pick_are_used_before_serving(
+    root: Path, deploy_file: Path, tmp_path: Path, picked: Path
 ) -> None:
     runs = tmp_path / "runs"
     broken = tmp_path / "broken"
@@ -57,29 +93,26 @@ def test_sensing_skills_pushed_after_the_pick_are_used_before_serving(
         (broken / document.name).write_text(text)
 
     decisions: list[dict[str, Any]] = []
+    pushed: list[subprocess.CompletedProcess[str]] = []
     with subprocess.Popen([BIN / "aos-up", deploy_file, "--json"], stdout=subprocess.PIPE, text=True) as up:
         try:
             for event in _events(up):
-                if event["event"] != "decision":
+                if event["event"] != "decision" or "outcome" in event:
                     continue
                 decisions.append(event)
-                if event["skill"] == "pick" and "outcome" not in event and len(runs_of(decisions)) == 1:
-                    refused = _push(broken, runs)
-                    accepted = _push(root / "deploy/bundles/armadillo-finer", runs)
+                if event["skill"] == "pick" and not pushed:
+                    pushed = [_push(broken, runs), _push(root / "deploy/bundles/armadillo-finer", runs)]
+                    picked.touch()
+                elif event["skill"] in (*SENSING, "serve"):
+                    break
         finally:
             up.kill()
 
+    refused, accepted = pushed
     assert refused.returncode == 1
     assert "arm_out_streched" in refused.stdout + refused.stderr
     assert accepted.returncode == 0
     first, last = decisions[0], decisions[-1]
     assert not any(value["action"] in SENSING for value in first["actions"])
     assert last["revision"] == first["revision"] + 1
-    skills = [event["skill"] for event in decisions if "outcome" in event]
-    if "serve" in skills:
-        assert set(skills[: skills.index("serve")]) & set(SENSING)
-
-
-def runs_of(decisions: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The decisions for a pick, so far."""
-    return [event for event in decisions if event["skill"] == "pick" and "outcome" not in event]
+    assert last["skill"] in SENSING
