@@ -152,6 +152,14 @@ async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused
     assert (await robot.refusal("/sense", 2, epoch=1)).code == "AOS506"
 
 
+async def test_a_stopped_world_leaves_the_animated_picture_of_its_mission(robot: Robot) -> None:
+    await robot.start()
+    assert (await robot.call("/sense")).fields == {}
+    assert robot.child is not None
+    await robot.child.stop(PATIENCE_S)
+    assert (robot.run_dir / "mission.gif").stat().st_size > 0
+
+
 async def test_after_a_crash_in_motion_the_outcome_is_unknown_and_nothing_moves(robot: Robot) -> None:
     await robot.start()
     assert (await robot.call("/sense", 1)).fields == {}

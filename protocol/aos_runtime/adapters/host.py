@@ -193,7 +193,8 @@ class Host:
         await self._failed
 
     async def close(self) -> None:
-        is_stuck = self._failed.done()
+        # Whoever stops the process cancels what `run` waits for, which is no failure.
+        is_stuck = self._failed.done() and not self._failed.cancelled()
         if not is_stuck:
             if self._running is not None:
                 is_stuck = not await self._stop(self._running, "the adapter ends")

@@ -119,4 +119,4 @@ class PybulletAdapter:
 
     def _finish(self) -> None:
         self._world.camera.save_animation(self._run_dir / "mission.gif")
-        self._world.scene.close()
+        self._world.close()

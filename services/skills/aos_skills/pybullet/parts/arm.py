@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 
@@ -92,6 +93,12 @@ class Arm:
             if math.dist(self.tip_place(), place) < 0.003:
                 break
         return math.dist(self.tip_place(), place) < 0.02
+
+    def trace(self, way: list[Vector], speed_m_s: float = 0.08) -> None:
+        """Moves the tip, hand down, through all points of a way without a stop."""
+        for start, place in itertools.pairwise([self.tip_place(), *way]):
+            self._target = self._solved(place)
+            self._scene.wait(max(math.dist(start, place) / speed_m_s, STEP_S))
 
     def _hold(self) -> None:
         self._client.setJointMotorControlArray(

@@ -36,6 +36,10 @@ class World(ABC):
         """Before each call of a skill: draws the faults that last as long as it."""
         self.faults.drawn.clear()
 
+    def close(self) -> None:
+        """Ends the world."""
+        self.scene.close()
+
     @abstractmethod
     def stop(self) -> None:
         """The robot holds still where it is; time does not pass."""

@@ -1,0 +1,96 @@
+"""The TurtleBot3: drive, lidar, and an estimate of where it is."""
+
+from __future__ import annotations
+
+import math
+import random
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from aos_skills.pybullet.parts.differential_drive import DifferentialDrive
+from aos_skills.pybullet.parts.lidar import MAX_RANGE_M, Lidar
+from aos_skills.pybullet.parts.scene import Scene, Vector
+from aos_skills.pybullet.parts.urdf import joints_and_links
+
+__all__ = ["TurtleBot3"]
+
+WHEEL_RADIUS_M = 0.033
+SEPARATION_M = 0.160
+LOCALISE_EVERY_S = 0.2
+TRUST = 0.2
+"""How much of the way to a new localisation the estimate moves."""
+LIDAR_BEHIND_M = 0.032
+
+
+class TurtleBot3:
+    """Stands still at `place` when it is made.
+
+    Where it is, it knows from its wheels and from a localisation that stands in for one by map and lidar: the
+    true place with normal noise of `place_noise_m` and `yaw_noise_rad`, five times a second.
+    """
+
+    def __init__(
+        self, scene: Scene, place: Vector, noise: random.Random, place_noise_m: float, yaw_noise_rad: float
+    ) -> None:
+        self._scene = scene
+        self._noise = noise
+        self._sigmas = (place_noise_m, place_noise_m, yaw_noise_rad)
+        self._next_s = 0.0
+        client = scene.client
+        x, y, yaw = place
+        self.body: int = client.loadURDF(
+            str(Path(__file__).parent / "burger.urdf"),
+            (x, y, 0.001),
+            client.getQuaternionFromEuler((0, 0, yaw)),
+        )
+        joints, links = joints_and_links(client, self.body)
+        wheels = joints["wheel_left_joint"], joints["wheel_right_joint"]
+        for wheel in wheels:
+            client.changeDynamics(self.body, wheel, lateralFriction=1.2, rollingFriction=0.0)
+        # The caster's ball rolls in every direction: it carries, and holds nothing.
+        client.changeDynamics(self.body, links["caster_link"], lateralFriction=0.0)
+        self.drive = DifferentialDrive(scene, self.body, wheels, WHEEL_RADIUS_M, SEPARATION_M, place)
+        self.lidar = Lidar(scene, self.body, links["base_scan"])
+        scene.watchers.append(self._localise)
+        scene.wait(0.2)
+
+    @property
+    def true_place(self) -> Vector:
+        """Of the middle between the wheels; the robot itself knows `place`."""
+        (x, y, _), turned = self._scene.client.getBasePositionAndOrientation(self.body)
+        # Bullet gives the centre of mass, which lies behind the axle.
+        yaw = self._scene.client.getEulerFromQuaternion(turned)[2]
+        return x + LIDAR_BEHIND_M * math.cos(yaw), y + LIDAR_BEHIND_M * math.sin(yaw), yaw
+
+    @property
+    def place(self) -> Vector:
+        """Where the robot believes it is: x, y in metres, yaw in radians."""
+        return self.drive.odometry
+
+    def stop(self) -> None:
+        self.drive.stop()
+
+    def seen(self) -> npt.NDArray[np.float64]:
+        """The points that the lidar's rays ended on, one a row, x and y in metres."""
+        x, y, yaw = self.place
+        ranges = self.lidar.ranges_m()
+        hit = ranges < MAX_RANGE_M - 0.01
+        angles, ranges = self.lidar.angles[hit] + yaw, ranges[hit]
+        at = np.array([x - LIDAR_BEHIND_M * math.cos(yaw), y - LIDAR_BEHIND_M * math.sin(yaw)])
+        points: npt.NDArray[np.float64] = at + ranges[:, None] * np.stack(
+            [np.cos(angles), np.sin(angles)], axis=1
+        )
+        return points
+
+    def _localise(self) -> None:
+        if self._scene.time_s < self._next_s:
+            return
+        self._next_s = self._scene.time_s + LOCALISE_EVERY_S
+        measured = [
+            true + self._noise.gauss(0, s) for true, s in zip(self.true_place, self._sigmas, strict=True)
+        ]
+        x, y, yaw = self.place
+        turn = math.remainder(measured[2] - yaw, 2 * math.pi)
+        self.drive.correct((x + TRUST * (measured[0] - x), y + TRUST * (measured[1] - y), yaw + TRUST * turn))

@@ -1,0 +1,33 @@
+"""The form of tic-tac-toe's world files."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import msgspec
+
+__all__ = ["FaultModel", "TicTacToeFile"]
+
+
+class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Noise of the camera's place (metres), of each pixel (of 255) and of the sun's place (metres) as
+    standard deviations. `dry_centre` is the probability that the pen leaves nothing in the middle cell.
+    """
+
+    camera_noise_m: float = 0.0
+    pixel_noise: float = 0.0
+    light: float = 0.0
+    dry_centre: float = 0.0
+
+
+class TicTacToeFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Who plays against the robot, and what is on the board at first.
+
+    A person types at a terminal that is connected to `port` of this machine: see `play`. `moves_made` gives
+    numbers of random moves, the person's first, and how likely each is.
+    """
+
+    opponent: Literal["random", "perfect", "person"] = "random"
+    port: int = 7450
+    moves_made: dict[int, float] = {}
+    faults: FaultModel = FaultModel()

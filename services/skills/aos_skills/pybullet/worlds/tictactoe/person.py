@@ -1,0 +1,93 @@
+"""A person who types: the world listens on this machine only, and `play` connects a terminal to it."""
+
+from __future__ import annotations
+
+import socket
+import time
+
+from aos_protocol.errors import DeployError
+from aos_skills.pybullet.parts.scene import Scene
+from aos_skills.pybullet.worlds.tictactoe.rules import empty_cells
+
+__all__ = ["PersonAtTerminal"]
+
+LOOK_EVERY_S = 0.05
+
+
+class PersonAtTerminal:
+    """Asks whoever is connected for a cell; somebody else may connect later.
+
+    Simulated time goes on meanwhile, in step with the clock.
+    """
+
+    def __init__(self, port: int, scene: Scene) -> None:
+        self._scene = scene
+        try:
+            self._listener = socket.create_server(("127.0.0.1", port))
+        except OSError as error:
+            raise DeployError(
+                f"port {port} for the person's terminal: {error.strerror}",
+                hint="Give another `port:` in the world file",
+            ) from error
+        self._listener.settimeout(0)
+        self.port: int = self._listener.getsockname()[1]
+        self._terminal: socket.socket | None = None
+
+    def __call__(self, board: str) -> int:
+        """Returns when a cell was typed. What ends the skill's call, ends the waiting."""
+        cells = empty_cells(board)
+        is_asked, typed = False, b""
+        while True:
+            if self._terminal is None:
+                is_asked, typed = False, b""
+                self._accept()
+            if self._terminal is not None and not is_asked:
+                rows = (board[start : start + 3] for start in (0, 3, 6))
+                numbers = ", ".join(str(cell + 1) for cell in cells)
+                self._say("\n" + "\n".join(" ".join(row) for row in rows) + f"\nYour cell ({numbers}): ")
+                is_asked = True
+            typed += self._heard()
+            if b"\n" in typed:
+                answer = typed.decode(errors="replace").strip()
+                if answer.isdecimal() and int(answer) - 1 in cells:
+                    return int(answer) - 1
+                is_asked, typed = False, b""
+            self._scene.wait(LOOK_EVERY_S)
+            time.sleep(LOOK_EVERY_S)
+
+    def close(self) -> None:
+        """Hangs up."""
+        self._listener.close()
+        self._hang_up()
+
+    def _hang_up(self) -> None:
+        if self._terminal is not None:
+            self._terminal.close()
+            self._terminal = None
+
+    def _accept(self) -> None:
+        try:
+            self._terminal, _ = self._listener.accept()
+            self._terminal.settimeout(0)
+        except BlockingIOError:
+            return
+
+    def _say(self, text: str) -> None:
+        try:
+            if self._terminal is not None:
+                self._terminal.sendall(text.encode())
+        except OSError:
+            self._hang_up()
+
+    def _heard(self) -> bytes:
+        if self._terminal is None:
+            return b""
+        try:
+            heard = self._terminal.recv(100)
+        except BlockingIOError:
+            return b""
+        except OSError:
+            heard = b""
+        if heard == b"":
+            self._hang_up()
+        return heard

@@ -1,0 +1,48 @@
+"""Play against the robot: `python -m aos_skills.pybullet.worlds.tictactoe.play`, while `aos-up` runs."""
+
+from __future__ import annotations
+
+import argparse
+import socket
+import sys
+import threading
+import time
+
+PATIENCE_S = 120.0
+
+
+def main() -> None:
+    """Connects this terminal to the world, which shows the board and asks for the number of a cell."""
+    parser = argparse.ArgumentParser(prog="play", description=main.__doc__)
+    parser.add_argument("--port", type=int, default=7450, help="as in the world file (default: 7450)")
+    options = parser.parse_args()
+    world = connected(options.port)
+    if world is None:
+        sys.exit(f"play: nobody listens on port {options.port}: start aos-up deploy/tictactoe-person.yaml")
+    sys.stdout.write("Connected. You draw crosses; the robot begins. Cells are 1 to 9, row by row.\n")
+    threading.Thread(target=send_lines, args=(world,), daemon=True).start()
+    while heard := world.recv(1000):
+        sys.stdout.write(heard.decode())
+        sys.stdout.flush()
+    sys.stdout.write("\nThe game has ended.\n")
+
+
+def connected(port: int) -> socket.socket | None:
+    """A connection to the world, which may take a while to be there."""
+    until = time.monotonic() + PATIENCE_S
+    while time.monotonic() < until:
+        try:
+            return socket.create_connection(("127.0.0.1", port))
+        except ConnectionRefusedError:
+            time.sleep(0.5)
+    return None
+
+
+def send_lines(world: socket.socket) -> None:
+    """What is typed, line by line."""
+    for line in sys.stdin:
+        world.sendall(line.encode())
+
+
+if __name__ == "__main__":
+    main()

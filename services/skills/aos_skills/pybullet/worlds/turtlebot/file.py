@@ -1,0 +1,52 @@
+"""The form of the TurtleBot's world files."""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_skills.pybullet.parts.place import Place
+
+__all__ = ["Crate", "FaultModel", "Obstacle", "TurtlebotFile"]
+
+
+class Obstacle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """An upright box on the robot's map, by its centre and half its sides, in metres."""
+
+    x: float
+    y: float
+    half_x: float
+    half_y: float
+
+
+class Crate(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A crate that stands there with a probability, and is on no map."""
+
+    x: float
+    y: float
+    probability: float = 1.0
+    half: float = 0.15
+
+
+class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Noise of the localisation as standard deviations; `lost_report` is a probability: the robot arrived and
+    its report says that it did not.
+    """
+
+    place_noise_m: float = 0.0
+    yaw_noise_rad: float = 0.0
+    lost_report: float = 0.0
+
+
+class TurtlebotFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A rectangular arena around the origin with walls, `half_x` and `half_y` half its sides.
+
+    `places` are looked at for the record of what was visited; the robot gets its goals from its documents.
+    """
+
+    robot: Place
+    half_x: float
+    half_y: float
+    places: dict[str, Place]
+    obstacles: list[Obstacle] = []
+    crates: dict[str, Crate] = {}
+    faults: FaultModel = FaultModel()

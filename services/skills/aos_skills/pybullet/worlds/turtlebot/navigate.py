@@ -1,0 +1,58 @@
+"""Navigate: plan a way on the map, follow it, and plan again around what the lidar sees and the map lacks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from aos_skills.pybullet.parts.follower import Following, follow
+from aos_skills.pybullet.parts.route import Point
+from aos_skills.pybullet.worlds.turtlebot.world import Turtlebot
+
+__all__ = ["navigate"]
+
+MAX_PLANS = 12
+UNMAPPED_M = 0.12
+"""What the lidar sees further than this from everything on the map is something new."""
+
+
+def navigate(world: Turtlebot, fields: dict[str, Any]) -> dict[str, Any]:
+    """Takes `x` and `y` in metres; `success` says whether it arrived.
+
+    Where no way is left, the robot stays where it saw that.
+    """
+    goal = (float(fields["x"]), float(fields["y"]))
+    if not _arrives(world, goal):
+        return {"success": False}
+    return {"success": not world.faults.draw("the report is lost", world.file.faults.lost_report)}
+
+
+def _arrives(world: Turtlebot, goal: Point) -> bool:
+    robot, floor_map = world.robot, world.floor_map
+    floor_map.forget()
+    seen: npt.NDArray[np.float64] = np.empty((0, 2))
+    looked_s = -1.0
+
+    def is_free(left: list[Point]) -> bool:
+        nonlocal seen, looked_s
+        if world.scene.time_s - looked_s < 0.2:
+            return True
+        looked_s = world.scene.time_s
+        points = robot.seen()
+        new = points[floor_map.distance(points) > UNMAPPED_M]
+        # Cells hold one point each, so that standing still does not gather thousands.
+        seen = np.unique(np.round(np.concatenate([seen, new]) / 0.03) * 0.03, axis=0)
+        if len(new) == 0:
+            return True
+        floor_map.add(np.unique(np.round(new / 0.03) * 0.03, axis=0))
+        return floor_map.is_free(np.array(left))
+
+    for _ in range(MAX_PLANS):
+        way = floor_map.way(robot.place[:2], goal)
+        if way is None:
+            return False
+        if follow(world.scene, robot.drive, way, is_free) is Following.ARRIVED:
+            return True
+    return False

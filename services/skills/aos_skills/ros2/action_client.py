@@ -1,0 +1,161 @@
+"""Running an action of a ROS 2 node: goal, feedback, result, and the handshake of cancelling."""
+
+from __future__ import annotations
+
+import asyncio
+import uuid
+from collections.abc import Callable
+from typing import NamedTuple
+
+from aos_protocol.errors import AosError, SkillError
+from aos_skills.ros2.node import Fields, Node
+from aos_skills.ros2.wire import Kind
+
+__all__ = ["STATUS", "ActionEnd", "run_action"]
+
+STATUS = {
+    1: "accepted",
+    2: "executing",
+    3: "canceling",
+    4: "succeeded",
+    5: "canceled",
+    6: "aborted",
+}
+
+CANCEL_S = 5.0
+"""How long a node may take to end a goal after it was asked to."""
+
+
+class ActionEnd(NamedTuple):
+    """How a goal ended: `succeeded`, `canceled` or `aborted`, and the result's fields."""
+
+    status: str
+    result: Fields
+
+
+async def run_action(
+    node: Node,
+    action: str,
+    goal: Fields,
+    *,
+    type_name: str = "",
+    timeout_s: float,
+    cancelled: asyncio.Event | None = None,
+    on_feedback: Callable[[Fields], None] | None = None,
+) -> ActionEnd:
+    """Sends a goal and waits for its end. Without a type, the server's is taken.
+
+    When `cancelled` is set, or the time is over, the goal is cancelled and its end is waited for.
+    SkillError AOS505 if no node serves the action, AOS502 if it refuses the goal, AOS503 if the time was
+    over, AOS504 if the node is lost or does not end the goal although it was asked to.
+    """
+    loop = asyncio.get_running_loop()
+    ends_at_s = loop.time() + timeout_s
+    server = await node.server(
+        f"{action}/_action/send_goal", f"{type_name}_SendGoal" if type_name else "", timeout_s
+    )
+    type_name = server.type_name.removesuffix("_SendGoal")
+    goal_id = {"uuid": list(uuid.uuid4().bytes)}
+
+    def on_message(message: Fields) -> None:
+        if on_feedback is not None and message["goal_id"] == goal_id:
+            on_feedback(message["feedback"])
+
+    stop_listening = node.subscribe(f"{action}/_action/feedback", f"{type_name}_FeedbackMessage", on_message)
+    try:
+        accepted = await node.call(
+            f"{action}/_action/send_goal",
+            {"goal_id": goal_id, "goal": goal},
+            type_name=f"{type_name}_SendGoal",
+            timeout_s=max(ends_at_s - loop.time(), 0.1),
+        )
+        if not accepted["accepted"]:
+            raise SkillError(f"{action} refused the goal", code="AOS502", hint="See the node's log")
+        async with asyncio.TaskGroup() as tasks:
+            # It is answered at the goal's end, and outlives the deadline by that of cancelling.
+            result = tasks.create_task(
+                node.call(
+                    f"{action}/_action/get_result",
+                    {"goal_id": goal_id},
+                    type_name=f"{type_name}_GetResult",
+                    timeout_s=max(ends_at_s - loop.time(), 0.0) + 2 * CANCEL_S,
+                )
+            )
+            reason = await _ended(node, action, result, cancelled, ends_at_s - loop.time())
+            if reason == "lost":
+                result.cancel()
+                raise _lost(action)
+            if reason:
+                await _cancel(node, action, goal_id, result)
+    except* AosError as group:
+        raise _first(group) from None
+    finally:
+        stop_listening()
+    end = result.result()
+    if reason == "late":
+        raise SkillError(f"{action} did not end within {timeout_s:g} s and was cancelled", code="AOS503")
+    return ActionEnd(STATUS.get(end["status"], "aborted"), end["result"])
+
+
+async def _ended(
+    node: Node,
+    action: str,
+    result: asyncio.Task[Fields],
+    cancelled: asyncio.Event | None,
+    timeout_s: float,
+) -> str:
+    """Why waiting has ended: "" with the result, else "cancelled", "late" or "lost"."""
+
+    async def gone() -> None:
+        while node.graph.find(Kind.SERVER, f"{action}/_action/get_result"):
+            await node.graph.changed()
+
+    cancelling = asyncio.ensure_future((cancelled or asyncio.Event()).wait())
+    leaving = asyncio.ensure_future(gone())
+    try:
+        await asyncio.wait(
+            [result, cancelling, leaving],
+            timeout=max(timeout_s, 0.0),
+            return_when=asyncio.FIRST_COMPLETED,
+        )
+    finally:
+        cancelling.cancel()
+        leaving.cancel()
+    if result.done():
+        return ""
+    if leaving.done():
+        return "lost"
+    return "cancelled" if cancelling.done() else "late"
+
+
+async def _cancel(node: Node, action: str, goal_id: Fields, result: asyncio.Task[Fields]) -> None:
+    """Asks for the goal's end and waits for it; SkillError AOS504 if it does not come."""
+    try:
+        await node.call(
+            f"{action}/_action/cancel_goal",
+            {"goal_info": {"goal_id": goal_id}},
+            type_name="action_msgs/srv/CancelGoal",
+            timeout_s=CANCEL_S,
+        )
+        async with asyncio.timeout(CANCEL_S):
+            await asyncio.wait([result])
+    except (TimeoutError, SkillError) as error:
+        result.cancel()
+        raise SkillError(
+            f"{action} was asked to cancel its goal and did not within {CANCEL_S:g} s",
+            code="AOS504",
+            hint="The robot may still move: look at it, and at the node's log",
+        ) from error
+
+
+def _lost(action: str) -> SkillError:
+    return SkillError(
+        f"the node that serves {action} has left while it ran",
+        code="AOS504",
+        hint="Whether the skill did its work is not known",
+    )
+
+
+def _first(group: BaseExceptionGroup[AosError]) -> AosError:
+    inner = group.exceptions[0]
+    return _first(inner) if isinstance(inner, BaseExceptionGroup) else inner

@@ -1,0 +1,161 @@
+"""How many elements the vectors of a state can have: read off what the documents assign to them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+
+import msgspec
+
+from aos_runtime.snippets import Access, Cpp, Mention, strip_comments
+
+__all__ = ["Rooms"]
+
+GROWING_ROOM = 64
+"""What a vector gets that grows by code, if nothing in the code tells more."""
+
+TOLD_ROOM = 1024
+"""What a vector gets that the robot's data fill, if the documents give it no length at the start."""
+
+_LARGEST_ROOM = 16384
+_GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})
+_SIZING = frozenset({"assign", "resize"})
+_NUMBER = r"\s*(\d+(?:\s*\*\s*\d+)*)\s*"  # or a product of numbers
+_LOOP_BOUND = re.compile(rf"\bfor\s*\([^;{{}}]*;[^;{{}}]*<=?{_NUMBER};")
+_CONSTRUCTED = re.compile(rf"(?:std::)?vector\s*<[^(){{}};]*>\s*\({_NUMBER}[,)]")
+_COPIED = re.compile(r"state_*\.(?:\w+\.)*(\w+)\s*;")
+_SIZED = re.compile(rf"\.\s*\w+\s*\({_NUMBER}[,)]")
+_LOOP_COLON = re.compile(r"\s*:\s*")
+_LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
+
+
+class Rooms:
+    """Room by the name of a variable or field and by level of nesting.
+
+    A vector that is only ever assigned lists and literal sizes has exactly the room of the longest. One that
+    grows has `GROWING_ROOM`, or the product of the loop bounds in the code that makes it grow; one that the
+    robot's data fill has twice the room it starts with, or `TOLD_ROOM`. Running over is a fault at run time,
+    told with the document's line.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, int], int] = {}
+        self._grows: dict[tuple[str, int], int] = {}
+        self._told: set[tuple[str, int]] = set()
+
+    def room(self, name: str, level: int = 0) -> int:
+        """The room of `name` at a level: 0 for the vector, 1 for the vectors in it."""
+        key = (name, level)
+        known = self._known.get(key, 0)
+        if key in self._told and known <= 1:  # An empty list at the start says nothing.
+            return TOLD_ROOM
+        if known > 0 and key not in self._grows and key not in self._told:
+            return known
+        return min(max(self._grows.get(key, GROWING_ROOM), 2 * known), _LARGEST_ROOM)
+
+    def tell(self, name: str) -> None:
+        """Takes in that a variable gets values from outside."""
+        self._told.add((name, 0))
+
+    def read_default(self, name: str, expression: str) -> None:
+        """Takes in the default value of a variable or field."""
+        self._take_value((name, 0), strip_comments(expression).lstrip(), loops=1)
+
+    def read_code(self, snippets: Iterable[Cpp]) -> None:
+        """Takes in statements."""
+        for cpp in snippets:
+            code = strip_comments(cpp.code)
+            loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(code))
+            aliases = dict(_aliases(cpp))
+            for mention in cpp.mentions:
+                path = (*aliases.get(mention.path[0], mention.path[:1]), *mention.path[1:])
+                self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
+
+    def _take_mention(self, mention: Mention, code: str, loops: int) -> None:
+        names = [part for part in mention.path if part != "[]"]
+        level = len(mention.path) - len(mention.path[: _last_name(mention.path) + 1])
+        key = (names[-1], level)
+        rest = code[mention.extent.end :].lstrip()
+        if mention.access is Access.WRITE and rest.startswith("="):
+            self._take_value(key, rest[1:].lstrip(), loops)
+        elif mention.method in _GROWING:
+            self._grow(key, loops)
+        elif mention.method in _SIZING:
+            if (sized := _SIZED.match(rest)) is not None:
+                self._know(key, _product(sized[1]))
+            else:
+                self._grow(key, loops)
+
+    def _take_value(self, key: tuple[str, int], value: str, loops: int) -> None:
+        if (constructed := _CONSTRUCTED.match(value)) is not None:
+            self._know(key, _product(constructed[1]))
+            return
+        if (listed := _LISTED.match(value)) is not None:
+            value = value[listed.end() :]
+        if (copied := _COPIED.match(value)) is not None and copied[1] == key[0]:
+            return
+        if value.startswith("{"):
+            for depth, count in enumerate(_list_lengths(value)):
+                self._know((key[0], key[1] + depth), count)
+        else:
+            self._grow(key, loops)
+
+    def _know(self, key: tuple[str, int], size: int) -> None:
+        self._known[key] = max(self._known.get(key, 1), size)
+
+    def _grow(self, key: tuple[str, int], loops: int) -> None:
+        self._grows[key] = max(self._grows.get(key, GROWING_ROOM), loops)
+
+
+def _product(text: str) -> int:
+    return math.prod(int(factor) for factor in text.split("*"))
+
+
+def _aliases(cpp: Cpp) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The references that a snippet declares, and the paths that they stand for."""
+    for declaration in cpp.declarations:
+        if not declaration.type.endswith("&"):
+            continue
+        loop = _LOOP_COLON.match(cpp.code, declaration.extent.end)
+        for mention in cpp.mentions:
+            at = mention.extent.start
+            if declaration.initial is not None and at == declaration.initial.start:
+                yield declaration.name, mention.path
+            elif declaration.initial is None and loop is not None and at == loop.end():
+                yield declaration.name, (*mention.path, "[]")
+
+
+def _last_name(path: tuple[str, ...]) -> int:
+    return max(index for index, part in enumerate(path) if part != "[]")
+
+
+def _list_lengths(text: str) -> list[int]:
+    """The most elements at each depth of a braced list, which `text` begins with."""
+    lengths: list[int] = []
+    open_lists: list[int] = []
+    parentheses = 0
+    is_inside_element = False
+    for character in text:
+        if character in "([":
+            parentheses += 1
+        elif character in ")]":
+            parentheses -= 1
+        if parentheses == 0 and character == "{":
+            if open_lists and not is_inside_element:
+                open_lists[-1] += 1
+            open_lists.append(0)
+            is_inside_element = False
+        elif parentheses == 0 and character == "}":
+            depth, count = len(open_lists) - 1, open_lists.pop()
+            lengths += [0] * (depth + 1 - len(lengths))
+            lengths[depth] = max(lengths[depth], count)
+            is_inside_element = True
+            if not open_lists:
+                break
+        elif parentheses == 0 and character == ",":
+            is_inside_element = False
+        elif not character.isspace() and not is_inside_element:
+            open_lists[-1] += 1
+            is_inside_element = True
+    return lengths

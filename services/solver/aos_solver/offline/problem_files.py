@@ -1,0 +1,32 @@
+"""Problem files of other planners, by the ending of their names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from aos_protocol.errors import DocumentError
+from aos_solver.offline.explicit_model import ExplicitModel
+from aos_solver.offline.factored_model import MOST_STATES, flatten
+from aos_solver.offline.pomdp_reader import read_pomdp
+from aos_solver.offline.pomdpx_reader import read_pomdpx
+
+__all__ = ["PROBLEM_ENDINGS", "read_problem"]
+
+PROBLEM_ENDINGS = (".pomdpx", ".pomdp")
+
+
+def read_problem(
+    path: Path,
+    *,
+    most_states: int = MOST_STATES,
+    on_progress: Callable[[int], None] = lambda states: None,
+) -> ExplicitModel:
+    """The model of a file; DocumentError with its mistakes, IntractableError if it is too large."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise DocumentError(f"cannot read {path}: {error.strerror}", code="AOS101") from error
+    if path.suffix == ".pomdpx":
+        return flatten(read_pomdpx(str(path), data), most_states=most_states, on_progress=on_progress)
+    return read_pomdp(str(path), data)

@@ -1,0 +1,72 @@
+"""The text of a problem file: where its words stand, and what is wrong with them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.errors import DocumentError
+
+__all__ = ["ProblemFindings", "TooManyFindingsError", "Word", "words_of"]
+
+_WORD = re.compile(r"\S+")
+_MOST_FINDINGS = 50
+_EXCERPT_LENGTH = 200
+
+
+class TooManyFindingsError(Exception):
+    """There is no point in reading on."""
+
+
+class Word(msgspec.Struct, frozen=True, gc=False):
+    """A word of the file and its place; lines and columns count from 1."""
+
+    text: str
+    line: int
+    column: int
+
+
+def words_of(text: str, line: int = 1, column: int = 1) -> Iterator[Word]:
+    """The words between blanks of a text that begins at this place."""
+    for offset, part in enumerate(text.split("\n")):
+        before = column if offset == 0 else 1
+        for match in _WORD.finditer(part):
+            yield Word(match.group(), line + offset, before + match.start())
+
+
+class ProblemFindings:
+    """Collects the mistakes of one file, so that all of them are told in one run."""
+
+    def __init__(self, name: str, text: str) -> None:
+        self._name = name
+        self._lines = text.split("\n")
+        self._found: list[Diagnostic] = []
+
+    def error(self, code: str, message: str, line: int, column: int = 0, hint: str = "") -> None:
+        """Raises TooManyFindingsError where the file seems to be something else."""
+        excerpt = self._lines[line - 1] if 0 < line <= len(self._lines) else ""
+        excerpt = excerpt[: column + _EXCERPT_LENGTH].rstrip()
+        span = Span(self._name, line, column)
+        self._found.append(Diagnostic(Severity.ERROR, code, message, span, hint, excerpt))
+        if len(self._found) >= _MOST_FINDINGS:
+            raise TooManyFindingsError
+
+    def unknown(self, kind: str, word: Word, known: Iterable[str]) -> None:
+        """A name that nothing has."""
+        names = list(known)
+        shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
+        self.error("AOS110", f"there is no {kind} {word.text}", word.line, word.column, f"There is: {shown}")
+
+    @property
+    def has_any(self) -> bool:
+        return bool(self._found)
+
+    def raise_if_any(self) -> None:
+        """DocumentError with everything found."""
+        if self._found:
+            found = tuple(sorted(self._found, key=lambda finding: finding.span))
+            message, hint = f"{self._name} has mistakes", "Mend the places named above"
+            raise DocumentError(message, code=found[0].code, hint=hint, diagnostics=found)

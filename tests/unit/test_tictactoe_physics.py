@@ -1,0 +1,129 @@
+"""The simulated Panda that plays tic-tac-toe: ink where the pen touches, a board read from a picture."""
+
+from __future__ import annotations
+
+import random
+import socket
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+
+from aos_skills.pybullet.world_file import load_world_file
+from aos_skills.pybullet.worlds.tictactoe import KIND
+from aos_skills.pybullet.worlds.tictactoe.file import FaultModel, TicTacToeFile
+from aos_skills.pybullet.worlds.tictactoe.person import PersonAtTerminal
+from aos_skills.pybullet.worlds.tictactoe.pictures import random_board
+from aos_skills.pybullet.worlds.tictactoe.reading import board_in
+from aos_skills.pybullet.worlds.tictactoe.rules import (
+    EMPTY_BOARD,
+    best_moves,
+    empty_cells,
+    is_over,
+    marked,
+    winner,
+)
+from aos_skills.pybullet.worlds.tictactoe.world import TicTacToe
+
+pytestmark = pytest.mark.physics
+
+Make = Callable[..., TicTacToe]
+
+
+@pytest.fixture
+def file(root: Path) -> TicTacToeFile:
+    room: TicTacToeFile = load_world_file(root / "deploy/worlds/tictactoe.yaml").room
+    return room
+
+
+@pytest.fixture
+def make(file: TicTacToeFile) -> Make:
+    """The shipped world, changed as a test wants."""
+
+    def build(**changes: Any) -> TicTacToe:
+        return TicTacToe(msgspec.structs.replace(file, **changes), seed=1)
+
+    return build
+
+
+def call(world: TicTacToe, path: str, fields: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Runs a skill to its end, as the adapter does."""
+    world.begin()
+    answer = KIND.skills[path](world, fields or {})
+    world.stop()
+    return answer
+
+
+def test_what_the_pen_drew_and_the_other_one_marked_is_read_from_the_picture(make: Make) -> None:
+    world = make()
+    assert call(world, "/draw", {"cell": 0}) == {"success": True}
+    assert call(world, "/draw", {"cell": 5})["success"]
+    board = call(world, "/look")["board"]
+    assert board == world.marks
+    assert board.count("X") == 1
+    assert [cell for cell in range(9) if board[cell] == "O"] == [0, 5]
+
+
+def test_a_pen_that_does_not_write_leaves_the_middle_empty(make: Make) -> None:
+    world = make(faults=FaultModel(dry_centre=1.0))
+    assert not call(world, "/draw", {"cell": 4})["success"]
+    assert board_in(world.picture()) == EMPTY_BOARD
+    assert not world.is_robots_turn
+
+
+def test_boards_are_read_right_in_any_light_from_about_anywhere(file: TicTacToeFile) -> None:
+    for seed in range(6):
+        world = random_board(file, seed)
+        assert board_in(world.picture()) == world.marks
+        world.scene.close()
+
+
+def test_a_picture_without_a_board_has_none() -> None:
+    assert board_in(np.full((360, 480, 3), 90, np.uint8)) is None
+
+
+def test_marks_may_be_there_before_the_game(make: Make) -> None:
+    world = make(moves_made={3: 1.0})
+    assert sorted(world.marks.replace("?", "")) == ["O", "X", "X"]
+    before = world.marks
+    assert call(world, "/look")["board"] == before
+
+
+def test_a_cell_that_is_none_is_refused(make: Make) -> None:
+    with pytest.raises(ValueError, match="there is no cell 9"):
+        call(make(), "/draw", {"cell": 9})
+
+
+def test_a_perfect_player_never_loses() -> None:
+    chance = random.Random(1)
+    for _ in range(50):
+        board, mark = EMPTY_BOARD, "O"
+        while not is_over(board):
+            cells = empty_cells(board) if mark == "O" else best_moves(board, "X")
+            board, mark = marked(board, chance.choice(cells), mark), "X" if mark == "O" else "O"
+        assert winner(board) != "O"
+
+
+def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make) -> None:
+    world = make()
+    person = PersonAtTerminal(0, world.scene)
+    said: list[str] = []
+
+    def sit_at_the_terminal() -> None:
+        with socket.create_connection(("127.0.0.1", person.port), timeout=30) as terminal:
+            for answer in ("10", "1", "2"):
+                said.append(terminal.recv(1000).decode())
+                terminal.sendall(answer.encode() + b"\n")
+
+    thread = threading.Thread(target=sit_at_the_terminal)
+    thread.start()
+    cell = person("O????????")
+    thread.join(30)
+    person.close()
+    assert cell == 1
+    assert said[0].startswith("\nO ? ?\n? ? ?\n? ? ?\nYour cell (2, 3, 4, 5, 6, 7, 8, 9): ")
+    assert len(said) == 3
