@@ -20,6 +20,7 @@ __all__ = ["aos_app", "main", "up_main"]
 _COMMANDS = {
     "up": ("up",),
     "decisions": ("decisions",),
+    "runs": ("runs",),
     "documents": ("lint", "inspect"),
     "bundle": ("bundle",),
     "convert": ("convert",),

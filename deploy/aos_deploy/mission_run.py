@@ -11,11 +11,14 @@ from pathlib import Path
 import msgspec
 
 from aos_deploy.deploy_file import Deployment, skill_of_file
+from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
+from aos_deploy.living_runs import noted
+from aos_deploy.printing import from_here
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
-from aos_deploy.supervisor import Supervisor, free_endpoint, supervised
+from aos_deploy.supervisor import Supervisor, supervised
 from aos_protocol.diagnostics import Diagnostic, has_errors
 from aos_protocol.errors import AosError, DeployError, DocumentError
 from aos_protocol.messages import (
@@ -59,12 +62,17 @@ class MissionRun:
         """Until the mission has ended and every process with it, by itself, by a fault or cancelled.
 
         A fault is kept in `error`. In every case the run directory holds the summary, if there is a run
-        directory; AosError if there is none.
+        directory; AosError if there is none, because its endpoint is taken or it cannot be made.
         """
+        with hold_endpoint(self._deployment.file.bus.listen) as endpoint:
+            return await self._run_at(endpoint)
+
+    async def _run_at(self, endpoint: str) -> Summary:
         run = RunDirectory.create(self._deployment.runs, self._deployment.file.robot, self._clock.now_ns())
-        self._report(Told(f"run directory {_from_here(run.path)}"))
+        self._report(Told(f"run directory {from_here(run.path)}"))
         try:
-            state = await self._run_in(run)
+            with noted(run):
+                state = await self._run_in(run, endpoint)
             ending, remark, code = state.ending, state.remark, exit_code_of_mission(state)
         except asyncio.CancelledError:
             ending, remark, code = "cancelled", "interrupted", ExitCode.INTERRUPTED
@@ -74,8 +82,9 @@ class MissionRun:
             remark, code = str(error), exit_code_of_error(error, has_started=self._has_started)
         summary = self._summary(ending, remark, code)
         run.write_summary(summary)
+        run.close()
         took = f"{summary.steps} steps in {summary.duration_s:.1f} s"
-        self._report(Told(f"{ending} after {took}; everything is kept in {_from_here(run.path)}"))
+        self._report(Told(f"{ending} after {took}; everything is kept in {from_here(run.path)}"))
         return summary
 
     @property
@@ -91,9 +100,8 @@ class MissionRun:
         if self._supervisor is not None:
             self._supervisor.kill()
 
-    async def _run_in(self, run: RunDirectory) -> MissionState:
+    async def _run_in(self, run: RunDirectory, endpoint: str) -> MissionState:
         deployment = self._deployment
-        endpoint = free_endpoint(deployment.file.bus.listen)
         base = ServiceSettings(
             robot=deployment.file.robot, service="", endpoint=endpoint, run_dir=str(run.path)
         )
@@ -145,7 +153,7 @@ class MissionRun:
         found = tuple(_with_folder(diagnostic, bundle) for diagnostic in report.diagnostics)
         if not report.is_accepted:
             raise DocumentError(f"the bundle {bundle} is refused", code="AOS120", diagnostics=found)
-        self._report(msgspec.structs.replace(report, diagnostics=found, source=str(_from_here(bundle))))
+        self._report(msgspec.structs.replace(report, diagnostics=found, source=str(from_here(bundle))))
         if report.project != self._deployment.project:
             raise DeployError(
                 f"{bundle} holds the project {report.project}, not {self._deployment.project}",
@@ -230,13 +238,8 @@ async def run_until_interrupted(mission: MissionRun) -> int:
 
 def _with_folder(diagnostic: Diagnostic, bundle: Path) -> Diagnostic:
     """The diagnostic with a file name that leads to the file from here."""
-    span = msgspec.structs.replace(diagnostic.span, file=str(_from_here(bundle) / diagnostic.span.file))
+    span = msgspec.structs.replace(diagnostic.span, file=str(from_here(bundle) / diagnostic.span.file))
     return msgspec.structs.replace(diagnostic, span=span)
-
-
-def _from_here(path: Path) -> Path:
-    """The path as the user would write it."""
-    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
 def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:

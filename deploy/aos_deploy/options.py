@@ -1,14 +1,15 @@
-"""What every program of ours understands on its command line: -h, --help and --version."""
+"""Options that several commands have, and what every program of ours understands: -h, --help, --version."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from aos_protocol import __version__
 
-__all__ = ["HELP_NAMES", "Version"]
+__all__ = ["HELP_NAMES", "AsJson", "Connect", "Robot", "Run", "Runs", "Version"]
 
 HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
 """The context settings of a program."""
@@ -22,4 +23,22 @@ def _print_version(is_asked: bool) -> None:
 
 Version = Annotated[
     bool, typer.Option("--version", help="Print the version and end", callback=_print_version, is_eager=True)
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
+
+# --- which mission -----------------------------------------------------------------------------------
+
+Connect = Annotated[
+    str, typer.Option("--connect", metavar="ENDPOINT", help="Where a system's bus listens, on any machine")
+]
+Robot = Annotated[str, typer.Option("--robot", help="The robot's name, with --connect")]
+Run = Annotated[
+    Path | None,
+    typer.Option("--run", metavar="DIR", help="A run directory; else the mission that runs, or the last"),
+]
+Runs = Annotated[
+    Path | None,
+    typer.Option(
+        "--runs", metavar="DIR", help="Only runs in this folder; else ./runs and what runs anywhere"
+    ),
 ]

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 
 import msgspec
 import typer
 
 from aos_protocol.diagnostics import Diagnostic, render
 
-__all__ = ["count", "print_diagnostics", "print_json"]
+__all__ = ["count", "from_here", "print_diagnostics", "print_json"]
 
 
 def print_diagnostics(diagnostics: Iterable[Diagnostic]) -> None:
@@ -26,3 +27,8 @@ def print_json(value: object) -> None:
 def count(number: int, noun: str) -> str:
     """`1 error`, `2 errors`."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def from_here(path: Path) -> Path:
+    """The path as a user would write it."""
+    return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path

@@ -11,6 +11,7 @@ runs/20260105T101500Z-armadillo/
 
 from __future__ import annotations
 
+import fcntl
 import os
 from datetime import UTC, datetime
 from pathlib import Path
@@ -68,25 +69,31 @@ class RunDirectory:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._lock: int | None = None
 
     @classmethod
     def create(cls, runs: Path, robot: str, now_ns: int) -> RunDirectory:
-        """A new directory below `runs`, which `latest` then names; DeployError AOS805 if that cannot be."""
+        """A new directory below `runs`, locked while it is used; DeployError AOS805 if that cannot be."""
         stamp = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
         try:
             path = _made(runs, f"{stamp}-{robot}")
             for folder in ("settings", "logs", "faults"):
                 (path / folder).mkdir()
-            link = runs / f".{_LATEST}-{path.name}"
-            link.symlink_to(path.name)
-            link.replace(runs / _LATEST)
+            created = cls(path)
+            created._lock = _locked(path, fcntl.LOCK_EX)
         except OSError as error:
             raise DeployError(
                 f"no run directory can be made in {runs}: {error.strerror}",
                 code="AOS805",
                 hint="Name another folder with --runs",
             ) from error
-        return cls(path)
+        return created
+
+    def close(self) -> None:
+        """The run is over. A process that is killed lets go of the lock as well."""
+        if self._lock is not None:
+            os.close(self._lock)
+            self._lock = None
 
     @classmethod
     def latest(cls, runs: Path) -> RunDirectory:
@@ -128,7 +135,11 @@ class RunDirectory:
         fault_path(self.path, service).unlink(missing_ok=True)
 
     def write_record(self, record: RunRecord) -> None:
+        """From now on the run can be found, and `latest` names it."""
         (self.path / "run.json").write_bytes(_pretty(record))
+        link = self.path.with_name(f".{_LATEST}-{self.path.name}")
+        link.symlink_to(self.path.name)
+        link.replace(self.path.with_name(_LATEST))
 
     def read_record(self) -> RunRecord:
         """DeployError AOS801 if this is not a run directory."""
@@ -150,14 +161,28 @@ class RunDirectory:
 
     @property
     def is_running(self) -> bool:
-        """Whether the aos-up of this run is still there."""
-        if self.read_summary() is not None:
+        """Whether its aos-up is still there and others can talk to its services.
+
+        A process id would not tell: in a new container, say, it may be that of another program.
+        """
+        if not (self.path / "run.json").is_file() or self.read_summary() is not None:
             return False
         try:
-            os.kill(self.read_record().pid, 0)
+            os.close(_locked(self.path, fcntl.LOCK_SH))
         except OSError:
-            return False
-        return True
+            return True
+        return False
+
+
+def _locked(path: Path, kind: int) -> int:
+    """A lock on a directory, which goes with the process; OSError if another excludes it."""
+    handle = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        fcntl.flock(handle, kind | fcntl.LOCK_NB)
+    except OSError:
+        os.close(handle)
+        raise
+    return handle
 
 
 def _made(runs: Path, name: str) -> Path:

@@ -12,14 +12,13 @@ from __future__ import annotations
 
 import asyncio
 import signal
-import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 from aos_deploy.events import Report, ServiceChanged
 from aos_deploy.program import Program, settings_of
 from aos_deploy.run_directory import RunDirectory
-from aos_protocol.errors import AosError, BusError, DeployError, error_from_code
+from aos_protocol.errors import AosError, DeployError, error_from_code
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Bus
@@ -28,7 +27,7 @@ from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings
 from aos_runtime.subscription import merged
 
-__all__ = ["ROUTER", "Supervisor", "free_endpoint", "supervised"]
+__all__ = ["ROUTER", "Supervisor", "supervised"]
 
 ROUTER = Program(name="router", module="aos_runtime.router", start_s=10.0)
 
@@ -109,9 +108,8 @@ class Supervisor:
     async def start(self) -> None:
         """Starts every process and connects to the bus; does not wait until the services are ready.
 
-        DeployError AOS802 if a process cannot be started or another program listens at the endpoint.
+        DeployError AOS802 if a process cannot be started. Nobody else may listen at the endpoint.
         """
-        _check_port(self._base.endpoint)
         for program in (ROUTER, *self._programs):
             await self._spawn(program)
         self.bus = self._bus = await Bus.open(
@@ -269,39 +267,6 @@ class Supervisor:
     def _changed(self, service: str, state: str, detail: str = "") -> None:
         after_s = self._clock.monotonic_s() - self._started_s
         self._report(ServiceChanged(service, state, round(after_s, 3), detail))
-
-
-def free_endpoint(endpoint: str) -> str:
-    """The endpoint itself, or with a free port in place of port 0."""
-    address, _, port = endpoint.rpartition(":")
-    if port != "0":
-        return endpoint
-    with socket.socket(_family(address)) as probe:
-        probe.bind((_host(address), 0))
-        return f"{address}:{probe.getsockname()[1]}"
-
-
-def _check_port(endpoint: str) -> None:
-    """Before anything starts, so that no service meets another system's router."""
-    address, _, port = endpoint.rpartition(":")
-    with socket.socket(_family(address)) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((_host(address), int(port)))
-        except OSError as error:
-            raise BusError(
-                f"cannot listen at {endpoint}: {error.strerror}",
-                code="AOS802",
-                hint="Does another system run? Stop it, or use --listen tcp/127.0.0.1:0 for a free port",
-            ) from error
-
-
-def _host(address: str) -> str:
-    return address.partition("/")[2].strip("[]")
-
-
-def _family(address: str) -> socket.AddressFamily:
-    return socket.AF_INET6 if "[" in address else socket.AF_INET
 
 
 def _status_text(status: int) -> str:

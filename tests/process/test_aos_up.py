@@ -298,7 +298,7 @@ def test_a_port_in_use_is_told_and_how_to_get_another(deploy_file: Path) -> None
         endpoint = f"tcp/127.0.0.1:{server.getsockname()[1]}"
         result = refused(deploy_file, deploy_file.read_text(), "--listen", endpoint)
     assert result.status == 3
-    assert f"cannot listen at {endpoint}: Address already in use. Does another system run?" in result.text
+    assert f"cannot listen at {endpoint}: Address already in use. `aos runs` lists what runs" in result.text
 
 
 def test_an_adapter_that_is_not_there_is_named(deploy_file: Path) -> None:

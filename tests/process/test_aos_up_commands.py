@@ -36,7 +36,18 @@ def test_help_has_an_example_and_every_exit_code() -> None:
 
 def test_the_overview_names_every_command() -> None:
     text = run("aos", "--help").stdout
-    for command in ("up", "decisions", "bundle", "lint", "inspect", "plan", "simulate", "rate", "doctor"):
+    for command in (
+        "up",
+        "decisions",
+        "runs",
+        "bundle",
+        "lint",
+        "inspect",
+        "plan",
+        "simulate",
+        "rate",
+        "doctor",
+    ):
         assert f"  {command} " in text
 
 
@@ -45,7 +56,8 @@ def test_wrong_usage_has_its_own_exit_code(command: list[str]) -> None:
     assert run(*command).returncode == 2
 
 
-def test_decisions_without_a_run_say_what_to_do(tmp_path: Path) -> None:
+def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path))
     result = run("aos", "decisions", folder=tmp_path)
     assert result.returncode == 3
     assert result.stderr.startswith("aos: AOS605: there is no run in runs. Start one with aos-up, or name")
@@ -103,6 +115,17 @@ def test_a_shell_completes_commands_options_and_values(
     monkeypatch.setenv("COMP_WORDS", line)
     monkeypatch.setenv("COMP_CWORD", str(len(line.split()) - 1))
     assert run(name).stdout.split() == completed
+
+
+def test_progress_is_for_terminals_alone(
+    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    tiger = str(bundles / "bench" / "tiger")
+    simulated = run("aos", "simulate", tiger, "--runs", "2", "--simulations", "10")
+    assert simulated.returncode == 0
+    # What is left tells that the model is compiled, the first time.
+    assert all(line.startswith("aos: ") for line in simulated.stderr.splitlines())
 
 
 def test_version_names_what_it_stands_on() -> None:

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
+from aos_deploy.terminal import console
 from aos_deploy.views import make_view
 from aos_deploy.views.lines import JsonView, PlainView
 from aos_deploy.views.live import LiveView, Screen
@@ -114,9 +115,9 @@ def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> N
     assert lines[6]["outcome"]["response"] == "pick_succeeded"
 
 
-def shown(screen: Screen) -> str:
+def shown(screen: Screen, width: int = 120, height: int = 40) -> str:
     text = io.StringIO()
-    Console(file=text, width=120, force_terminal=False).print(screen)
+    Console(file=text, width=width, height=height, force_terminal=False).print(screen)
     return text.getvalue()
 
 
@@ -141,11 +142,83 @@ def test_the_screen_shows_steps_values_and_belief_bars() -> None:
         "+2.71",
         "-4.00",
         "900",
-        "registry ready",
+        "ready: registry",
         "pomcp, 1000 simulations in 0.25 s by 2 threads",
         "goal: the goal is reached",
     ):
         assert expected in text
+
+
+PLACES = ("easy_table", "hard_table", "corridor", "kitchen", "charger", "store")
+MANY = msgspec.structs.replace(
+    OBSERVED,
+    action="navigate(destination=corridor)",
+    actions=tuple(
+        ActionValue(f"navigate(destination={place})", -12.345 - index, 72_345, 0.071)
+        for index, place in enumerate(PLACES)
+    ),
+    belief=BeliefSummary(
+        tuple(Marginal(f"can_{n}_is_at", {"easy_table": 0.75, "robot_hand": 0.25}) for n in range(6)),
+        0.56, 0.993, 0.002, 2, True,
+    ),
+)  # fmt: skip
+
+
+def small_screen() -> Screen:
+    """Twelve steps of the mission above, with a service that has a long name."""
+    screen = Screen("armadillo · armadillo.yaml")
+    for name in ("router", "registry", "middleware", "turtlebot_waffle", "solver"):
+        screen.take(ServiceChanged(name, "ready", 0.5))
+    for step in range(1, 13):
+        screen.take(msgspec.structs.replace(MANY, step=step, remark="held" if step == 11 else ""))
+    screen.take(MissionState("m", "acting", 12, 0.993, remark="navigate(destination=corridor)"))
+    return screen
+
+
+def test_the_screen_fits_80_columns_and_24_rows_with_every_number_whole() -> None:
+    lines = shown(small_screen(), 80, 24).rstrip().splitlines()
+    assert len(lines) <= 24
+    assert max(map(len, lines)) <= 80
+    text = "\n".join(lines)
+    for whole in ("step  action", "12  navigate(corridor)", "pick_succeeded", "-14.35  0.07  72,345", "0.75"):
+        assert whole in text
+    assert "and 3 more" in text
+    assert "step 11: held" in text
+
+
+@pytest.mark.parametrize("width", [80, 100, 132, 200])
+@pytest.mark.parametrize("height", [24, 40])
+def test_the_screen_keeps_to_the_terminal(width: int, height: int) -> None:
+    lines = shown(small_screen(), width, height).rstrip().splitlines()
+    assert len(lines) <= height
+    assert max(map(len, lines)) <= width
+
+
+def test_the_screen_shows_the_skill_while_it_runs() -> None:
+    screen = small_screen()
+    screen.take(msgspec.structs.replace(REFUSED, is_accepted=True, diagnostics=(), source="finer"))
+    assert "navigate(destination=corridor) ... 0 s" in shown(screen, 80, 24)
+
+
+def test_the_screen_that_is_left_behind_turns_no_more() -> None:
+    text = io.StringIO()
+    with LiveView("armadillo", Console(file=text, width=80, height=24, force_terminal=True)) as view:
+        view(DECISION)
+        view(ServiceChanged("solver", "stopping", 2.0))
+        assert "⠋ stopping solver ... 0 s" in text.getvalue()
+        view(Told("cancelled after 1 steps"))
+    left = text.getvalue().rpartition("pick")[2]
+    assert "cancelled after 1 steps" in left
+    assert not set("⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏") & set(left)
+
+
+def test_without_colour_there_is_no_style_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    shown_on = console()
+    with shown_on.capture() as captured:
+        shown_on.print("value", style="bold red")
+    assert captured.get() == "value\n"
 
 
 def test_the_screen_says_what_was_remarkable_about_a_step() -> None:

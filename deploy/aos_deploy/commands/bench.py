@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import Annotated, get_args
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from aos_deploy.bench.problems import problem_names, problems_named
 from aos_deploy.bench.suite import METRICS, Effort, Suite
 from aos_deploy.printing import print_json
 from aos_deploy.program import cache_dir
+from aos_deploy.terminal import progress
 from aos_deploy.views.bench import markdown, print_report
 from aos_solver.child.engine import Planner
 
@@ -72,15 +71,14 @@ def bench(
         jobs=jobs,
         seed=seed,
     )
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("starting")
+    with progress() as bar:
+        task = bar.add_task("starting")
 
         def on_step(what: str) -> None:
-            progress.update(task, description=what, advance=1)
+            bar.update(task, description=what, advance=1)
 
         suite = Suite(problems, effort, cache_dir(), on_step)
-        progress.update(task, total=suite.steps)
+        bar.update(task, total=suite.steps)
         report = asyncio.run(suite.run())
     if as_json:
         print_json(report)

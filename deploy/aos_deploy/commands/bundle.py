@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, NamedTuple, TypeVar
 
 import typer
 
 from aos_deploy.commands.documents import Folder, refusal
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.living_runs import living_run
+from aos_deploy.options import AsJson, Connect, Robot, Run, Runs
 from aos_deploy.printing import print_diagnostics, print_json
-from aos_deploy.run_directory import RunDirectory
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DeployError, DocumentError
 from aos_protocol.messages import (
@@ -43,14 +44,7 @@ T = TypeVar("T")
 bundle_app = typer.Typer(no_args_is_help=True, help="Send documents to a running system, or list them.")
 
 
-Connect = Annotated[
-    str,
-    typer.Option("--connect", metavar="ENDPOINT", help="Where the system's bus listens; else the last run"),
-]
-Robot = Annotated[str, typer.Option("--robot", help="The robot's name; else that of the last run")]
-Runs = Annotated[Path, typer.Option("--runs", help="Where the run directories are")]
 OneProject = Annotated[str, typer.Argument(help="The project; may be left out if there is one only")]
-AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 
 
 def register(app: typer.Typer) -> None:
@@ -63,7 +57,8 @@ def push(
     path: Folder,
     connect: Connect = "",
     robot: Robot = "",
-    runs: Runs = Path("runs"),
+    run: Run = None,
+    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Send a bundle to the registry.
@@ -85,7 +80,7 @@ def push(
         bundle = PushBundle(files, str(path))
         return await client.bus.ask(client.keys.push_bundle, bundle, BundleReport, timeout_s=PUSH_TIMEOUT_S)
 
-    report = _with_client(connect, robot, runs, send)
+    report = _with_client(_System(connect, robot, run, runs), send)
     if as_json:
         print_json(report)
     else:
@@ -97,7 +92,11 @@ def push(
 
 @bundle_app.command("list", epilog="Example: aos bundle list")
 def list_projects(
-    connect: Connect = "", robot: Robot = "", runs: Runs = Path("runs"), as_json: AsJson = False
+    connect: Connect = "",
+    robot: Robot = "",
+    run: Run = None,
+    runs: Runs = None,
+    as_json: AsJson = False,
 ) -> None:
     """List the projects that the registry holds, with their skills."""
 
@@ -105,7 +104,7 @@ def list_projects(
         key = client.keys.catalogue
         return await client.bus.ask(key, CatalogueQuery(), Catalogue, timeout_s=ANSWER_TIMEOUT_S)
 
-    catalogue = _with_client(connect, robot, runs, ask)
+    catalogue = _with_client(_System(connect, robot, run, runs), ask)
     if as_json:
         print_json(catalogue)
         return
@@ -125,7 +124,8 @@ def show(
     ] = 0,
     connect: Connect = "",
     robot: Robot = "",
-    runs: Runs = Path("runs"),
+    run: Run = None,
+    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Print a project's documents as the registry holds them."""
@@ -134,7 +134,7 @@ def show(
         key, query = client.keys.project, ProjectQuery(project, number)
         return await client.bus.ask(key, query, ProjectRevision, timeout_s=ANSWER_TIMEOUT_S)
 
-    revision = _with_client(connect, robot, runs, ask)
+    revision = _with_client(_System(connect, robot, run, runs), ask)
     if as_json:
         print_json(revision)
         return
@@ -147,7 +147,8 @@ def history(
     project: OneProject = "",
     connect: Connect = "",
     robot: Robot = "",
-    runs: Runs = Path("runs"),
+    run: Run = None,
+    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """List a project's revisions.
@@ -159,7 +160,7 @@ def history(
         key, query = client.keys.bundle_history, RevisionsQuery(project)
         return await client.bus.ask(key, query, Revisions, timeout_s=ANSWER_TIMEOUT_S)
 
-    found = _with_client(connect, robot, runs, ask)
+    found = _with_client(_System(connect, robot, run, runs), ask)
     if as_json:
         print_json(found)
         return
@@ -177,7 +178,8 @@ def remove(
     skill: Annotated[str, typer.Argument(help="Only this skill; else the whole project")] = "",
     connect: Connect = "",
     robot: Robot = "",
-    runs: Runs = Path("runs"),
+    run: Run = None,
+    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Take a skill, or a whole project, out of the catalogue.
@@ -191,7 +193,7 @@ def remove(
         key = client.keys.remove_bundle
         return await client.bus.ask(key, request, BundleReport, timeout_s=PUSH_TIMEOUT_S)
 
-    report = _with_client(connect, robot, runs, ask)
+    report = _with_client(_System(connect, robot, run, runs), ask)
     if as_json:
         print_json(report)
     else:
@@ -203,30 +205,33 @@ def remove(
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 
 
-def _with_client(connect: str, robot: str, runs: Path, ask: Callable[[AosClient], Awaitable[T]]) -> T:
-    """The answer of the system at `connect`, or of the newest run; AosError if there is none."""
+class _System(NamedTuple):
+    """Which system is meant, as the options say it."""
+
+    connect: str
+    robot: str
+    run: Path | None
+    runs: Path | None
+
+
+def _with_client(system: _System, ask: Callable[[AosClient], Awaitable[T]]) -> T:
+    """The answer of the system at an endpoint, or of the mission that runs; AosError if there is none."""
+    connect, robot = system.connect, system.robot
     if connect and not robot:
         raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
     if not connect:
-        record = _running(RunDirectory.latest(runs)).read_record()
+        record = living_run(system.run, system.runs).read_record()
         connect, robot = record.endpoint, robot or record.robot
 
     import asyncio  # Only here, as the client: the commands that need no bus start quicker.
 
     from aos_runtime.client import AosClient
 
-    async def run() -> T:
+    async def answer() -> T:
         async with AosClient.connect(connect, robot) as client:
             return await ask(client)
 
-    return asyncio.run(run())
-
-
-def _running(directory: RunDirectory) -> RunDirectory:
-    if not directory.is_running:
-        hint = "Start a system with aos-up, or name a running one with --connect"
-        raise DeployError(f"the last run, {directory.path.name}, is over", code="AOS605", hint=hint)
-    return directory
+    return asyncio.run(answer())
 
 
 def _with_version(name: str, versions: dict[str, str]) -> str:

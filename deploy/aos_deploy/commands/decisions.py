@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Annotated
 
 import msgspec
 import typer
 
+from aos_deploy.living_runs import chosen_run
+from aos_deploy.options import Connect, Robot, Run, Runs
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.views.lines import lines_of
 from aos_protocol.errors import DeployError, StorageError
@@ -27,12 +28,10 @@ def register(app: typer.Typer) -> None:
 
 
 def decisions(
-    connect: Annotated[
-        str, typer.Option(metavar="ENDPOINT", help="Where the system's bus listens; else the last run's")
-    ] = "",
-    robot: Annotated[str, typer.Option(help="The robot's name; else that of the last run")] = "",
-    run: Annotated[Path | None, typer.Option(metavar="DIR", help="A run directory, else the last")] = None,
-    runs: Annotated[Path, typer.Option(metavar="DIR", help="Where the run directories are")] = Path("runs"),
+    connect: Connect = "",
+    robot: Robot = "",
+    run: Run = None,
+    runs: Runs = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON decision record a line")] = False,
     follow: Annotated[bool, typer.Option(help="Go on until the mission ends")] = True,
 ) -> None:
@@ -54,7 +53,7 @@ def decisions(
         raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
     directory = None
     if not connect:
-        directory = RunDirectory(run) if run is not None else RunDirectory.latest(runs)
+        directory = chosen_run(run, runs)
     if directory is not None and not directory.is_running:
         for event in _journaled(directory):
             show(event)

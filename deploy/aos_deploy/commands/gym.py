@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
-from rich.console import Console
-from rich.progress import Progress
 
 from aos_deploy.printing import print_json
+from aos_deploy.terminal import progress
 from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError
 
@@ -92,8 +91,8 @@ def _rate(environment: AosVectorEnv, steps: int, seed: int) -> float:
     actions = environment.action_space.sample()
     rounds = -(-steps // environment.num_envs)
     start_s = time.monotonic()
-    with Progress(console=Console(stderr=True), transient=True) as progress:
-        for _ in progress.track(range(rounds), description="steps", update_period=0.2):
+    with progress() as bar:
+        for _ in bar.track(range(rounds), description="steps", update_period=0.2):
             environment.step(actions)
     return rounds * environment.num_envs / (time.monotonic() - start_s)
 

@@ -13,6 +13,7 @@ import typer
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.printing import print_json
+from aos_deploy.terminal import progress
 from aos_deploy.views.tables import print_runs, print_values
 from aos_protocol.messages import ActionValue
 from aos_solver.building.build import BuildKind
@@ -154,11 +155,10 @@ def simulate(
 
     async def run_all(engine: Engine) -> list[SimulatedRun]:
         done: list[SimulatedRun] = []
-        with typer.progressbar(length=runs, label="missions", file=typer.get_text_stream("stderr")) as bar:
-            for run_seed in range(seed, seed + runs):
+        with progress() as bar:
+            for run_seed in bar.track(range(seed, seed + runs), description="missions"):
                 of_run = msgspec.structs.replace(search, seed=run_seed)
                 done.append(await simulate_mission(engine, of_run, limits, with_states=states))
-                bar.update(1)
         return done
 
     missions = _with_engine(bundle, seed, run_all)

@@ -15,12 +15,12 @@ from typing import Annotated
 
 import msgspec
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn
+from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
+from aos_deploy.terminal import progress
 from aos_protocol.errors import DeployError, PlanningError
 from aos_solver.child.answers import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
@@ -156,9 +156,9 @@ def _check_names(exports: list[Path], graph: Path | None) -> None:
 
 
 def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
-    with _progress("states") as progress:
+    with _progress("states") as on_progress:
         model = read_problem(
-            path, most_states=max_states, on_progress=lambda known: progress(Listed(known, known))
+            path, most_states=max_states, on_progress=lambda known: on_progress(Listed(known, known))
         )
     if discount is not None:
         model = msgspec.structs.replace(model, discount=discount)
@@ -167,9 +167,9 @@ def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
 
 async def _enumerated(bundle: Path, max_states: int, discount: float | None) -> _Target:
     async with engine_of_bundle(bundle, seed=1) as engine:
-        with _progress("states") as progress:
+        with _progress("states") as on_progress:
             found = await enumerate_model(
-                engine, max_states=max_states, discount=discount, on_progress=progress
+                engine, max_states=max_states, discount=discount, on_progress=on_progress
             )
         return _Target(found.model, engine.model_digest, found.state_texts, found.left_out)
 
@@ -227,7 +227,7 @@ def _progress(what: str) -> Iterator[Callable[[Listed], None]]:
     """A bar on stderr of how much of what is known is done with; it goes away in the end."""
     extent = TextColumn("{task.completed:,} of {task.total:,}")
     columns = (TextColumn("{task.description}"), BarColumn(), extent)
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with progress(*columns) as bar:
         task = bar.add_task(what, total=1)
         yield lambda found: bar.update(task, completed=found.listed, total=found.known)
 

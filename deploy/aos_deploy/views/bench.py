@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.table import Table
 
 from aos_deploy.bench.rows import OURS, Report, Row
+from aos_deploy.terminal import console
 
 __all__ = ["markdown", "print_report"]
 
@@ -18,17 +18,17 @@ _ON_THE_RIGHT = ("aos", "±", "times", "that")
 
 def print_report(report: Report) -> None:
     """The header, the table, and what was left out."""
-    console = Console()
+    out = console()
     for line in _header(report):
-        console.print(line, highlight=False, markup=False)
+        out.print(line, highlight=False, markup=False)
     table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for heading in _HEADINGS:
         table.add_column(heading, justify="right" if heading in _ON_THE_RIGHT else "left", no_wrap=True)
     for cells in _rows(report):
         table.add_row(*cells)
-    console.print(table)
+    out.print(table)
     for skipped in report.skipped:
-        console.print(f"not measured: {skipped.name}: {skipped.reason}", highlight=False, markup=False)
+        out.print(f"not measured: {skipped.name}: {skipped.reason}", highlight=False, markup=False)
 
 
 def markdown(report: Report) -> str:

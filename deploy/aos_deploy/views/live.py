@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import time
 from collections.abc import Iterator
 from typing import Self
@@ -13,30 +14,29 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.events import Event, ServiceChanged, Told
+from aos_deploy.terminal import console as our_console
 from aos_deploy.views.lines import effort_text, endings_text, lines_of
-from aos_deploy.views.observations import observation_text
-from aos_protocol.messages import (
-    ActionValue,
-    BeliefSummary,
-    BundleReport,
-    DecisionRecord,
-    MissionState,
-)
+from aos_deploy.views.panels import belief_bars, belief_lines, step_table, value_table
+from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
 
 __all__ = ["LiveView", "Screen"]
 
-_BAR_CELLS = 20
-_FEWEST_STEPS = 3
-_OTHER_ROWS = 12
-_SHOWN_VALUES = 4
+_FIXED_ROWS = 11
+"""Everything but the rows of steps, values and belief."""
+_FEWEST_ROWS = 3
+_GAP_CELLS = 4
 _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow", "ended": "dim"}
 
 
 class Screen:
-    """What is on the screen, as far as the events have told."""
+    """What is on the screen, as far as the events have told.
+
+    It keeps to the height of the terminal from 24 rows on, and needs 80 columns.
+    """
 
     def __init__(self, title: str) -> None:
         self.title = title
+        self.is_over = False
         self.services: dict[str, str] = {}
         self.remark = "starting"
         self.remark_since_s = time.monotonic()
@@ -50,7 +50,9 @@ class Screen:
             case ServiceChanged():
                 self.services[event.service] = event.state
                 waiting = [name for name, state in self.services.items() if state == "starting"]
-                if waiting and self.state is None:
+                if event.state == "stopping":
+                    self._remark(f"stopping {event.service}")
+                elif waiting and self.state is None:
                     self._remark(f"waiting for {', '.join(waiting)}")
             case Told():
                 self._remark(event.text)
@@ -60,7 +62,8 @@ class Screen:
             case DecisionRecord():
                 self.latest = self.steps[event.step] = event
             case BundleReport():
-                self._remark(lines_of(event)[-1])
+                # It is printed above the screen, which goes on to tell what the robot does.
+                pass
 
     def _remark(self, text: str) -> None:
         if text != self.remark:
@@ -70,22 +73,37 @@ class Screen:
         yield self._headline()
         yield self._services()
         if self.latest is not None:
-            beliefs, values = _belief_table(self.latest.belief), _value_table(self.latest)
-            columns = Table.grid(padding=(0, 4))
-            columns.add_row(beliefs, values)
-            room = console.height - max(beliefs.row_count, values.row_count) - _OTHER_ROWS
             yield Text()
-            shown = sorted(self.steps)[-max(room, _FEWEST_STEPS) :]
-            yield self._step_table(shown)
-            yield from self._step_remark(shown)
-            yield Text()
-            yield columns
-            yield Text(effort_text(self.latest), style="dim")
+            yield from self._mission(self.latest, console.width, console.height - _FIXED_ROWS)
         yield Text()
         yield from self._progress()
 
+    def _mission(self, latest: DecisionRecord, width: int, rows: int) -> Iterator[RenderableType]:
+        """Steps, values and belief within a number of rows; the latter two side by side where that fits."""
+        rows = max(rows - any(record.remark for record in self.steps.values()), 3 * _FEWEST_ROWS)
+        bars = belief_bars(latest.belief, rows // 2)
+        is_wide = _cells(bars) + _GAP_CELLS + _cells(value_table(latest, width, rows)) <= width
+        below = [] if is_wide else belief_lines(latest.belief, width, max(rows // 4, 2))
+        free = rows - len(below)
+        details = max(len(latest.actions), bars.row_count if is_wide else 0)
+        details = min(details, max(free - len(self.steps), free // 2))
+        shown = sorted(self.steps)[-(free - details) :]
+        yield step_table([self.steps[step] for step in shown], width)
+        yield from self._step_remark(shown)
+        yield Text()
+        values = value_table(latest, width, details)
+        if is_wide:
+            columns = Table.grid(padding=(0, _GAP_CELLS))
+            columns.add_row(belief_bars(latest.belief, details), values)
+            yield columns
+        else:
+            yield values
+            yield Text()
+            yield from below
+        yield Text(effort_text(latest), style="dim")
+
     def _headline(self) -> Text:
-        text = Text(self.title, style="bold")
+        text = Text(self.title, style="bold", no_wrap=True, overflow="ellipsis")
         if self.state is not None:
             goal = f"goal {self.state.goal_probability:.3f}"
             endings = endings_text(self.latest.belief) if self.latest is not None else goal
@@ -93,44 +111,31 @@ class Screen:
         return text
 
     def _services(self) -> Text:
-        text = Text()
-        for name, state in self.services.items():
-            text.append(f"{name} ", style="dim")
-            text.append(f"{state}   ", style=_SERVICE_STYLES.get(state, ""))
+        """`ready: router, registry   starting: solver`."""
+        text = Text(no_wrap=True, overflow="ellipsis")
+        for state in dict.fromkeys(self.services.values()):
+            text.append(f"{state}: ", style=_SERVICE_STYLES.get(state, ""))
+            text.append(", ".join(name for name, its in self.services.items() if its == state) + "   ", "dim")
         return text
 
     def _progress(self) -> Iterator[RenderableType]:
-        if self.state is None or self.state.phase != "ended":
+        ending = ""
+        if self.state is not None and self.state.phase == "ended":
+            ending = self.state.remark
+            yield Text(f"{self.state.ending}: {ending}", style="bold")
+        if self.is_over:
+            yield Text("" if self.remark == ending else self.remark)
+        elif self.remark != ending:
             elapsed_s = time.monotonic() - self.remark_since_s
-            yield Spinner("dots", Text(f"{self.remark} ... {elapsed_s:.0f} s"))
-            return
-        yield Text(f"{self.state.ending}: {self.state.remark}", style="bold")
-        if self.remark != self.state.remark:
-            yield Text(self.remark)
+            text = Text(f"{self.remark} ... {elapsed_s:.0f} s", no_wrap=True, overflow="ellipsis")
+            yield Spinner("dots", text)
 
     def _step_remark(self, shown: list[int]) -> Iterator[Text]:
         """What the newest of the steps that has a remark has to say."""
         remarked = [step for step in shown if self.steps[step].remark]
         if remarked:
-            yield Text(f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}", style="yellow")
-
-    def _step_table(self, shown: list[int]) -> Table:
-        table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-        for column in ("step", "action", "value", "observation", "surprise", "goal"):
-            is_number = column in ("step", "value", "surprise", "goal")
-            table.add_column(column, justify="right" if is_number else "left", no_wrap=True)
-        for step in shown:
-            record = self.steps[step]
-            chosen = _value_of(record)
-            table.add_row(
-                str(step),
-                record.action,
-                "" if chosen is None else f"{chosen.q:+.2f}",
-                _observation(record),
-                "" if record.outcome is None else f"{record.surprise:.2f}",
-                f"{record.belief.goal_probability:.3f}",
-            )
-        return table
+            told = f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}"
+            yield Text(told, style="yellow", no_wrap=True, overflow="ellipsis")
 
 
 class LiveView:
@@ -138,13 +143,15 @@ class LiveView:
 
     def __init__(self, title: str, console: Console | None = None) -> None:
         self.screen = Screen(title)
-        self._live = Live(self.screen, console=console, refresh_per_second=4, transient=False)
+        shown = console or our_console()
+        self._live = Live(self.screen, console=shown, refresh_per_second=4, transient=False)
 
     def __enter__(self) -> Self:
         self._live.start()
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.screen.is_over = True
         self._live.stop()
 
     def __call__(self, event: Event) -> None:
@@ -154,48 +161,7 @@ class LiveView:
         self._live.refresh()
 
 
-def _value_of(record: DecisionRecord) -> ActionValue | None:
-    return next((value for value in record.actions if value.action == record.action), None)
-
-
-def _observation(record: DecisionRecord) -> Text:
-    outcome = record.outcome
-    if outcome is None:
-        return Text("...", style="dim")
-    if outcome.status != "observed":
-        return Text(outcome.status, style="red")
-    return Text(
-        observation_text(outcome.response, outcome.numbers), style="red" if record.is_impossible else ""
-    )
-
-
-def _belief_table(belief: BeliefSummary) -> Table:
-    """A bar for each likely value of each state variable."""
-    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
-    for column in ("belief", "", "", ""):
-        table.add_column(column, no_wrap=True)
-    for marginal in belief.marginals:
-        shown = list(marginal.values.items())[:_SHOWN_VALUES]
-        for index, (value, probability) in enumerate(shown):
-            name = marginal.variable if index == 0 else ""
-            table.add_row(name, value, _bar(probability), f"{probability:.3f}")
-    return table
-
-
-def _value_table(record: DecisionRecord) -> Table:
-    """What the search found about every action, the best first."""
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    table.add_column("action", no_wrap=True)
-    for column in ("value", "±", "visits"):
-        table.add_column(column, justify="right", no_wrap=True)
-    for value in sorted(record.actions, key=lambda each: -each.q):
-        style = "bold" if value.action == record.action else ""
-        table.add_row(
-            Text(value.action, style), f"{value.q:+.2f}", f"{value.stderr:.2f}", str(value.n), style=style
-        )
-    return table
-
-
-def _bar(probability: float) -> Text:
-    filled = round(probability * _BAR_CELLS)
-    return Text("█" * filled, style="cyan").append("·" * (_BAR_CELLS - filled), style="dim")
+def _cells(table: Table) -> int:
+    """The width that a table takes where nothing limits it."""
+    wide = Console(width=1000, file=io.StringIO())
+    return wide.measure(table).maximum

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rich.bar import Bar
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from aos_deploy.terminal import console
 from aos_deploy.views.observations import observation_text
 from aos_protocol.messages import ActionValue
 from aos_solver.simulation import SimulatedRun
@@ -27,10 +27,10 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
     tried = [value.q for value in values if value.n or not simulations]
     lowest, highest = min(tried), max(tried)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
-    console = Console()
+    out = console()
     # Bars give way first: actions often differ in their last letters only.
     action_width = min(max(len(value.action) for value in values), LONGEST_ACTION)
-    bar_width = max(min(BAR_WIDTH, console.width - action_width - NUMBERS_WIDTH), 1)
+    bar_width = max(min(BAR_WIDTH, out.width - action_width - NUMBERS_WIDTH), 1)
     table.add_column("action", overflow="fold", min_width=action_width)
     table.add_column("value", justify="right")
     if simulations:
@@ -43,7 +43,7 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
             row += [f"{value.stderr:.3f}", f"{value.n:,}"]
         size = max(highest - lowest, 1e-9)
         table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=bar_width, color="cyan"))
-    console.print(table)
+    out.print(table)
 
 
 def print_states(run: SimulatedRun) -> None:
@@ -55,7 +55,7 @@ def print_states(run: SimulatedRun) -> None:
     rows = zip(("", *run.actions), ("", *_observations(run)), run.states, strict=True)
     for number, (action, observation, state) in enumerate(rows):
         table.add_row(str(number), Text(action), Text(observation), Text(state.rstrip()))
-    Console().print(table)
+    console().print(table)
 
 
 def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
@@ -78,9 +78,9 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
         )
         world = run.world_ending.value if run.world_ending is not None else "goes on"
         table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
-    console = Console()
-    console.print(table)
-    console.print(
+    out = console()
+    out.print(table)
+    out.print(
         f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
         f"believed in {summary['believed_goal_rate']:.0%}, failure in {summary['failure_rate']:.0%}, "
         f"discounted return {summary['mean_discounted_return']:+.2f} ± {summary['stderr']:.2f}, "

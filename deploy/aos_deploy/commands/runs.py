@@ -1,0 +1,82 @@
+"""`aos runs`: the missions that run on this machine, and those that are kept in a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from aos_deploy.living_runs import RUNS, living_runs
+from aos_deploy.options import AsJson
+from aos_deploy.printing import from_here, print_json
+from aos_deploy.run_directory import RunDirectory
+from aos_protocol.errors import DeployError
+
+__all__ = ["register"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos runs --running")(runs)
+
+
+class Entry(msgspec.Struct):
+    """What `aos runs --json` prints of a run. `ending` is `running`, or `killed` where there is no other."""
+
+    directory: str
+    robot: str
+    started: str
+    ending: str
+    steps: int | None
+    duration_s: float | None
+    endpoint: str
+
+
+def runs(
+    folder: Annotated[Path | None, typer.Option("--runs", metavar="DIR", help="Instead of ./runs")] = None,
+    running: Annotated[bool, typer.Option("--running", help="Only those that run, wherever")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """List the missions that run on this machine, and those kept in ./runs.
+
+    `aos decisions --run DIR` shows one of them.
+    """
+    going_on = {run.path: run for run in living_runs()}
+    kept = {} if running else {run.path: run for run in _runs_in(folder or RUNS)}
+    entries = [_entry(run) for run in (kept | going_on).values()]
+    entries.sort(key=lambda entry: entry.started)
+    if as_json:
+        print_json(entries)
+        return
+    for entry in entries:
+        steps = "" if entry.steps is None else f"{entry.steps:3} steps"
+        took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
+        typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}")
+    if not entries:
+        where = "" if running else f", and there is no run in {folder or RUNS}"
+        typer.echo(f"No mission runs{where}.")
+
+
+def _runs_in(folder: Path) -> list[RunDirectory]:
+    found = folder.resolve().glob("*/run.json")
+    return [RunDirectory(record.parent) for record in found if not record.parent.is_symlink()]
+
+
+def _entry(run: RunDirectory) -> Entry:
+    try:
+        record = run.read_record()
+    except DeployError:
+        return Entry(str(from_here(run.path)), "", "", "unreadable", None, None, "")
+    summary = run.read_summary()
+    ending = summary.ending if summary else "running" if run.is_running else "killed"
+    return Entry(
+        directory=str(from_here(run.path)),
+        robot=record.robot,
+        started=record.started,
+        ending=ending,
+        steps=summary.steps if summary else None,
+        duration_s=summary.duration_s if summary else None,
+        endpoint=record.endpoint,
+    )

@@ -1,0 +1,81 @@
+"""Which missions run on this machine, whatever folder they were started in, and which one a command means.
+
+A run is noted in the cache directory while it lasts. What is noted there and does not run was killed.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from aos_deploy.program import cache_dir
+from aos_deploy.run_directory import RunDirectory
+from aos_protocol.errors import BusError, DeployError
+
+__all__ = ["RUNS", "chosen_run", "living_run", "living_runs", "noted"]
+
+RUNS = Path("runs")
+"""Where run directories are looked for unless a command is told otherwise."""
+
+
+@contextmanager
+def noted(run: RunDirectory) -> Iterator[None]:
+    """Others find the run until the block ends, unless the cache directory cannot be written."""
+    link = _folder() / f"{run.path.name}-{os.getpid()}"
+    with suppress(OSError):
+        _folder().mkdir(parents=True, exist_ok=True)
+        link.symlink_to(run.path)
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            link.unlink()
+
+
+def living_runs() -> list[RunDirectory]:
+    """The runs that go on, the oldest first; notes of others are removed."""
+    found = []
+    for link in sorted(_folder().iterdir()) if _folder().is_dir() else []:
+        run = RunDirectory(link.resolve())
+        if run.is_running:
+            found.append(run)
+        else:
+            link.unlink(missing_ok=True)
+    return found
+
+
+def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
+    """The run that a command means: the one named, else the one that goes on, else the last one.
+
+    `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere.
+    DeployError AOS801 if several go on or the one named is none, BusError AOS605 if there is none.
+    """
+    if run is not None:
+        named = RunDirectory(run)
+        named.read_record()
+        return named
+    going_on = living_runs()
+    here = [each for each in going_on if each.path.parent == (runs or RUNS).resolve()]
+    candidates = here or (going_on if runs is None else [])
+    if len(candidates) > 1:
+        raise DeployError(
+            f"{len(candidates)} missions run: {', '.join(str(each.path) for each in candidates)}",
+            code="AOS801",
+            hint="Name one with --run",
+        )
+    return candidates[0] if candidates else RunDirectory.latest(runs or RUNS)
+
+
+def living_run(run: Path | None, runs: Path | None) -> RunDirectory:
+    """The chosen run; BusError AOS605 if it is over."""
+    chosen = chosen_run(run, runs)
+    if not chosen.is_running:
+        hint = "Start a system with aos-up, or name a running one with --run or --connect"
+        raise BusError(f"the last run, {chosen.path.name}, is over", code="AOS605", hint=hint)
+    return chosen
+
+
+def _folder() -> Path:
+    return cache_dir() / "running"

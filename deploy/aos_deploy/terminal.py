@@ -1,0 +1,29 @@
+"""The terminal: a console that does without styles where NO_COLOR is set, and progress of long work."""
+
+from __future__ import annotations
+
+import os
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
+
+__all__ = ["console", "progress"]
+
+
+def console(*, stderr: bool = False) -> Console:
+    """Standard output or standard error. With NO_COLOR not even bold or dim is left (see no-color.org)."""
+    return Console(stderr=stderr, color_system=None if os.environ.get("NO_COLOR") else "auto")
+
+
+def progress(*columns: ProgressColumn) -> Progress:
+    """A bar on standard error that goes away in the end; nothing at all where that is no terminal."""
+    usual = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    shown = console(stderr=True)
+    return Progress(*(columns or usual), console=shown, transient=True, disable=not shown.is_terminal)

@@ -1,0 +1,133 @@
+"""The parts of the live screen: steps, values of actions, belief; each within a width and some rows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from rich.table import Table
+from rich.text import Text
+
+from aos_deploy.views.observations import observation_text
+from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord
+
+__all__ = ["belief_bars", "belief_lines", "brief_action", "step_table", "value_table"]
+
+_BAR_CELLS = 20
+_SHOWN_VALUES = 4
+_STEP_COLUMNS_CELLS = 36
+"""Of the step table without its action and its observation."""
+_PARAMETER_NAME = re.compile(r"(?<=[(,])( ?)\w+=")
+
+
+def brief_action(action: str) -> str:
+    """`navigate(destination=corridor)` as `navigate(corridor)`."""
+    return _PARAMETER_NAME.sub(r"\1", action)
+
+
+def step_table(records: Iterable[DecisionRecord], width: int) -> Table:
+    """A row for each step: what was chosen and what came of it."""
+    records = tuple(records)
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+    for column in ("step", "action", "value", "observation", "surprise", "goal"):
+        is_number = column in ("step", "value", "surprise", "goal")
+        table.add_column(column, justify="right" if is_number else "left", no_wrap=True)
+    room = max(width - _STEP_COLUMNS_CELLS, 20)
+    actions = _fitting([record.action for record in records], room * 2 // 3)
+    for record, action in zip(records, actions, strict=True):
+        chosen = next((value for value in record.actions if value.action == record.action), None)
+        observation = _observation(record)
+        observation.truncate(max(room - max(map(len, actions)), room // 3), overflow="ellipsis")
+        table.add_row(
+            str(record.step),
+            action,
+            "" if chosen is None else f"{chosen.q:+.2f}",
+            observation,
+            "" if record.outcome is None else f"{record.surprise:.2f}",
+            f"{record.belief.goal_probability:.3f}",
+        )
+    return table
+
+
+def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
+    """What the search found about the actions, the best first; the last row tells how many are not shown."""
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
+    table.add_column("action", no_wrap=True)
+    for column in ("value", "±", "visits"):
+        table.add_column(column, justify="right", no_wrap=True)
+    best: list[ActionValue] = sorted(record.actions, key=lambda each: -each.q)
+    shown = best if len(best) <= rows else best[: max(rows - 1, 1)]
+    names = _fitting([value.action for value in shown], width - 30)
+    for value, name in zip(shown, names, strict=True):
+        style = "bold" if value.action == record.action else ""
+        numbers = (f"{value.q:+.2f}", f"{value.stderr:.2f}", f"{value.n:,}")
+        table.add_row(Text(name, style), *numbers, style=style)
+    if len(shown) < len(best):
+        table.add_row(Text(f"and {len(best) - len(shown)} more", style="dim"))
+    return table
+
+
+def belief_bars(belief: BeliefSummary, rows: int) -> Table:
+    """A bar for each likely value of each state variable."""
+    table = Table(box=None, padding=(0, 1, 0, 0), header_style="dim")
+    for column in ("belief", "", "", ""):
+        table.add_column(column, no_wrap=True)
+    for marginal in belief.marginals:
+        for index, (value, probability) in enumerate(list(marginal.values.items())[:_SHOWN_VALUES]):
+            name = marginal.variable if index == 0 else ""
+            if table.row_count < rows:
+                table.add_row(name, value, _bar(probability), f"{probability:.3f}")
+    return table
+
+
+def belief_lines(belief: BeliefSummary, width: int, rows: int) -> list[Text]:
+    """The same as text for a narrow screen, `holding_can true 0.75 false 0.25`; doubtful variables first."""
+    doubtful = sorted(belief.marginals, key=lambda marginal: max(marginal.values.values(), default=1.0))
+    lines: list[Text] = []
+    for marginal in doubtful:
+        likely = list(marginal.values.items())[:_SHOWN_VALUES]
+        told = " ".join(
+            value if probability > 0.9995 else f"{value} {probability:.2f}" for value, probability in likely
+        )
+        item = Text.assemble((f"{marginal.variable} ", "dim"), told)
+        item.truncate(width, overflow="ellipsis")
+        if lines and lines[-1].cell_len + 3 + item.cell_len <= width:
+            lines[-1].append("   ").append(item)
+        elif len(lines) == rows:
+            lines[-1].truncate(width - 4)
+            lines[-1].append(" ...", style="dim")
+            break
+        else:
+            lines.append(item)
+    return lines
+
+
+def _fitting(actions: list[str], width: int) -> list[str]:
+    """The actions as they are, or without their parameters' names, or with their middle left out."""
+    if max(map(len, actions), default=0) > width:
+        actions = [brief_action(action) for action in actions]
+    return [_without_middle(action, max(width, 8)) for action in actions]
+
+
+def _without_middle(text: str, width: int) -> str:
+    """Actions often differ in their last letters only."""
+    if len(text) <= width:
+        return text
+    head = width // 2
+    return f"{text[:head]}…{text[len(text) - (width - head - 1) :]}"
+
+
+def _observation(record: DecisionRecord) -> Text:
+    outcome = record.outcome
+    if outcome is None:
+        return Text("...", style="dim")
+    if outcome.status != "observed":
+        return Text(outcome.status, style="red")
+    return Text(
+        observation_text(outcome.response, outcome.numbers), style="red" if record.is_impossible else ""
+    )
+
+
+def _bar(probability: float) -> Text:
+    filled = round(probability * _BAR_CELLS)
+    return Text("█" * filled, style="cyan").append("·" * (_BAR_CELLS - filled), style="dim")
