@@ -39,7 +39,7 @@ class Played(msgspec.Struct, kw_only=True):
     actions: int = 0
     steps: int = 0
     episodes: int = 0
-    most_states: int = 0
+    max_states: int = 0
     impossible_observations: int = 0
     fault: str = ""
 
@@ -95,7 +95,7 @@ async def _walk(engine: Engine, played: Played, steps: int, draws: random.Random
         step = await engine.step_world(index)
         update = await engine.update(actions[index].name, step.response)
         played.steps += 1
-        played.most_states = max(played.most_states, update.summary.states)
+        played.max_states = max(played.max_states, update.summary.states)
         played.impossible_observations += update.is_impossible
         ending = step.ending
 
@@ -127,7 +127,7 @@ def _line(played: Played) -> str:
         verdict += f", {played.impossible_observations} impossible observations"
     figures = (
         f"{played.findings:3} findings in {played.lint_s:5.3f} s, built in {played.compile_s:4.1f} s, "
-        f"{played.actions:3} actions, at most {played.most_states:5} states believed"
+        f"{played.actions:3} actions, at most {played.max_states:5} states believed"
     )
     return f"{played.bundle:24} {figures}: {verdict}"
 

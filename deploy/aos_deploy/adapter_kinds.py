@@ -51,6 +51,16 @@ _KINDS = {
         extra="sim",
     ),
     MODEL: Kind(adapter="aos_solver.model_adapter:ModelAdapter", value="note"),
+    "ros2": Kind(
+        adapter="aos_skills.ros2.adapter:Ros2Adapter",
+        value="router",
+        options=("domain", "distribution", "interfaces", "topics"),
+    ),
+    "dds": Kind(
+        adapter="aos_skills.dds.adapter:DdsAdapter",
+        value="interface",
+        options=("peers", "domain", "distribution", "interfaces", "topics"),
+    ),
     "class": Kind(value="class", options=None),
     COMMAND: Kind(value="command"),
     EXTERNAL: Kind(value="note"),

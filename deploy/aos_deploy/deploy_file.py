@@ -70,7 +70,7 @@ class SolverPart(msgspec.Struct, frozen=True, kw_only=True):
     policy: str | None = None
     planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
     threads: Annotated[int, msgspec.Meta(ge=1, le=32)] = 1
-    think_while_acting: bool = True
+    ponder_while_acting: bool = True
     seed: Seed = 1
     impossible_observation: Literal["hold", "widen", "reset"] = "widen"
 

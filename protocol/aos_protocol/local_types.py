@@ -11,7 +11,7 @@ import msgspec
 
 from aos_protocol.documents import AbstractionMapping, Environment, StateVariable
 
-__all__ = ["LocalType", "local_type", "local_type_text", "told_variables"]
+__all__ = ["LocalType", "local_type", "local_type_text", "reported_variables"]
 
 _ELEMENTS = ("bool", "int", "float", "double", "string")
 
@@ -39,7 +39,7 @@ def local_type_text() -> str:
     return f"{', '.join(_ELEMENTS)}, or an array such as int[]"
 
 
-def told_variables(mapping: AbstractionMapping, environment: Environment) -> tuple[str, ...]:
+def reported_variables(mapping: AbstractionMapping, environment: Environment) -> tuple[str, ...]:
     """The local variables that tell the state variable of their name and type its value, in their order."""
     variables = {variable.name: _type_of(variable) for variable in environment.variables}
     return tuple(

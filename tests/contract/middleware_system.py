@@ -31,7 +31,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.bus import Bus
 from aos_runtime.children import PIPE, Child
-from aos_runtime.told_state import state_when
+from aos_runtime.reported_state import state_when
 
 __all__ = ["SENSE", "Adapter", "Registry", "System", "answering", "hang", "running_system", "succeed"]
 

@@ -35,7 +35,7 @@ from aos_protocol.messages import (
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 from aos_runtime.clock import SystemClock
-from aos_runtime.told_state import state_when
+from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
 from aos_solver.endings import MissionLimits
 from aos_solver.hot_plug import RunningModel

@@ -18,11 +18,10 @@ pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
 from aos_protocol.errors import BusError, DeployError, SkillError
 from aos_runtime.parent import PARENT_VARIABLE
+from aos_skills.ros.node import Qos
 from aos_skills.ros.types import RosTypes
-from aos_skills.ros2.action_client import run_action
-from aos_skills.ros2.action_server import ActionServer, Goal
 from aos_skills.ros2.node import Node
-from aos_skills.ros2.wire import Kind, Qos
+from aos_skills.ros2.wire import Kind
 
 ROOT = Path(__file__).resolve().parents[2]
 INTERFACES = ROOT / "tests" / "data" / "interfaces"
@@ -58,7 +57,7 @@ async def add(request: dict[str, Any]) -> dict[str, Any]:
 
 
 async def count_up(
-    goal: dict[str, Any], state: Goal, feedback: Callable[[dict[str, Any]], None]
+    goal: dict[str, Any], stop: asyncio.Event, feedback: Callable[[dict[str, Any]], None]
 ) -> dict[str, Any]:
     """Fibonacci's numbers; an order of 1000 is never reached, one below 0 cannot be run."""
     if goal["order"] < 0:
@@ -68,8 +67,8 @@ async def count_up(
         sequence.append(min(sequence[-1] + sequence[-2], 2**31 - 1))
         feedback({"sequence": sequence})
         if goal["order"] == 1000:
-            await state.cancelled.wait()
-        if state.cancelled.is_set():
+            await stop.wait()
+        if stop.is_set():
             break
     return {"sequence": sequence}
 
@@ -83,7 +82,7 @@ async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
     robot: Node, node: Node
 ) -> None:
     robot.serve("/lab/add", ADD, add)
-    await node.server("/lab/add", ADD, DEADLINE_S)
+    await node.service_type("/lab/add", ADD, DEADLINE_S)
     with pytest.raises(SkillError, match=r"no ROS 2 node serves /lab/sub .*/lab/add") as raised:
         await node.call("/lab/sub", {}, timeout_s=DEADLINE_S, discovery_s=0.05)
     assert raised.value.code == "AOS505"
@@ -145,20 +144,19 @@ async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node,
 
 
 async def test_an_action_gives_feedback_and_its_result(robot: Node, node: Node) -> None:
-    ActionServer(robot, "/lab/fibonacci", FIBONACCI, count_up)
+    robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     feedback: list[Any] = []
-    end = await run_action(
-        node, "/lab/fibonacci", {"order": 6}, timeout_s=DEADLINE_S, on_feedback=feedback.append
+    end = await node.run_action(
+        "/lab/fibonacci", {"order": 6}, timeout_s=DEADLINE_S, on_feedback=feedback.append
     )
     assert end == ("succeeded", {"sequence": [0, 1, 1, 2, 3, 5]})
     assert feedback[-1] == {"sequence": [0, 1, 1, 2, 3, 5]}
 
 
 async def test_an_action_is_cancelled_with_a_handshake(robot: Node, node: Node) -> None:
-    ActionServer(robot, "/lab/fibonacci", FIBONACCI, count_up)
+    robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     cancelled = asyncio.Event()
-    end = await run_action(
-        node,
+    end = await node.run_action(
         "/lab/fibonacci",
         {"order": 1000},
         timeout_s=DEADLINE_S,
@@ -171,31 +169,30 @@ async def test_an_action_is_cancelled_with_a_handshake(robot: Node, node: Node) 
 async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robot: Node, node: Node) -> None:
     ended = asyncio.Event()
 
-    async def wait(_: Any, state: Goal, __: Any) -> dict[str, Any]:
-        await state.cancelled.wait()
+    async def wait(_: Any, stop: asyncio.Event, __: Any) -> dict[str, Any]:
+        await stop.wait()
         ended.set()
         return {}
 
-    ActionServer(robot, "/lab/fibonacci", FIBONACCI, wait)
+    robot.serve_action("/lab/fibonacci", FIBONACCI, wait)
     with pytest.raises(SkillError, match=r"did not end within 0\.3 s and was cancelled") as raised:
-        await run_action(node, "/lab/fibonacci", {"order": 1000}, timeout_s=0.3)
+        await node.run_action("/lab/fibonacci", {"order": 1000}, timeout_s=0.3)
     assert raised.value.code == "AOS503"
     assert ended.is_set()
 
 
 async def test_an_action_that_fails_is_aborted(robot: Node, node: Node) -> None:
-    ActionServer(robot, "/lab/fibonacci", FIBONACCI, count_up)
-    end = await run_action(node, "/lab/fibonacci", {"order": -1}, timeout_s=DEADLINE_S)
+    robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
+    end = await node.run_action("/lab/fibonacci", {"order": -1}, timeout_s=DEADLINE_S)
     assert end.status == "aborted"
 
 
 async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: str, node: Node) -> None:
     async with opened(endpoint, "leaving") as leaving:
-        ActionServer(leaving, "/lab/fibonacci", FIBONACCI, count_up)
+        leaving.serve_action("/lab/fibonacci", FIBONACCI, count_up)
         started = asyncio.Event()
         running = asyncio.create_task(
-            run_action(
-                node,
+            node.run_action(
                 "/lab/fibonacci",
                 {"order": 1000},
                 timeout_s=DEADLINE_S,

@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from aos_protocol.errors import AosError
-from aos_solver.offline.problem_files import read_problem
+from aos_solver.formats.problem_files import read_problem
 from aos_solver.offline.solving import SolvingLimits, solve
 
 from .driver import Driver

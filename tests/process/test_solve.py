@@ -16,12 +16,12 @@ from models import built_bundle, built_text, engine_of
 from aos_protocol.errors import ModelError, PlanningError
 from aos_solver.building.compiler import find_compiler
 from aos_solver.endings import MissionLimits
+from aos_solver.formats.explicit_model import ExplicitModel, Ragged, StartBelief
+from aos_solver.formats.problem_files import read_problem
 from aos_solver.offline.enumeration import Enumeration, enumerate_model
-from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
 from aos_solver.offline.graph_writers import c_header, graphviz
 from aos_solver.offline.policy import Policy, PolicyHeader, PolicySearch
 from aos_solver.offline.policy_graph import OVER, PolicyGraph, policy_graph
-from aos_solver.offline.problem_files import read_problem
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, solve
 from aos_solver.offline.stopping import with_stopping
 from aos_solver.simulation import simulate_mission
@@ -145,7 +145,7 @@ async def test_the_graph_of_tag_gives_what_its_bound_promises(published: Path, c
     """The graph is evaluated exactly and by other code, so the bound is true."""
     model = read_problem(published / "TagAvoid.pomdpx")
     solution = await solve(model, SolvingLimits(cpu_s=0.5), cache_dir=cache_dir)
-    graph = policy_graph(model, solution.vectors, most_nodes=300)
+    graph = policy_graph(model, solution.vectors, max_nodes=300)
     assert solution.bounds.lower - 0.05 <= graph.value <= solution.bounds.upper
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from aos_protocol.errors import DocumentError, ModelError, PlanningError
-from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged
-from aos_solver.offline.problem_files import read_problem
-from aos_solver.offline.problem_writers import write_problem
-from aos_solver.offline.sensing_by_state import with_sensing_by_state
+from aos_solver.formats.explicit_model import ExplicitModel, Floats, Ragged
+from aos_solver.formats.problem_files import read_problem
+from aos_solver.formats.problem_writers import write_problem
+from aos_solver.formats.sensing_by_state import with_sensing_by_state
 
 
 @pytest.fixture
@@ -180,7 +180,7 @@ def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(
 
 def test_too_many_states_are_told(problems: Path) -> None:
     with pytest.raises(ModelError, match="more than 3 states") as caught:
-        read_problem(problems / "rover.pomdpx", most_states=3)
+        read_problem(problems / "rover.pomdpx", max_states=3)
     assert caught.value.code == "AOS220"
 
 

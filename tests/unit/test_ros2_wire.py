@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from aos_skills.ros2.wire import Attachment, Endpoint, Kind, Qos, data_key, endpoint_of, gid_of
+from aos_skills.ros.node import Qos
+from aos_skills.ros2.wire import Attachment, Endpoint, Kind, data_key, endpoint_of, gid_of, qos_of, qos_text
 
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 ADD_HASH = "RIHS01_e118de6bf5eeb66a2491b5bda11202e7b68f198d6f67922cf30364858239c81a"
@@ -66,7 +67,7 @@ def test_namespaces_survive_the_token() -> None:
 
 @pytest.mark.parametrize("qos", [Qos(), Qos(1, True, True), Qos(5, False, False)])
 def test_qualities_of_service_survive_their_text(qos: Qos) -> None:
-    assert Qos.read(str(qos)) == qos
+    assert qos_of(qos_text(qos)) == qos
 
 
 @pytest.mark.parametrize(

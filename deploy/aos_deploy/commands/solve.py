@@ -23,13 +23,13 @@ from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress
 from aos_protocol.errors import DeployError, PlanningError
 from aos_solver.child.answers import Listed
+from aos_solver.formats.explicit_model import ExplicitModel, ModelSize
+from aos_solver.formats.problem_files import PROBLEM_ENDINGS, read_problem
+from aos_solver.formats.problem_writers import WRITERS, write_problem
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
-from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.graph_writers import c_header, graphviz, write_text
 from aos_solver.offline.policy import Policy, PolicyHeader
 from aos_solver.offline.policy_graph import PolicyGraph, policy_graph
-from aos_solver.offline.problem_files import PROBLEM_ENDINGS, read_problem
-from aos_solver.offline.problem_writers import WRITERS, write_problem
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping
@@ -130,7 +130,7 @@ def solve(
     if out is not None:
         _policy(found, solution, stop_value).save(out)
         written.append(str(out))
-    drawn = policy_graph(found.model, solution.vectors, most_nodes=nodes) if graph or header else None
+    drawn = policy_graph(found.model, solution.vectors, max_nodes=nodes) if graph or header else None
     if drawn is not None:
         written += _write_graph(drawn, graph, header)
     if as_json:
@@ -158,7 +158,7 @@ def _check_names(exports: list[Path], graph: Path | None) -> None:
 def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
     with _progress("states") as on_progress:
         model = read_problem(
-            path, most_states=max_states, on_progress=lambda known: on_progress(Listed(known, known))
+            path, max_states=max_states, on_progress=lambda known: on_progress(Listed(known, known))
         )
     if discount is not None:
         model = msgspec.structs.replace(model, discount=discount)

@@ -15,7 +15,7 @@ from aos_deploy.gym.worlds import ENDINGS, HiddenWorlds
 
 __all__ = ["AosEnv"]
 
-MOST_SEEDS = 2**63 - 1
+MAX_SEED = 2**63 - 1
 
 
 class AosEnv(gymnasium.Env[Observation, np.int64]):
@@ -33,7 +33,7 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
         self, bundle: str | Path, *, max_episode_steps: int | None = None, array_room: int = 16
     ) -> None:
         self._worlds = HiddenWorlds(Path(bundle), array_room)
-        self._most_steps = max_episode_steps
+        self._max_steps = max_episode_steps
         self._steps = 0
         self.action_names = self._worlds.actions
         self.response_names = self._worlds.responses
@@ -47,7 +47,7 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
     ) -> tuple[Observation, dict[str, Any]]:
         """A new episode; the same seed, the same episodes from there on."""
         super().reset(seed=seed)
-        self._worlds.start([int(self.np_random.integers(MOST_SEEDS))])
+        self._worlds.start([int(self.np_random.integers(MAX_SEED))])
         self._steps = 0
         return self._observation(*self._worlds.nothing_observed(1)), {}
 
@@ -61,7 +61,7 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
             "response": text or self.response_names[done.observations[0]],
             "ending": ENDINGS[done.endings[0]],
         }
-        is_cut = self._most_steps is not None and self._steps >= self._most_steps
+        is_cut = self._max_steps is not None and self._steps >= self._max_steps
         observation = self._observation(done.observations, done.texts, done.numbers)
         return observation, float(done.rewards[0]), bool(done.endings[0]), is_cut, info
 

@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from aos_deploy.gym.environment import MOST_SEEDS
+from aos_deploy.gym.environment import MAX_SEED
 from aos_deploy.gym.spaces import observation_space, observations
 from aos_deploy.gym.worlds import HiddenWorlds
 
@@ -37,7 +37,7 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
         array_room: int = 16,
     ) -> None:
         self._worlds = HiddenWorlds(Path(bundle), array_room)
-        self._most_steps = max_episode_steps
+        self._max_steps = max_episode_steps
         self.num_envs = num_envs
         self.action_names = self._worlds.actions
         self.response_names = self._worlds.responses
@@ -55,10 +55,10 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
     ) -> tuple[Any, dict[str, Any]]:
         """New episodes everywhere; a list gives each world a seed of its own."""
         if isinstance(seed, list):
-            seeds = [int(np.random.default_rng(each).integers(MOST_SEEDS)) for each in seed]
+            seeds = [int(np.random.default_rng(each).integers(MAX_SEED)) for each in seed]
         else:
             super().reset(seed=seed)
-            seeds = self.np_random.integers(MOST_SEEDS, size=self.num_envs).tolist()
+            seeds = self.np_random.integers(MAX_SEED, size=self.num_envs).tolist()
         self._worlds.start(seeds)
         self._steps[:] = 0
         self._is_over[:] = False
@@ -70,8 +70,8 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
         self._steps = np.where(self._is_over, 0, self._steps + 1)
         is_terminated = done.endings != 0
         is_truncated = np.zeros(self.num_envs, np.bool_)
-        if self._most_steps is not None:
-            is_truncated = self._steps >= self._most_steps
+        if self._max_steps is not None:
+            is_truncated = self._steps >= self._max_steps
         self._is_over = is_terminated | is_truncated
         observed = observations(self._worlds, done.observations, done.texts, done.numbers)
         return observed, done.rewards, is_terminated, is_truncated, {}

@@ -31,7 +31,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.journal import Journal
 from aos_runtime.lifecycle import Service
-from aos_runtime.told_state import state_when
+from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
@@ -82,7 +82,7 @@ class _Solver:
             horizon=settings.horizon,
             planner=settings.planner,
             threads=settings.threads,
-            thinks_while_acting=settings.think_while_acting,
+            ponders_while_acting=settings.ponder_while_acting,
         )
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()

@@ -30,5 +30,5 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     activation_timeout_s: float = 120.0
     planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
     threads: int = 1
-    think_while_acting: bool = True
+    ponder_while_acting: bool = True
     impossible_observation: Literal["hold", "widen", "reset"] = "widen"

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from aos_protocol.documents import AbstractionMapping
 from aos_protocol.findings import Findings
-from aos_protocol.local_types import told_variables
+from aos_protocol.local_types import reported_variables
 from aos_registry.assembly import Assembly
 from aos_registry.check.declarations import check_environment_names, check_skill_declarations
 from aos_registry.check.endings import check_endings
@@ -59,17 +59,17 @@ def check(assembly: Assembly, findings: Findings) -> None:
         if assembly.environment is not None:
             check_told_variables(mapping, assembly.environment, findings)
         if is_whole and is_sound:
-            check_unused_locals(mapping, _told_to_model(mapping, name, assembly), findings)
+            check_unused_locals(mapping, _reported_to_model(mapping, name, assembly), findings)
     if assembly.low_level is not None:
         check_low_level(assembly.low_level, findings)
     if is_whole and assembly.environment is not None:
         check_unused_variables(assembly.environment, assembly.models.values(), findings)
 
 
-def _told_to_model(mapping: AbstractionMapping, name: str, assembly: Assembly) -> frozenset[str]:
+def _reported_to_model(mapping: AbstractionMapping, name: str, assembly: Assembly) -> frozenset[str]:
     """The names of local variables that an update of the belief uses."""
     model, environment = assembly.models.get(name), assembly.environment
     named = names_in_given_observation(model) if model is not None else frozenset()
     if model is not None:
         named = named.union(number.name for number in reported_numbers(model))
-    return named.union(told_variables(mapping, environment) if environment is not None else ())
+    return named.union(reported_variables(mapping, environment) if environment is not None else ())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from aos_protocol.documents import AbstractionMapping, Environment, SkillModel
 from aos_protocol.findings import Findings
-from aos_protocol.local_types import local_type, local_type_text, told_variables
+from aos_protocol.local_types import local_type, local_type_text, reported_variables
 from aos_registry.check.blocks import given_observation_blocks
 from aos_registry.check.model_code import read_block
 
@@ -31,7 +31,7 @@ def check_given_observation(model: SkillModel, mapping: AbstractionMapping, find
 def check_told_variables(mapping: AbstractionMapping, environment: Environment, findings: Findings) -> None:
     """AOS134 for each local variable that sets a state variable by its name alone, perhaps by accident."""
     for variable in mapping.local_variables:
-        if variable.name in told_variables(mapping, environment):
+        if variable.name in reported_variables(mapping, environment):
             message = f"after each run the state variable {variable.name} is what this local variable is"
             hint = "They have the same name and type; if that is not meant, choose another name"
             findings.remark("AOS134", message, variable.span, hint)

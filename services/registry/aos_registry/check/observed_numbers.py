@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from aos_protocol.documents import AbstractionMapping, Environment, LocalVariable, SkillModel
 from aos_protocol.findings import Findings
-from aos_protocol.local_types import local_type, told_variables
+from aos_protocol.local_types import local_type, reported_variables
 from aos_registry.check.blocks import DYNAMIC, Block, environment_blocks, skill_blocks
 from aos_registry.check.model_code import read_block
 from aos_runtime.observed import OBSERVED, ReportedNumber, misuses_of, reported_numbers, reports_in
@@ -46,7 +46,7 @@ def check_observed_numbers(
 ) -> None:
     """AOS136 for each number that the mapping cannot give."""
     variables = {variable.name: variable for variable in mapping.local_variables}
-    told = told_variables(mapping, environment) if environment is not None else ()
+    told = reported_variables(mapping, environment) if environment is not None else ()
     for number in reported_numbers(model):
         span = number.snippet.locate(number.extent.line, number.extent.column)
         variable = variables.get(number.name)

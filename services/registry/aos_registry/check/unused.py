@@ -39,7 +39,7 @@ def check_unused_variables(
 
 
 def check_unused_locals(
-    mapping: AbstractionMapping, told_to_model: Collection[str], findings: Findings
+    mapping: AbstractionMapping, reported_to_model: Collection[str], findings: Findings
 ) -> None:
     """Local variables that no rule, no field of the request and no other code names, model code included."""
     conditions = (rule.condition for rule in mapping.rules if rule.condition is not None)
@@ -51,7 +51,7 @@ def check_unused_locals(
             for other in mapping.local_variables
             if other is not variable and other.code is not None
         )
-        if variable.name not in used | others | {mapping.response_variable, *told_to_model}:
+        if variable.name not in used | others | {mapping.response_variable, *reported_to_model}:
             message = f"no rule and no field uses the local variable {variable.name}"
             findings.warning("AOS133", message, variable.span, "Leave it out, or use it")
 

@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import logging
 import time
 from collections.abc import Awaitable, Callable
-from typing import Any, Self
+from typing import Self
 
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
+from aos_skills.ros import action_client
+from aos_skills.ros.action_server import ActionServer
+from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, ActionEnd, Fields, Qos, RunGoal, TopicFound
 from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.graph import Graph
-from aos_skills.ros2.wire import DEFAULT_QOS, Attachment, Endpoint, Kind, Qos, gid_of
+from aos_skills.ros2.wire import Attachment, Endpoint, Kind, gid_of
 
-__all__ = ["DISCOVERY_S", "Fields", "Node"]
-
-DISCOVERY_S = 5.0
-"""How long a server or publisher may take to appear. Liveliness tokens come in milliseconds."""
+__all__ = ["Node"]
 
 _FIRST_ENTITY = 10
-
-Fields = dict[str, Any]
 
 _log = logging.getLogger("aos.ros2")
 
 
 class Node:
-    """Belongs to the event loop that opened it."""
+    """A `RosNode`. Belongs to the event loop that opened it."""
 
     def __init__(self, bus: ForeignBus, types: RosTypes, name: str, domain: int) -> None:
         self.types = types
@@ -51,12 +50,14 @@ class Node:
         return self
 
     async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def close(self) -> None:
         await self._bus.close()
 
     # --- topics --------------------------------------------------------------------------------------
 
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
-        """What publishes a message on a topic."""
         own = self._endpoint(Kind.PUBLISHER, topic, type_name, self.types.hash(type_name), qos)
         send = self._bus.publisher(own.key, cached=qos.depth if qos.is_transient_local else 0)
         self._bus.announce(own.token)
@@ -71,10 +72,6 @@ class Node:
     def subscribe(
         self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
     ) -> Undo:
-        """Has each message of a topic taken; those that cannot be decoded are logged and left out.
-
-        With a transient local quality of service, messages from before are taken as well.
-        """
         own = self._endpoint(Kind.SUBSCRIPTION, topic, type_name, self._hash(topic, type_name), qos)
 
         def on_packet(packet: Packet) -> None:
@@ -94,6 +91,10 @@ class Node:
 
         return undo
 
+    async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
+        publisher = await self.graph.wait_for(Kind.PUBLISHER, topic, timeout_s)
+        return None if publisher is None else TopicFound(publisher.type_name, publisher.qos)
+
     # --- services ------------------------------------------------------------------------------------
 
     async def call(
@@ -105,12 +106,7 @@ class Node:
         timeout_s: float,
         discovery_s: float = DISCOVERY_S,
     ) -> Fields:
-        """A service's response. Without a type, the server's is taken.
-
-        SkillError AOS505 if no node serves it, AOS503 if it does not answer in time, AOS504 if it is lost.
-        DeployError AOS806 if its type is not known, SkillError AOS509 if the server's definition is another.
-        """
-        server = await self.server(service, type_name, min(discovery_s, timeout_s))
+        server = await self._server(service, type_name, min(discovery_s, timeout_s))
         client = self._client(server)
         request = self.types.encoded(f"{server.type_name}_Request", fields)
         packet = Packet(request, client.attachment())
@@ -120,7 +116,14 @@ class Node:
             raise _skill_error(service, timeout_s, error) from error
         return self.types.decoded(f"{server.type_name}_Response", answer.payload)
 
-    async def server(self, service: str, type_name: str, timeout_s: float) -> Endpoint:
+    async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
+        return (await self._server(service, type_name, timeout_s)).type_name
+
+    async def service_gone(self, service: str) -> None:
+        while self._serves(service):
+            await self.graph.changed()
+
+    async def _server(self, service: str, type_name: str, timeout_s: float) -> Endpoint:
         """The node's end of a service, whose type is as it is defined here."""
         server = await self.graph.wait_for(Kind.SERVER, service, timeout_s)
         if server is None:
@@ -140,7 +143,6 @@ class Node:
         return server
 
     def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
-        """Serves until closed: `handler(request)` runs as a task for each request and gives the response."""
         own = self._endpoint(Kind.SERVER, service, type_name, self.types.hash(type_name), DEFAULT_QOS)
 
         async def on_request(packet: Packet) -> Packet:
@@ -153,7 +155,43 @@ class Node:
         # Whoever sees the token may ask at once.
         self._bus.announce(own.token)
 
+    # --- actions -------------------------------------------------------------------------------------
+
+    async def run_action(
+        self,
+        action: str,
+        goal: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        cancelled: asyncio.Event | None = None,
+        on_feedback: Callable[[Fields], None] | None = None,
+    ) -> ActionEnd:
+        return await action_client.run_action(
+            self,
+            action,
+            goal,
+            type_name=type_name,
+            timeout_s=timeout_s,
+            cancelled=cancelled,
+            on_feedback=on_feedback,
+        )
+
+    def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
+        ActionServer(self, action, type_name, run)
+
+    def kind_of(self, name: str) -> str:
+        if self._serves(name):
+            return "service"
+        return "action" if self._serves(f"{name}/_action/send_goal") else ""
+
+    async def changed(self) -> None:
+        await self.graph.changed()
+
     # --- what they share -----------------------------------------------------------------------------
+
+    def _serves(self, service: str) -> bool:
+        return bool(self.graph.find(Kind.SERVER, service))
 
     def _client(self, server: Endpoint) -> _Client:
         if server.key not in self._clients:

@@ -11,16 +11,18 @@ import struct
 from enum import StrEnum
 from typing import NamedTuple
 
+from aos_skills.ros.node import DEFAULT_QOS, Qos
+
 __all__ = [
-    "DEFAULT_QOS",
     "Attachment",
     "Endpoint",
     "Kind",
-    "Qos",
     "data_key",
     "dds_type",
     "endpoint_of",
     "gid_of",
+    "qos_of",
+    "qos_text",
     "ros_type",
 ]
 
@@ -35,27 +37,18 @@ class Kind(StrEnum):
     CLIENT = "SC"
 
 
-class Qos(NamedTuple):
-    """The part of a quality of service that changes anything here."""
-
-    depth: int = 10
-    is_reliable: bool = True
-    is_transient_local: bool = False
-
-    def __str__(self) -> str:
-        reliability = "" if self.is_reliable else "2"
-        durability = "1" if self.is_transient_local else ""
-        return f"{reliability}:{durability}:,{self.depth}:,:,:,,"
-
-    @classmethod
-    def read(cls, text: str) -> Qos:
-        """From a token; what cannot be read is the default."""
-        parts = [*text.split(":"), "", "", ""]
-        depth = parts[2].partition(",")[2]
-        return cls(int(depth) if depth.isdigit() else 10, parts[0] != "2", parts[1] == "1")
+def qos_text(qos: Qos) -> str:
+    """As it stands in a token; an empty part means the default."""
+    reliability = "" if qos.is_reliable else "2"
+    durability = "1" if qos.is_transient_local else ""
+    return f"{reliability}:{durability}:,{qos.depth}:,:,:,,"
 
 
-DEFAULT_QOS = Qos()
+def qos_of(text: str) -> Qos:
+    """From a token; what cannot be read is the default."""
+    parts = [*text.split(":"), "", "", ""]
+    depth = parts[2].partition(",")[2]
+    return Qos(int(depth) if depth.isdigit() else DEFAULT_QOS.depth, parts[0] != "2", parts[1] == "1")
 
 
 class Endpoint(NamedTuple):
@@ -88,7 +81,7 @@ class Endpoint(NamedTuple):
             self.node,
         ]
         if self.kind is not Kind.NODE:
-            parts += [_mangled(self.name), dds_type(self.type_name), self.type_hash, str(self.qos)]
+            parts += [_mangled(self.name), dds_type(self.type_name), self.type_hash, qos_text(self.qos)]
         return "/".join(parts)
 
     @property
@@ -118,7 +111,7 @@ def endpoint_of(token: str) -> Endpoint | None:
     if kind is Kind.NODE:
         return endpoint
     return endpoint._replace(
-        name=_plain(parts[9]), type_name=ros_type(parts[10]), type_hash=parts[11], qos=Qos.read(parts[12])
+        name=_plain(parts[9]), type_name=ros_type(parts[10]), type_hash=parts[11], qos=qos_of(parts[12])
     )
 
 

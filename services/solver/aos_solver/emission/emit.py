@@ -254,7 +254,7 @@ def _state_digest(program: Program) -> str:
 
 
 def _shape(type_text: str) -> str:
-    """A type without the room of its vectors, which depends on all code."""
+    """A type without the capacity of its vectors, which depends on all code."""
     return re.sub(r"(aos::Vector<.*), \d+>", r"\1>", type_text)
 
 

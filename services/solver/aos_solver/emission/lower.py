@@ -12,7 +12,7 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
 from aos_protocol.findings import Findings
-from aos_protocol.local_types import LocalType, local_type, told_variables
+from aos_protocol.local_types import LocalType, local_type, reported_variables
 from aos_runtime.document_code import snippets_of
 from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import read_cpp_expression
@@ -30,12 +30,12 @@ from aos_solver.emission.lower_copies import copies_of
 from aos_solver.emission.lower_names import check_names
 from aos_solver.emission.lower_relevance import irrelevant_variables
 from aos_solver.emission.lower_state import (
+    capacities_of,
     lower_compounds,
     lower_variables,
     member_names,
     object_lists,
     parameter_values,
-    rooms_of,
 )
 from aos_solver.emission.lower_types import Types, lower_enum
 from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
@@ -66,7 +66,7 @@ class _Lowering:
         self._findings = findings
         self._changes: Changes = changes_of(project)
         self._types = Types(
-            environment.enums, environment.compounds, member_names(project), rooms_of(project), findings
+            environment.enums, environment.compounds, member_names(project), capacities_of(project), findings
         )
         self._pieces = Pieces(findings)
         self._code = SectionLowering(
@@ -181,7 +181,7 @@ class _Lowering:
             dynamic_model=code.section(DYNAMIC, model.dynamic_model),
             rollout_policy=code.section(LOOKING, model.rollout_policy),
             given_observation=code.section(GIVEN, model.state_given_observation),
-            told=told_variables(mapping, self._project.environment),
+            told=reported_variables(mapping, self._project.environment),
             observed=tuple(Observed(number.name, number.is_array) for number in reported_numbers(model)),
             keeps_state=copies.keeps_state,
             keeps_state_=copies.keeps_state_,

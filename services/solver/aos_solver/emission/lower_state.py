@@ -6,47 +6,47 @@ from collections.abc import Iterable
 
 from aos_protocol.documents import Environment, Project, StateVariable
 from aos_protocol.findings import Findings
-from aos_protocol.local_types import told_variables
+from aos_protocol.local_types import reported_variables
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import read_cpp
+from aos_solver.emission.lower_capacities import Capacities
 from aos_solver.emission.lower_code import Pieces, environment_sections, skill_sections
-from aos_solver.emission.lower_rooms import Rooms
 from aos_solver.emission.lower_types import Types, ordered_compounds
 from aos_solver.emission.lower_writes import Changes, drawing_defaults
 from aos_solver.emission.program import Compound, Field, ObjectList, ParameterValues, Variable
 from aos_solver.emission.rewrite import Rewriting
 
 __all__ = [
+    "capacities_of",
     "lower_compounds",
     "lower_variables",
     "member_names",
     "object_lists",
     "parameter_values",
-    "rooms_of",
 ]
 
 
-def rooms_of(project: Project) -> Rooms:
-    """The room of every vector, from all code of the project."""
-    rooms = Rooms()
+def capacities_of(project: Project) -> Capacities:
+    """The capacity of every vector, from all code of the project."""
+    capacities = Capacities()
     environment = project.environment
     for compound in environment.compounds:
         for field in compound.fields:
             if field.default is not None:
-                rooms.read_default(field.name, field.default.code)
+                capacities.read_default(field.name, field.default.code)
     for variable in environment.variables:
         if variable.default_value is not None:
-            rooms.read_default(variable.name, variable.default_value.code)
+            capacities.read_default(variable.name, variable.default_value.code)
         if variable.default_code is not None:
-            rooms.read_code([read_cpp(variable.default_code.code)])
+            capacities.read_code([read_cpp(variable.default_code.code)])
     for skill in project.skills:
-        for name in told_variables(skill.mapping, environment):
-            rooms.tell(name)
+        for name in reported_variables(skill.mapping, environment):
+            capacities.fill_by_report(name)
     sections = [*environment_sections(environment)]
     sections += [section for skill in project.skills for section in skill_sections(skill.model)]
     for _, assignments in sections:
-        rooms.read_code(cpp for _, cpp in snippets_of(assignments))
-    return rooms
+        capacities.read_code(cpp for _, cpp in snippets_of(assignments))
+    return capacities
 
 
 def member_names(project: Project) -> frozenset[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, EnumType
 from aos_protocol.findings import Findings
-from aos_solver.emission.lower_rooms import Rooms
+from aos_solver.emission.lower_capacities import Capacities
 from aos_solver.emission.program import Axis, Enum
 
 __all__ = ["Types", "lower_enum", "ordered_compounds"]
@@ -56,13 +56,13 @@ class Types:
         enums: Iterable[EnumType],
         compounds: Iterable[CompoundType],
         members: frozenset[str],
-        rooms: Rooms,
+        capacities: Capacities,
         findings: Findings,
     ) -> None:
         self._enums = {enum.name: enum for enum in enums}
         self._named = self._enums.keys() | {compound.name for compound in compounds}
         self._members = members
-        self._rooms = rooms
+        self._capacities = capacities
         self._findings = findings
 
     def stored(self, text: str, name: str, span: Span, *, is_array: bool = False) -> str:
@@ -100,8 +100,8 @@ class Types:
         text = _normal(text)
         inner = _element_type(text)
         if inner is not None:
-            room = self._rooms.room(name, level)
-            return f"aos::Vector<{self._stored(inner, name, span, level + 1)}, {room}>"
+            capacity = self._capacities.capacity(name, level)
+            return f"aos::Vector<{self._stored(inner, name, span, level + 1)}, {capacity}>"
         array = re.fullmatch(r"array<(.+),\s*(\d+)\s*>", text)
         if array is not None:
             return f"std::array<{self._stored(array[1], name, span, level + 1)}, {array[2]}>"

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 
 from aos_protocol.documents import Assignment, Environment, Project
-from aos_protocol.local_types import told_variables
+from aos_protocol.local_types import reported_variables
 from aos_runtime.cpp_facts import READING_FUNCTIONS
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
@@ -83,7 +83,7 @@ def changes_of(project: Project) -> Changes:
     changes = Changes(project)
     environment = project.environment
     for skill in project.skills:
-        changes.variables.update(told_variables(skill.mapping, environment))
+        changes.variables.update(reported_variables(skill.mapping, environment))
     for phase, assignments in _all_sections(project):
         copies = phase.changes
         if environment.is_one_state_model and phase.changes:

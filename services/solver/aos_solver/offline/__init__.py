@@ -1,1 +1,1 @@
-"""Policies computed before the mission: explicit models, their files, the SARSOP solver, and policies."""
+"""Policies computed before the mission: enumerated models, the SARSOP solver, and policies."""

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from aos_protocol.errors import PlanningError
+from aos_solver.formats.symbols import symbols
 from aos_solver.offline.policy_graph import OVER, PolicyGraph
-from aos_solver.offline.symbols import symbols
 
 __all__ = ["c_header", "graphviz", "write_text"]
 
-_MOST_NUMBERED = 0xFFFE
+_MAX_NUMBERED = 0xFFFE
 
 
 def write_text(path: Path, text: str) -> None:
@@ -58,7 +58,7 @@ def c_header(graph: PolicyGraph, name: str) -> str:
 
     PlanningError AOS320 if nodes or observations are more than 16 bits can number.
     """
-    if max(len(graph.nodes), len(graph.model.observations)) >= _MOST_NUMBERED:
+    if max(len(graph.nodes), len(graph.model.observations)) >= _MAX_NUMBERED:
         raise PlanningError(
             f"{graph.model.name} has too many observations or nodes for 16 bits",
             code="AOS320",

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 
+from aos_solver.formats.explicit_model import ExplicitModel, Floats, Integers
 from aos_solver.offline.alpha_vectors import AlphaVectors
-from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers
 
 __all__ = ["OVER", "GraphNode", "PolicyGraph", "policy_graph"]
 
@@ -24,7 +24,7 @@ OVER = -1
 
 _NEGLIGIBLE = 1e-9
 _ROUNDING_DIGITS = 9
-_MOST_SWEEPS = 20_000
+_MAX_SWEEPS = 20_000
 _SETTLED = 1e-8
 _FORGOTTEN = np.zeros(0)
 """The belief of a node that is finished; there may be thousands over many states."""
@@ -48,9 +48,9 @@ class PolicyGraph(msgspec.Struct, frozen=True):
     is_whole: bool
 
 
-def policy_graph(model: ExplicitModel, vectors: AlphaVectors, *, most_nodes: int = 200) -> PolicyGraph:
+def policy_graph(model: ExplicitModel, vectors: AlphaVectors, *, max_nodes: int = 200) -> PolicyGraph:
     """The graph of a policy with at most so many nodes, or a few more where no node has the same plan."""
-    building = _Building(model, vectors, most_nodes)
+    building = _Building(model, vectors, max_nodes)
     building.grow()
     nodes = tuple(GraphNode(node.action, node.next) for node in building.nodes)
     starts = tuple(building.starts)
@@ -69,10 +69,10 @@ class _Node(msgspec.Struct):
 class _Building:
     """Beliefs from the start on, the likeliest first."""
 
-    def __init__(self, model: ExplicitModel, vectors: AlphaVectors, most_nodes: int) -> None:
+    def __init__(self, model: ExplicitModel, vectors: AlphaVectors, max_nodes: int) -> None:
         self.model = model
         self._vectors = vectors
-        self._most_nodes = most_nodes
+        self._max_nodes = max_nodes
         self._matrices = _Matrices(model)
         self._known: dict[bytes, int] = {}
         self._by_plan: dict[int, int] = {}
@@ -107,7 +107,7 @@ class _Building:
         plan, action = self._plan(belief)
         if plan == OVER:
             return OVER
-        if len(self.nodes) >= self._most_nodes and plan in self._by_plan:
+        if len(self.nodes) >= self._max_nodes and plan in self._by_plan:
             self.is_whole = False
             return self._by_plan[plan]
         number = len(self.nodes)
@@ -208,7 +208,7 @@ def _value(building: _Building, nodes: tuple[GraphNode, ...]) -> float:
     values = np.zeros((len(nodes) + 1) * state_count)
     outcomes = [building.outcomes_of(number) for number in range(len(nodes))]
     settled = _SETTLED * max(1.0, float(np.abs(model.rewards).max(initial=0)))
-    for _ in range(_MOST_SWEEPS):
+    for _ in range(_MAX_SWEEPS):
         change = 0.0
         # Later nodes mostly follow earlier ones.
         for number in reversed(range(len(nodes))):

@@ -10,11 +10,11 @@ import contextlib
 from collections.abc import Iterable, Mapping
 
 from aos_protocol.errors import DocumentError
-from aos_solver.offline.factored_model import FactoredModel, StateVariable
-from aos_solver.offline.factors import Table, Variable
-from aos_solver.offline.pomdpx_tables import read_table
-from aos_solver.offline.problem_text import ProblemFindings, TooManyFindingsError
-from aos_solver.offline.xml_text import Element, read_xml
+from aos_solver.formats.factored_model import FactoredModel, StateVariable
+from aos_solver.formats.factors import Table, Variable
+from aos_solver.formats.pomdpx_tables import read_table
+from aos_solver.formats.problem_text import ProblemFindings, TooManyFindingsError
+from aos_solver.formats.xml_text import Element, read_xml
 
 __all__ = ["read_pomdpx"]
 

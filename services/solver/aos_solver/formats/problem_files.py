@@ -6,10 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from aos_protocol.errors import DocumentError
-from aos_solver.offline.explicit_model import ExplicitModel
-from aos_solver.offline.factored_model import MOST_STATES, flatten
-from aos_solver.offline.pomdp_reader import read_pomdp
-from aos_solver.offline.pomdpx_reader import read_pomdpx
+from aos_solver.formats.explicit_model import ExplicitModel
+from aos_solver.formats.factored_model import MAX_STATES, flatten
+from aos_solver.formats.pomdp_reader import read_pomdp
+from aos_solver.formats.pomdpx_reader import read_pomdpx
 
 __all__ = ["PROBLEM_ENDINGS", "read_problem"]
 
@@ -19,7 +19,7 @@ PROBLEM_ENDINGS = (".pomdpx", ".pomdp")
 def read_problem(
     path: Path,
     *,
-    most_states: int = MOST_STATES,
+    max_states: int = MAX_STATES,
     on_progress: Callable[[int], None] = lambda states: None,
 ) -> ExplicitModel:
     """The model of a file; DocumentError with its mistakes, IntractableError if it is too large."""
@@ -28,5 +28,5 @@ def read_problem(
     except OSError as error:
         raise DocumentError(f"cannot read {path}: {error.strerror}", code="AOS101") from error
     if path.suffix == ".pomdpx":
-        return flatten(read_pomdpx(str(path), data), most_states=most_states, on_progress=on_progress)
+        return flatten(read_pomdpx(str(path), data), max_states=max_states, on_progress=on_progress)
     return read_pomdp(str(path), data)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import asyncio
 import uuid
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Protocol
 
 from aos_protocol.errors import AosError, SkillError
-from aos_skills.ros2.node import Fields, Node
-from aos_skills.ros2.wire import Kind
+from aos_skills.ros.node import DISCOVERY_S, ActionEnd, Fields, RosNode
 
-__all__ = ["STATUS", "ActionEnd", "run_action"]
+__all__ = ["STATUS", "run_action"]
 
 STATUS = {
     1: "accepted",
@@ -22,19 +21,27 @@ STATUS = {
     6: "aborted",
 }
 
-CANCEL_S = 5.0
-"""How long a node may take to end a goal after it was asked to."""
+CANCEL_S = 1.8
+"""How long a node may take to end a goal after it was asked to: less than an adapter has for it."""
 
 
-class ActionEnd(NamedTuple):
-    """How a goal ended: `succeeded`, `canceled` or `aborted`, and the result's fields."""
+class ServiceNode(RosNode, Protocol):
+    """A node of ROS 2, where actions are made of services and topics."""
 
-    status: str
-    result: Fields
+    async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
+        """The type of a service that some node serves, which is as it is defined here, and the given one.
+
+        The errors are those of `RosNode.call`.
+        """
+        ...
+
+    async def service_gone(self, service: str) -> None:
+        """Returns once no node serves the service."""
+        ...
 
 
 async def run_action(
-    node: Node,
+    node: ServiceNode,
     action: str,
     goal: Fields,
     *,
@@ -43,18 +50,15 @@ async def run_action(
     cancelled: asyncio.Event | None = None,
     on_feedback: Callable[[Fields], None] | None = None,
 ) -> ActionEnd:
-    """Sends a goal and waits for its end. Without a type, the server's is taken.
-
-    When `cancelled` is set, or the time is over, the goal is cancelled and its end is waited for.
-    SkillError AOS505 if no node serves the action, AOS502 if it refuses the goal, AOS503 if the time was
-    over, AOS504 if the node is lost or does not end the goal although it was asked to.
-    """
+    """`RosNode.run_action` for ROS 2."""
     loop = asyncio.get_running_loop()
     ends_at_s = loop.time() + timeout_s
-    server = await node.server(
-        f"{action}/_action/send_goal", f"{type_name}_SendGoal" if type_name else "", timeout_s
+    goal_type = await node.service_type(
+        f"{action}/_action/send_goal",
+        f"{type_name}_SendGoal" if type_name else "",
+        min(DISCOVERY_S, timeout_s),
     )
-    type_name = server.type_name.removesuffix("_SendGoal")
+    type_name = goal_type.removesuffix("_SendGoal")
     goal_id = {"uuid": list(uuid.uuid4().bytes)}
 
     def on_message(message: Fields) -> None:
@@ -98,7 +102,7 @@ async def run_action(
 
 
 async def _ended(
-    node: Node,
+    node: ServiceNode,
     action: str,
     result: asyncio.Task[Fields],
     cancelled: asyncio.Event | None,
@@ -106,12 +110,8 @@ async def _ended(
 ) -> str:
     """Why waiting has ended: "" with the result, else "cancelled", "late" or "lost"."""
 
-    async def gone() -> None:
-        while node.graph.find(Kind.SERVER, f"{action}/_action/get_result"):
-            await node.graph.changed()
-
     cancelling = asyncio.ensure_future((cancelled or asyncio.Event()).wait())
-    leaving = asyncio.ensure_future(gone())
+    leaving = asyncio.ensure_future(node.service_gone(f"{action}/_action/get_result"))
     try:
         await asyncio.wait(
             [result, cancelling, leaving],
@@ -128,7 +128,7 @@ async def _ended(
     return "cancelled" if cancelling.done() else "late"
 
 
-async def _cancel(node: Node, action: str, goal_id: Fields, result: asyncio.Task[Fields]) -> None:
+async def _cancel(node: ServiceNode, action: str, goal_id: Fields, result: asyncio.Task[Fields]) -> None:
     """Asks for the goal's end and waits for it; SkillError AOS504 if it does not come."""
     try:
         await node.call(

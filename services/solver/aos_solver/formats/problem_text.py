@@ -13,7 +13,7 @@ from aos_protocol.errors import DocumentError
 __all__ = ["ProblemFindings", "TooManyFindingsError", "Word", "words_of"]
 
 _WORD = re.compile(r"\S+")
-_MOST_FINDINGS = 50
+_MAX_FINDINGS = 50
 _EXCERPT_LENGTH = 200
 
 
@@ -51,7 +51,7 @@ class ProblemFindings:
         excerpt = excerpt[: column + _EXCERPT_LENGTH].rstrip()
         span = Span(self._name, line, column)
         self._found.append(Diagnostic(Severity.ERROR, code, message, span, hint, excerpt))
-        if len(self._found) >= _MOST_FINDINGS:
+        if len(self._found) >= _MAX_FINDINGS:
             raise TooManyFindingsError
 
     def unknown(self, kind: str, word: Word, known: Iterable[str]) -> None:

@@ -10,15 +10,15 @@ import msgspec
 
 from aos_runtime.snippets import Access, Cpp, Mention, strip_comments
 
-__all__ = ["Rooms"]
+__all__ = ["Capacities"]
 
-GROWING_ROOM = 64
+GROWING_CAPACITY = 64
 """What a vector gets that grows by code, if nothing in the code tells more."""
 
-TOLD_ROOM = 1024
+REPORTED_CAPACITY = 1024
 """What a vector gets that the robot's data fill, if the documents give it no length at the start."""
 
-_LARGEST_ROOM = 16384
+_MAX_CAPACITY = 16384
 _GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})
 _SIZING = frozenset({"assign", "resize"})
 _NUMBER = r"\s*(\d+(?:\s*\*\s*\d+)*)\s*"  # or a product of numbers
@@ -30,33 +30,33 @@ _LOOP_COLON = re.compile(r"\s*:\s*")
 _LISTED = re.compile(r"(?:std::)?vector\s*<[^(){};]*>\s*(?=\{)")
 
 
-class Rooms:
-    """Room by the name of a variable or field and by level of nesting.
+class Capacities:
+    """Capacity by the name of a variable or field and by level of nesting.
 
-    A vector that is only ever assigned lists and literal sizes has exactly the room of the longest. One that
-    grows has `GROWING_ROOM`, or the product of the loop bounds in the code that makes it grow; one that the
-    robot's data fill has twice the room it starts with, or `TOLD_ROOM`. Running over is a fault at run time,
-    told with the document's line.
+    A vector that is only ever assigned lists and literal sizes has exactly the capacity of the longest. One
+    that grows has `GROWING_CAPACITY`, or the product of the loop bounds in the code that makes it grow. One
+    that the robot's data fill has twice the capacity it starts with, or `REPORTED_CAPACITY`. Running over is
+    a fault at run time, with the document's line.
     """
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, int], int] = {}
         self._grows: dict[tuple[str, int], int] = {}
-        self._told: set[tuple[str, int]] = set()
+        self._reported: set[tuple[str, int]] = set()
 
-    def room(self, name: str, level: int = 0) -> int:
-        """The room of `name` at a level: 0 for the vector, 1 for the vectors in it."""
+    def capacity(self, name: str, level: int = 0) -> int:
+        """The capacity of `name` at a level: 0 for the vector, 1 for the vectors in it."""
         key = (name, level)
         known = self._known.get(key, 0)
-        if key in self._told and known <= 1:  # An empty list at the start says nothing.
-            return TOLD_ROOM
-        if known > 0 and key not in self._grows and key not in self._told:
+        if key in self._reported and known <= 1:  # An empty list at the start says nothing.
+            return REPORTED_CAPACITY
+        if known > 0 and key not in self._grows and key not in self._reported:
             return known
-        return min(max(self._grows.get(key, GROWING_ROOM), 2 * known), _LARGEST_ROOM)
+        return min(max(self._grows.get(key, GROWING_CAPACITY), 2 * known), _MAX_CAPACITY)
 
-    def tell(self, name: str) -> None:
+    def fill_by_report(self, name: str) -> None:
         """Takes in that a variable gets values from outside."""
-        self._told.add((name, 0))
+        self._reported.add((name, 0))
 
     def read_default(self, name: str, expression: str) -> None:
         """Takes in the default value of a variable or field."""
@@ -105,7 +105,7 @@ class Rooms:
         self._known[key] = max(self._known.get(key, 1), size)
 
     def _grow(self, key: tuple[str, int], loops: int) -> None:
-        self._grows[key] = max(self._grows.get(key, GROWING_ROOM), loops)
+        self._grows[key] = max(self._grows.get(key, GROWING_CAPACITY), loops)
 
 
 def _product(text: str) -> int:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Awaitable, Callable
 
 from aos_protocol.errors import AosError
-from aos_skills.ros2.node import Fields, Node
-from aos_skills.ros2.wire import Qos
+from aos_skills.ros.node import Fields, Qos, RosNode, RunGoal
 
-__all__ = ["ActionServer", "Goal", "Run"]
+__all__ = ["ActionServer", "Goal"]
 
 _ACCEPTED, _EXECUTING, _CANCELING, _SUCCEEDED, _CANCELED, _ABORTED = range(1, 7)
 _NO_ERROR, _REJECTED, _UNKNOWN_GOAL, _TERMINATED = range(4)
@@ -36,14 +34,10 @@ class Goal:
         return {"goal_id": {"uuid": self.id}, "stamp": _stamp(self.accepted_ns)}
 
 
-Run = Callable[[Fields, Goal, Callable[[Fields], None]], Awaitable[Fields]]
-"""Runs a goal's fields to a result; the third argument publishes feedback. An AosError aborts the goal."""
-
-
 class ActionServer:
     """Serves until the node closes. Any number of goals may run: `run` refuses what it cannot."""
 
-    def __init__(self, node: Node, action: str, type_name: str, run: Run) -> None:
+    def __init__(self, node: RosNode, action: str, type_name: str, run: RunGoal) -> None:
         self._run = run
         self._goals: dict[bytes, Goal] = {}
         self._tasks: set[asyncio.Task[None]] = set()
@@ -72,7 +66,7 @@ class ActionServer:
         try:
             goal.result = await self._run(
                 fields,
-                goal,
+                goal.cancelled,
                 lambda feedback: self._feedback({"goal_id": {"uuid": goal.id}, "feedback": feedback}),
             )
         except AosError:

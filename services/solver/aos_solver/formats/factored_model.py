@@ -8,12 +8,12 @@ import msgspec
 import numpy as np
 
 from aos_protocol.errors import DocumentError, IntractableError
-from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
-from aos_solver.offline.factors import Factor, Table, Variable
+from aos_solver.formats.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
+from aos_solver.formats.factors import Factor, Table, Variable
 
-__all__ = ["MOST_STATES", "FactoredModel", "StateVariable", "flatten"]
+__all__ = ["MAX_STATES", "FactoredModel", "StateVariable", "flatten"]
 
-MOST_STATES = 2_000_000
+MAX_STATES = 2_000_000
 
 _SUM_TOLERANCE = 1e-4
 """Files are written with few digits; sums that are off by less are set right."""
@@ -112,15 +112,15 @@ class _Code:
 
 
 def flatten(
-    model: FactoredModel, *, most_states: int = MOST_STATES, on_progress: Progress = lambda states: None
+    model: FactoredModel, *, max_states: int = MAX_STATES, on_progress: Progress = lambda states: None
 ) -> ExplicitModel:
     """The model over the states that can be reached; `on_progress` is told how many are known.
 
     DocumentError AOS122 for probabilities that do not sum to 1 where it matters, IntractableError where
-    there are more than `most_states`.
+    there are more than `max_states`.
     """
     try:
-        return _Flattening(model, most_states, on_progress).result()
+        return _Flattening(model, max_states, on_progress).result()
     except MemoryError:
         raise IntractableError(f"a table of {model.name} is too large once it is written out") from None
 
@@ -148,9 +148,9 @@ class _Action:
 
 
 class _Flattening:
-    def __init__(self, model: FactoredModel, most_states: int, on_progress: Progress) -> None:
+    def __init__(self, model: FactoredModel, max_states: int, on_progress: Progress) -> None:
         self._model = model
-        self._most_states = most_states
+        self._max_states = max_states
         self._on_progress = on_progress
         self._before = _Code([state.before for state in model.states])
         self._after = _Code([state.after for state in model.states])
@@ -216,9 +216,9 @@ class _Flattening:
             frontier = np.setdiff1d(np.concatenate(reached), known, assume_unique=False)
             known = np.union1d(known, frontier)
             self._on_progress(len(known))
-            if len(known) > self._most_states:
+            if len(known) > self._max_states:
                 raise IntractableError(
-                    f"{self._model.name} has more than {self._most_states} states that can be reached"
+                    f"{self._model.name} has more than {self._max_states} states that can be reached"
                 )
         return steps, known
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 from aos_protocol.errors import PlanningError
-from aos_solver.offline.explicit_model import ExplicitModel
-from aos_solver.offline.sensing_by_state import NEVER, SensingByState, with_sensing_by_state
-from aos_solver.offline.symbols import symbols
+from aos_solver.formats.explicit_model import ExplicitModel
+from aos_solver.formats.sensing_by_state import NEVER, SensingByState, with_sensing_by_state
+from aos_solver.formats.symbols import symbols
 
 __all__ = ["WRITERS", "write_problem"]
 
@@ -100,33 +100,33 @@ def _pomdpx(sensing: SensingByState) -> Iterator[str]:
     """One state variable for all; a second one only tells how the robot starts, where it is told."""
     model = sensing.model
     names = _Names(model)
-    is_told = len(model.starts) > 1
-    told = [f"start{number}" for number in range(len(model.starts))]
+    is_reported = len(model.starts) > 1
+    starts = [f"start{number}" for number in range(len(model.starts))]
     yield '<?xml version="1.0" encoding="utf-8"?>'
     yield '<pomdpx version="1.0">'
     yield f"<Description>{escape(model.name)}</Description>"
     yield f"<Discount>{model.discount!r}</Discount>"
     yield "<Variable>"
     yield from _variable("StateVar", 'vnamePrev="state_0" vnameCurr="state_1" fullyObs="false"', names.states)
-    if is_told:
-        names_told = 'vnamePrev="told_0" vnameCurr="told_1" fullyObs="true"'
-        yield from _variable("StateVar", names_told, [*told, _LATER])
+    if is_reported:
+        attributes = 'vnamePrev="reported_0" vnameCurr="reported_1" fullyObs="true"'
+        yield from _variable("StateVar", attributes, [*starts, _LATER])
     yield from _variable("ObsVar", 'vname="observation"', names.observations)
     yield from _variable("ActionVar", 'vname="action"', names.actions)
     yield '<RewardVar vname="reward"/>'
     yield "</Variable>"
     yield "<InitialStateBelief>"
-    if is_told:
-        weights = [(name, start.weight) for name, start in zip(told, model.starts, strict=True)]
-        yield from _table("CondProb", "told_0", "null", "ProbTable", weights)
+    if is_reported:
+        weights = [(name, start.weight) for name, start in zip(starts, model.starts, strict=True)]
+        yield from _table("CondProb", "reported_0", "null", "ProbTable", weights)
     yield from _table(
         "CondProb",
         "state_0",
-        "told_0" if is_told else "null",
+        "reported_0" if is_reported else "null",
         "ProbTable",
         (
-            (f"{name} {names.states[state]}" if is_told else names.states[state], float(probability))
-            for name, start in zip(told, model.starts, strict=True)
+            (f"{name} {names.states[state]}" if is_reported else names.states[state], float(probability))
+            for name, start in zip(starts, model.starts, strict=True)
             for state, probability in zip(start.states, start.probabilities, strict=True)
         ),
     )
@@ -134,8 +134,8 @@ def _pomdpx(sensing: SensingByState) -> Iterator[str]:
     yield "<StateTransitionFunction>"
     transitions = ((" ".join(where), p) for *where, p in _transitions(model, names))
     yield from _table("CondProb", "state_1", "action state_0", "ProbTable", transitions)
-    if is_told:
-        yield from _table("CondProb", "told_1", "null", "ProbTable", [(_LATER, 1.0)])
+    if is_reported:
+        yield from _table("CondProb", "reported_1", "null", "ProbTable", [(_LATER, 1.0)])
     yield "</StateTransitionFunction>"
     yield "<ObsFunction>"
     observations = ((" ".join(where), p) for *where, p in _observations(sensing, names))

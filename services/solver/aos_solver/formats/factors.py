@@ -9,14 +9,14 @@ from itertools import chain
 import msgspec
 import numpy as np
 
-from aos_solver.offline.explicit_model import Floats, Integers
+from aos_solver.formats.explicit_model import Floats, Integers
 
 __all__ = ["ANY", "EACH", "DenseFactor", "Entry", "Factor", "SparseFactor", "Table", "Variable"]
 
 ANY = -1
 EACH = -2
 
-_MOST_CELLS = 50_000_000
+_MAX_CELLS = 50_000_000
 _USUAL_CELLS = 1_000_000
 """Tables beyond this are kept sparse if their entries are single cells."""
 
@@ -129,7 +129,7 @@ class Table(msgspec.Struct, frozen=True, dict=True):
         cell_count = np.prod([len(self.variables[place].values) for place in kept], dtype=float)
         if self.is_distribution and cell_count > _USUAL_CELLS and _are_cells(entries, kept):
             return self._sparse(entries, kept)
-        if cell_count > _MOST_CELLS:
+        if cell_count > _MAX_CELLS:
             raise MemoryError
         return self._dense(entries, matters, fixed)
 

@@ -8,15 +8,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from aos_protocol.errors import DocumentError
-from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
-from aos_solver.offline.pomdp_rewards import RewardRules
-from aos_solver.offline.pomdp_statements import Statement, statements_of
-from aos_solver.offline.problem_text import ProblemFindings, TooManyFindingsError, Word
+from aos_solver.formats.explicit_model import ExplicitModel, Ragged, StartBelief
+from aos_solver.formats.pomdp_rewards import RewardRules
+from aos_solver.formats.pomdp_statements import Statement, statements_of
+from aos_solver.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
 
 __all__ = ["read_pomdp"]
 
 _SUM_TOLERANCE = 1e-4
-_MOST_NAMES = 2_000_000
+_MAX_NAMES = 2_000_000
 
 Distribution = dict[int, float]
 
@@ -95,7 +95,7 @@ class _Reader:
     def _read_names(self, kind: str, words: Sequence[Word]) -> None:
         if len(words) == 1 and words[0].text.isdecimal():
             count = int(words[0].text)
-            if not 0 < count <= _MOST_NAMES:
+            if not 0 < count <= _MAX_NAMES:
                 self._error("AOS106", f"{count} is no number of {kind}", words[0])
                 return
             self._names[kind] = tuple(f"{kind[0]}{number}" for number in range(count))

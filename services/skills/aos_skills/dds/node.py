@@ -1,0 +1,258 @@
+"""A ROS 2 node over DDS: topics of any vendor, services and actions of robots that run Cyclone DDS."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import logging
+import secrets
+from collections.abc import Awaitable, Callable
+from typing import Self
+
+from aos_protocol.errors import AosError, SkillError
+from aos_skills.dds.cyclone import HEADER, Endpoint, Participant, Writer
+from aos_skills.ros import action_client
+from aos_skills.ros.action_server import ActionServer
+from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, ActionEnd, Fields, Qos, RunGoal, TopicFound
+from aos_skills.ros.types import RosTypes
+from aos_skills.ros2.wire import ros_type
+
+__all__ = ["DdsNode"]
+
+_CDR = b"\x00\x01\x00\x00"
+_MATCH_POLL_S = 0.01
+
+_log = logging.getLogger("aos.dds")
+
+
+class DdsNode:
+    """A `RosNode`. Belongs to the event loop that made it."""
+
+    def __init__(
+        self, types: RosTypes, *, domain: int = 0, interface: str = "lo", peers: tuple[str, ...] = ()
+    ) -> None:
+        self.types = types
+        self._domain = domain
+        self._participant = Participant(domain, interface, peers, types)
+        self._participant.changed = self._on_change
+        self._has_changed = asyncio.Event()
+        self._clients: dict[str, _Client] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        self._clients.clear()
+        self._participant.close()
+
+    # --- topics --------------------------------------------------------------------------------------
+
+    def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
+        writer = self._participant.writer(f"rt{topic}", type_name, qos)
+        return lambda fields: writer.send(self.types.encoded(type_name, fields))
+
+    def subscribe(
+        self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
+    ) -> Callable[[], None]:
+        is_wanted = True
+
+        def on_payload(payload: bytes) -> None:
+            try:
+                fields = self.types.decoded(type_name, payload)
+            except AosError as error:
+                _log.warning("on %s: %s", topic, error)
+            else:
+                if is_wanted:
+                    take(fields)
+
+        def undo() -> None:
+            nonlocal is_wanted
+            is_wanted = False
+
+        self._participant.reader(f"rt{topic}", type_name, on_payload, qos)
+        return undo
+
+    async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
+        found = await self._wait_for(True, f"rt{topic}", timeout_s)
+        return None if found is None else TopicFound(ros_type(found.type_name), found.qos)
+
+    # --- services ------------------------------------------------------------------------------------
+
+    async def call(
+        self,
+        service: str,
+        fields: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        discovery_s: float = DISCOVERY_S,
+    ) -> Fields:
+        type_name = await self.service_type(service, type_name, min(discovery_s, timeout_s))
+        if service not in self._clients:
+            self._clients[service] = _Client(self._participant, service, type_name)
+        client = self._clients[service]
+        request = self.types.encoded(f"{type_name}_Request", fields)
+        try:
+            async with asyncio.timeout(timeout_s):
+                response = await client.ask(request)
+        except TimeoutError as error:
+            raise SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503") from error
+        return self.types.decoded(f"{type_name}_Response", response)
+
+    async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
+        found = await self._wait_for(False, f"rq{service}Request", timeout_s)
+        if found is None:
+            raise SkillError(
+                f"no ROS 2 node serves {service} in domain {self._domain} of DDS",
+                code="AOS505",
+                hint=f"Served are: {', '.join(self._services()) or 'none'}",
+            )
+        theirs = ros_type(found.type_name).removesuffix("_Request")
+        if type_name and theirs != type_name:
+            raise SkillError(
+                f"{service} is of type {theirs}, not {type_name}",
+                code="AOS509",
+                hint="Correct the type in the deploy file, or leave it out",
+            )
+        self.types.check(f"{theirs}_Request")
+        return theirs
+
+    async def service_gone(self, service: str) -> None:
+        while self._serves(service):
+            await self.changed()
+
+    def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
+        async def answer(payload: bytes) -> None:
+            head, body = _split(payload)
+            try:
+                response = await handler(self.types.decoded(f"{type_name}_Request", body))
+                encoded = self.types.encoded(f"{type_name}_Response", response)
+            except Exception as error:
+                _log.warning("%s is not answered: %s", service, error)
+            else:
+                replies.send(_joined(head, encoded))
+
+        def on_request(payload: bytes) -> None:
+            task = asyncio.get_running_loop().create_task(answer(payload))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
+
+        replies = self._participant.writer(
+            f"rr{service}Reply", f"{type_name}_Response", DEFAULT_QOS, has_header=True
+        )
+        self._participant.reader(
+            f"rq{service}Request", f"{type_name}_Request", on_request, DEFAULT_QOS, has_header=True
+        )
+
+    # --- actions -------------------------------------------------------------------------------------
+
+    async def run_action(
+        self,
+        action: str,
+        goal: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        cancelled: asyncio.Event | None = None,
+        on_feedback: Callable[[Fields], None] | None = None,
+    ) -> ActionEnd:
+        return await action_client.run_action(
+            self,
+            action,
+            goal,
+            type_name=type_name,
+            timeout_s=timeout_s,
+            cancelled=cancelled,
+            on_feedback=on_feedback,
+        )
+
+    def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
+        ActionServer(self, action, type_name, run)
+
+    def kind_of(self, name: str) -> str:
+        if self._serves(name):
+            return "service"
+        return "action" if self._serves(f"{name}/_action/send_goal") else ""
+
+    # --- who is there --------------------------------------------------------------------------------
+
+    def _on_change(self) -> None:
+        self._has_changed.set()
+
+    async def changed(self) -> None:
+        self._has_changed.clear()
+        await self._has_changed.wait()
+
+    def _serves(self, service: str) -> bool:
+        return self._find(False, f"rq{service}Request") is not None
+
+    def _find(self, is_writer: bool, topic: str) -> Endpoint | None:
+        known = self._participant.endpoints.values()
+        return next((one for one in known if one.is_writer is is_writer and one.topic == topic), None)
+
+    async def _wait_for(self, is_writer: bool, topic: str, timeout_s: float) -> Endpoint | None:
+        try:
+            async with asyncio.timeout(timeout_s):
+                while (found := self._find(is_writer, topic)) is None:
+                    await self.changed()
+        except TimeoutError:
+            return None
+        return found
+
+    def _services(self) -> list[str]:
+        topics = {one.topic for one in self._participant.endpoints.values() if not one.is_writer}
+        return sorted(
+            topic.removeprefix("rq").removesuffix("Request") for topic in topics if topic.startswith("rq/")
+        )
+
+
+class _Client:
+    """Questions to one service, told apart by this client's number and theirs."""
+
+    def __init__(self, participant: Participant, service: str, type_name: str) -> None:
+        self._id = secrets.randbits(64)
+        self._numbers = itertools.count(1)
+        self._waiting: dict[int, asyncio.Future[bytes]] = {}
+        self._requests: Writer = participant.writer(
+            f"rq{service}Request", f"{type_name}_Request", DEFAULT_QOS, has_header=True
+        )
+        self._count_replies = participant.reader(
+            f"rr{service}Reply", f"{type_name}_Response", self._on_reply, DEFAULT_QOS, has_header=True
+        )
+
+    async def ask(self, request: bytes) -> bytes:
+        # A request that is sent before both sides have found each other is lost.
+        while not (self._requests.matched() and self._count_replies()):  # noqa: ASYNC110
+            await asyncio.sleep(_MATCH_POLL_S)
+        number = next(self._numbers)
+        answer: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()
+        self._waiting[number] = answer
+        self._requests.send(_joined(HEADER.pack(self._id, number), request))
+        try:
+            return await answer
+        finally:
+            del self._waiting[number]
+
+    def _on_reply(self, payload: bytes) -> None:
+        head, body = _split(payload)
+        asked_by, number = HEADER.unpack(head)
+        waiting = self._waiting.get(number)
+        if asked_by == self._id and waiting is not None and not waiting.done():
+            waiting.set_result(body)
+
+
+def _joined(head: bytes, payload: bytes) -> bytes:
+    """A header before the fields. Sixteen bytes change no alignment."""
+    return payload[: len(_CDR)] + head + payload[len(_CDR) :]
+
+
+def _split(payload: bytes) -> tuple[bytes, bytes]:
+    start = len(_CDR) + HEADER.size
+    return payload[len(_CDR) : start], payload[: len(_CDR)] + payload[start:]

@@ -1,0 +1,211 @@
+"""The adapter of a robot that speaks ROS, whichever node reaches it: calls become services and actions.
+
+Which paths there are, and which topics are listened to, the deploy file and the project's documents say. A
+path is served while some node of the robot serves it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from aos_protocol.errors import AosError, DeployError, SkillError
+from aos_runtime.adapters import Call, Host
+from aos_skills.ros.documented import documented
+from aos_skills.ros.node import Fields, RosNode
+
+__all__ = ["RosAdapter", "Way", "interface_places", "way_to"]
+
+MAX_PROGRESS_TEXT = 120
+
+_LONGER_S = 10.0
+"""Deadlines are the host's; those of the questions to the robot only have to be later."""
+
+_log = logging.getLogger("aos.ros")
+
+
+class Way(NamedTuple):
+    """What of the robot a path is bound to: a service or an action ("" if the robot says which), its type."""
+
+    kind: str
+    name: str
+    type_name: str = ""
+
+
+def way_to(path: str, target: Any) -> Way:
+    """What the deploy file means by a target; DeployError AOS801 if nothing."""
+    if target is None:
+        return Way("", path)
+    if isinstance(target, str):
+        return Way("", "/" + target.strip("/"))
+    if isinstance(target, Mapping):
+        kinds = [kind for kind in ("service", "action") if isinstance(target.get(kind), str)]
+        if len(kinds) == 1 and target.keys() <= {kinds[0], "type"}:
+            return Way(kinds[0], "/" + target[kinds[0]].strip("/"), str(target.get("type", "")))
+    raise DeployError(
+        f"{path} is bound to {target!r}, which is neither a service nor an action",
+        hint="Write the name of one, or {service: /pick}, or {action: /navigate, type: package/action/Name}",
+    )
+
+
+def interface_places(host: Host) -> list[Path]:
+    """The folders and files that the option `interfaces` names, from the deploy file's folder."""
+    given = host.options.get("interfaces", [])
+    return [host.folder / place for place in ([given] if isinstance(given, str) else given)]
+
+
+class RosAdapter:
+    """What subclasses add is `connect`: the node through which the robot is reached."""
+
+    version = "1"
+
+    def __init__(self, host: Host) -> None:
+        self.host = host
+        self._ways = {path: way_to(path, binding.target) for path, binding in host.bound.items()}
+        self._topics: dict[str, Callable[[], None] | None] = {}
+        self._serving: set[str] = set()
+        self._tasks: list[asyncio.Task[None]] = []
+        self._has_new_names = asyncio.Event()
+        self.node: RosNode
+
+    async def connect(self) -> RosNode:
+        """Joins the robot's system."""
+        raise NotImplementedError
+
+    async def start(self) -> None:
+        self.node = await self.connect()
+        self._tasks = [
+            asyncio.create_task(self._follow_documents()),
+            asyncio.create_task(self._follow_robot()),
+        ]
+
+    async def close(self) -> None:
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        if hasattr(self, "node"):
+            await self.node.close()
+
+    # --- what there is -------------------------------------------------------------------------------
+
+    async def _follow_documents(self) -> None:
+        """Takes in the paths and topics of each revision of the project."""
+        async for revision in self.host.revisions():
+            known = documented(revision.project)
+            for path in known.paths:
+                if path not in self._ways and self.host.wants(path):
+                    self._ways[path] = Way("", path)
+            for topic in known.topics:
+                self._topics.setdefault(topic, None)
+            self._has_new_names.set()
+
+    async def _follow_robot(self) -> None:
+        """Serves what the robot serves, listens to what it publishes, whenever that changes."""
+        while True:
+            self._has_new_names.clear()
+            waits = [
+                asyncio.create_task(self.node.changed()),
+                asyncio.create_task(_set(self._has_new_names)),
+            ]
+            # What changes from here on ends the waiting.
+            await asyncio.sleep(0)
+            try:
+                await self._serve_what_is_there()
+                await self._listen_to_what_is_there()
+                await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+            finally:
+                for wait in waits:
+                    wait.cancel()
+
+    async def _serve_what_is_there(self) -> None:
+        for path, way in list(self._ways.items()):
+            kind = self.node.kind_of(way.name)
+            is_there = bool(kind) and way.kind in ("", kind)
+            if is_there and path not in self._serving:
+                self._serving.add(path)
+                await self.host.serve(path)
+            elif not is_there and path in self._serving:
+                self._serving.discard(path)
+                self.host.withdraw(path)
+                _log.warning("nobody serves %s any more", way.name)
+
+    async def _listen_to_what_is_there(self) -> None:
+        renamed: dict[str, str] = self.host.options.get("topics", {})
+        for topic, stop in list(self._topics.items()):
+            name = "/" + renamed.get(topic, topic).strip("/")
+            found = await self.node.topic(name, 0.0) if stop is None else None
+            if found is None:
+                continue
+
+            def publish(fields: Fields, topic: str = topic) -> None:
+                self.host.publish(topic, fields)
+
+            try:
+                self._topics[topic] = self.node.subscribe(name, found.type_name, publish, found.qos)
+            except AosError as error:
+                # It is said once, and again in the log of the next run.
+                self._topics[topic] = _ignored
+                _log.error("%s is not listened to: %s", name, error)
+
+    # --- calls ---------------------------------------------------------------------------------------
+
+    async def call(self, call: Call) -> dict[str, Any]:
+        way = self._ways[call.path]
+        kind = way.kind or self.node.kind_of(way.name)
+        if kind == "action":
+            return await self._run_action(call, way)
+        if kind == "service":
+            return await self._call_service(call, way)
+        raise SkillError(f"no node of the robot serves {way.name} now", code="AOS505")
+
+    async def _call_service(self, call: Call, way: Way) -> dict[str, Any]:
+        try:
+            return await self.node.call(
+                way.name, call.fields, type_name=way.type_name, timeout_s=call.deadline_s + _LONGER_S
+            )
+        except asyncio.CancelledError:
+            raise SkillError(
+                f"the service {way.name} was given up; services of ROS cannot be cancelled",
+                code="AOS504",
+                hint="The robot may still move. Skills that take long are better actions",
+            ) from None
+
+    async def _run_action(self, call: Call, way: Way) -> dict[str, Any]:
+        cancelled = asyncio.Event()
+
+        def on_feedback(feedback: dict[str, Any]) -> None:
+            call.progress(0.0, json.dumps(feedback, default=str)[:MAX_PROGRESS_TEXT])
+            self.host.publish(f"{call.path}/feedback", feedback)
+
+        running = asyncio.create_task(
+            self.node.run_action(
+                way.name,
+                call.fields,
+                type_name=way.type_name,
+                timeout_s=call.deadline_s + _LONGER_S,
+                cancelled=cancelled,
+                on_feedback=on_feedback,
+            )
+        )
+        try:
+            end = await asyncio.shield(running)
+        except asyncio.CancelledError:
+            cancelled.set()
+            await running
+            raise
+        if end.status == "succeeded":
+            return end.result
+        code = "AOS507" if end.status == "canceled" else "AOS510"
+        raise SkillError(f"the action {way.name} was {end.status}: {end.result}", code=code)
+
+
+async def _set(event: asyncio.Event) -> None:
+    await event.wait()
+
+
+def _ignored() -> None:
+    """Stands for a topic that cannot be listened to."""

@@ -1,0 +1,47 @@
+"""What a project's mappings say about its robot: the paths that they call, the topics that they listen to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from aos_protocol.documents import Import, LocalSource, Project
+
+__all__ = ["Documented", "documented"]
+
+
+class Documented(NamedTuple):
+    """Full ROS types by path and by topic; empty where the documents do not name one."""
+
+    paths: dict[str, str]
+    topics: dict[str, str]
+
+
+def documented(project: Project) -> Documented:
+    """Paths and topics of all mappings of a project, with a leading slash."""
+    paths: dict[str, str] = {}
+    topics: dict[str, str] = {}
+    for skill in project.skills:
+        activation = skill.mapping.activation
+        path = "/" + activation.path.strip("/")
+        paths[path] = paths.get(path) or _full_type(activation.service_type, "srv", activation.imports)
+        for variable in skill.mapping.local_variables:
+            if variable.source is LocalSource.TOPIC:
+                imports = (*variable.imports, *activation.imports)
+                topic = "/" + variable.topic.strip("/")
+                topics[topic] = topics.get(topic) or _full_type(variable.message_type, "msg", imports)
+    return Documented(paths, topics)
+
+
+def _full_type(name: str, kind: str, imports: Iterable[Import]) -> str:
+    """`Trigger` with `from std_srvs.srv import *` is `std_srvs/srv/Trigger`."""
+    parts = name.replace(".", "/").split("/")
+    if len(parts) == 3:
+        return name.replace(".", "/")
+    if len(parts) == 2:
+        return f"{parts[0]}/{kind}/{parts[1]}"
+    modules = [one for one in imports if one.module.endswith(f".{kind}")]
+    named = [one for one in modules if name in one.names]
+    starred = [one for one in modules if "*" in one.names]
+    found = [*named, *starred]
+    return f"{found[0].module.replace('.', '/')}/{name}" if name and found else ""

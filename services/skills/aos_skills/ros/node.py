@@ -1,0 +1,130 @@
+"""What a ROS node is to everything above it, whichever way it reaches the others."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import Any, NamedTuple, Protocol
+
+__all__ = [
+    "DEFAULT_QOS",
+    "DISCOVERY_S",
+    "ActionEnd",
+    "Fields",
+    "Qos",
+    "RosNode",
+    "RunGoal",
+    "TopicFound",
+]
+
+DISCOVERY_S = 5.0
+"""How long a server or publisher may take to appear."""
+
+Fields = dict[str, Any]
+
+
+class Qos(NamedTuple):
+    """The part of a quality of service that changes anything here; ROS 2's own default by default."""
+
+    depth: int = 10
+    is_reliable: bool = True
+    is_transient_local: bool = False
+
+
+DEFAULT_QOS = Qos()
+
+
+class TopicFound(NamedTuple):
+    """A topic that somebody publishes."""
+
+    type_name: str
+    qos: Qos
+
+
+class ActionEnd(NamedTuple):
+    """How a goal ended: `succeeded`, `canceled` or `aborted`, and the result's fields."""
+
+    status: str
+    result: Fields
+
+
+RunGoal = Callable[[Fields, asyncio.Event, Callable[[Fields], None]], Awaitable[Fields]]
+"""Runs a goal's fields to a result, until the event says to stop; the third argument publishes feedback.
+
+An AosError aborts the goal.
+"""
+
+
+class RosNode(Protocol):
+    """Names are full, `/robot1/chatter`; types too, `std_msgs/msg/String`; values are dicts of fields."""
+
+    def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
+        """What publishes a message on a topic."""
+        ...
+
+    def subscribe(
+        self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
+    ) -> Callable[[], None]:
+        """Has each message of a topic taken until undone; those that cannot be decoded are left out.
+
+        With a transient local quality of service, messages from before are taken as well.
+        """
+        ...
+
+    async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
+        """What is published on a topic; None if nobody does within the time."""
+        ...
+
+    async def call(
+        self,
+        service: str,
+        fields: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        discovery_s: float = DISCOVERY_S,
+    ) -> Fields:
+        """A service's response. Without a type, the server's is taken.
+
+        SkillError AOS505 if no node serves it, AOS503 if it does not answer in time, AOS504 if it is lost.
+        DeployError AOS806 if its type is not known, SkillError AOS509 if the server's definition is another.
+        """
+        ...
+
+    def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
+        """Serves until closed: `handler(request)` runs as a task for each request and gives the response."""
+        ...
+
+    async def run_action(
+        self,
+        action: str,
+        goal: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        cancelled: asyncio.Event | None = None,
+        on_feedback: Callable[[Fields], None] | None = None,
+    ) -> ActionEnd:
+        """Sends a goal and waits for its end. Without a type, the server's is taken.
+
+        When `cancelled` is set, or the time is over, the goal is cancelled and its end is waited for.
+        SkillError AOS505 if no node serves the action, AOS502 if it refuses the goal, AOS503 if the time was
+        over, AOS504 if the node is lost or does not end the goal although it was asked to.
+        """
+        ...
+
+    def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
+        """Serves an action until closed. Any number of goals may run: `run` refuses what it cannot."""
+        ...
+
+    def kind_of(self, name: str) -> str:
+        """What some node serves under a name now: "service", "action", or "" for nothing."""
+        ...
+
+    async def changed(self) -> None:
+        """Returns at the next change of who serves and publishes what."""
+        ...
+
+    async def close(self) -> None:
+        """Leaves the others."""
+        ...

@@ -1,0 +1,200 @@
+"""What AOS asks of a robot that runs ROS 1, done with rospy: services, actions and topics, both ways."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+import actionlib
+import rosgraph
+import rospy
+from actionlib_msgs.msg import GoalStatus
+
+from aos_skills.ros1.child.names import Names
+from aos_skills.ros1.child.types import ActionClasses, Misfit, Types, Unknown, plain
+
+__all__ = ["Robot"]
+
+QUEUE = 1000
+SERVER_S = 5.0
+
+STATUS = {
+    GoalStatus.SUCCEEDED: "succeeded",
+    GoalStatus.PREEMPTED: "canceled",
+    GoalStatus.RECALLED: "canceled",
+}
+
+
+class Refusal(Exception):
+    """An error with a code of AOS."""
+
+    def __init__(self, code: str, text: str, hint: str = "") -> None:
+        super().__init__(text)
+        self.code = code
+        self.hint = hint
+
+
+class Robot:
+    """Its methods `do_X` answer the requests X."""
+
+    def __init__(self, channel: Any, settings: dict[str, Any]) -> None:
+        self._channel = channel
+        self._types = Types(settings["files"])
+        self._clients: dict[int, Any] = {}
+        self._publishers: dict[str, Any] = {}
+        self._asked: dict[int, _Asked] = {}
+        self._asked_lock = threading.Lock()
+        self._asked_count = 0
+        self._kept: list[Any] = []
+        rosgraph.Master("/aos").getPid()  # Without a master rospy would wait for one, for ever.
+        rospy.init_node(settings["node"], anonymous=True, disable_signals=True)
+        names = Names(channel, rospy.get_name())
+        threading.Thread(target=names.follow, daemon=True).start()
+
+    def code_of(self, error: Exception) -> tuple[str, str]:
+        """The code of AOS for an exception, and what to do."""
+        if isinstance(error, Refusal):
+            return error.code, error.hint
+        if isinstance(error, Unknown):
+            return "AOS806", ""
+        if isinstance(error, (Misfit, rospy.ROSSerializationException)):
+            return "AOS502", ""
+        return "AOS510", ""
+
+    # --- as a client ---------------------------------------------------------------------------------
+
+    def do_call(self, number: int, name: str, type: str, fields: Any) -> Any:
+        cls = self._types.service(type)
+        request = self._types.filled(cls._request_class(), fields)
+        try:
+            return plain(rospy.ServiceProxy(name, cls).call(request))
+        except rospy.ServiceException as error:
+            text = str(error)
+            if "responded with an error" in text:
+                raise Refusal("AOS510", f"{name} failed: {text.partition(': ')[2] or text}")
+            if "unable to connect" in text or "unavailable" in text:
+                raise Refusal("AOS505", f"{name} cannot be reached: {text}")
+            raise Refusal("AOS504", f"{name} was lost during the call: {text}")
+
+    def do_run(self, number: int, name: str, type: str, fields: Any) -> Any:
+        spec = ActionClasses(self._types, type)
+        client = actionlib.SimpleActionClient(name, _ActionSpec(spec))
+        if not client.wait_for_server(rospy.Duration(SERVER_S)):
+            raise Refusal("AOS505", f"the action {name} does not answer")
+        ended = threading.Event()
+        goal = self._types.filled(spec.action_goal.goal.__class__(), fields)
+        self._clients[number] = client
+        try:
+            client.send_goal(
+                goal,
+                done_cb=lambda _status, _result: ended.set(),
+                feedback_cb=lambda one: self._channel.send(event="feedback", of=number, fields=plain(one)),
+            )
+            ended.wait()
+        finally:
+            del self._clients[number]
+        status = client.get_state()
+        if status == GoalStatus.REJECTED:
+            raise Refusal("AOS502", f"{name} refused the goal: {client.get_goal_status_text()}")
+        if status == GoalStatus.LOST:
+            raise Refusal("AOS504", f"the node that serves {name} was lost")
+        result = client.get_result()
+        return {
+            "status": STATUS.get(status, "aborted"),
+            "result": plain(result) if result is not None else {},
+        }
+
+    def do_cancel(self, number: int, of: int) -> Any:
+        client = self._clients.get(of)
+        if client is not None:
+            client.cancel_goal()
+
+    def do_subscribe(self, number: int, name: str, type: str) -> Any:
+        cls = self._types.message(type)
+
+        def on_message(message: Any) -> None:
+            self._channel.send(event="message", name=name, fields=plain(message))
+
+        self._kept.append(rospy.Subscriber(name, cls, on_message, queue_size=QUEUE))
+
+    # --- as a server ---------------------------------------------------------------------------------
+
+    def do_advertise(self, number: int, name: str, type: str, latch: bool) -> Any:
+        self._publishers[name] = rospy.Publisher(
+            name, self._types.message(type), latch=latch, queue_size=QUEUE
+        )
+
+    def do_publish(self, number: int, name: str, fields: Any) -> Any:
+        publisher = self._publishers[name]
+        publisher.publish(self._types.filled(publisher.data_class(), fields))
+
+    def do_serve(self, number: int, name: str, type: str) -> Any:
+        cls = self._types.service(type)
+
+        def handle(request: Any) -> Any:
+            asked = self._ask("request", name, plain(request))
+            asked.has_answer.wait()
+            if asked.error:
+                # rospy tells the caller what is raised here.
+                raise rospy.ServiceException(asked.error)
+            return self._types.filled(cls._response_class(), asked.fields)
+
+        self._kept.append(rospy.Service(name, cls, handle))
+
+    def do_serve_action(self, number: int, name: str, type: str) -> Any:
+        spec = ActionClasses(self._types, type)
+
+        def execute(goal: Any) -> None:
+            asked = self._ask("goal", name, plain(goal), lambda one: publish(spec, one))
+            while not asked.has_answer.wait(0.02):
+                if server.is_preempt_requested() and not asked.is_stopped:
+                    asked.is_stopped = True
+                    self._channel.send(event="stop", of=asked.number)
+            result = self._types.filled(spec.action_result.result.__class__(), asked.fields)
+            if asked.is_stopped:
+                server.set_preempted(result, asked.error)
+            elif asked.error:
+                server.set_aborted(result, asked.error)
+            else:
+                server.set_succeeded(result)
+
+        def publish(spec: Any, fields: Any) -> None:
+            server.publish_feedback(self._types.filled(spec.action_feedback.feedback.__class__(), fields))
+
+        server = actionlib.SimpleActionServer(name, _ActionSpec(spec), execute, auto_start=False)
+        server.start()
+        self._kept.append(server)
+
+    def _ask(self, event: str, name: str, fields: Any, on_feedback: Any = None) -> _Asked:
+        with self._asked_lock:
+            self._asked_count += 1
+            asked = self._asked[self._asked_count] = _Asked(self._asked_count, on_feedback)
+        self._channel.send(event=event, of=asked.number, name=name, fields=fields)
+        return asked
+
+    def do_answer(self, number: int, of: int, fields: Any, error: str) -> Any:
+        asked = self._asked.pop(of)
+        asked.fields, asked.error = fields, error
+        asked.has_answer.set()
+
+    def do_feedback(self, number: int, of: int, fields: Any) -> Any:
+        asked = self._asked.get(of)
+        if asked is not None:
+            asked.on_feedback(fields)
+
+
+class _Asked:
+    """A request or a goal of the robot's others, which AOS answers."""
+
+    def __init__(self, number: int, on_feedback: Any) -> None:
+        self.number = number
+        self.on_feedback = on_feedback
+        self.has_answer = threading.Event()
+        self.is_stopped = False
+        self.fields: Any = {}
+        self.error = ""
+
+
+def _ActionSpec(classes: Any) -> Any:
+    """actionlib makes an object of what it is given."""
+    return lambda: classes

@@ -1,0 +1,247 @@
+"""The adapters `ros2` and `dds` as processes, with a robot that is a ROS node of ours in this process."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib.util
+import random
+import sys
+from collections.abc import AsyncIterator, Callable
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+import pytest_asyncio
+
+pytest.importorskip("rosbags", reason="needs the extra `ros`")
+
+from aos_protocol.errors import AosError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    ActivationId,
+    Cancel,
+    Cancelled,
+    ProjectQuery,
+    ProjectRevision,
+    SkillCall,
+    SkillProgress,
+    SkillResult,
+    TopicMessage,
+)
+from aos_registry.load import load_files
+from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+from aos_skills.ros.node import RosNode
+from aos_skills.ros.types import RosTypes
+
+DEADLINE_S = 20.0
+INTERFACES = Path(__file__).resolve().parents[1] / "data" / "interfaces"
+FIBONACCI = "example_interfaces/action/Fibonacci"
+
+DOCUMENTS = {
+    "lab.ef": """project: lab
+horizon: 5
+discount: 0.9
+state_variable: bool done
+code:
+state.done = false;
+initial_belief:
+code:
+state.done = AOS.Bernoulli(0.5);
+""",
+    "count.sd": """project: lab
+dynamic_model:
+code:
+__moduleResponse = AOS.Bernoulli(0.9) ? eDone : eFailed;
+""",
+    "count.am": """project: lab
+module_activation: ros_service
+path: /lab/add
+srv: AddTwoInts
+imports: from: example_interfaces.srv import: *
+parameter: a
+code: 20
+parameter: b
+code: 22
+local_variable: heard
+type: string
+topic: /lab/said
+message_type: String
+imports: from: std_msgs.msg import: String
+initial_value: ''
+code:
+return __input.data
+response: eDone
+response_rule: heard == 'done'
+response: eFailed
+response_rule: True
+""",
+}
+
+
+class Lab:
+    """An adapter's process, the robot behind it, and how the middleware speaks to it."""
+
+    def __init__(self, bus: Bus, keys: Keys, robot: RosNode, folder: Path) -> None:
+        self.bus = bus
+        self.keys = keys
+        self.robot = robot
+        self.folder = folder
+        self.child: Child | None = None
+
+    async def start(self, endpoint: str, adapter: str, options: dict[str, Any], **settings: Any) -> None:
+        values = AdapterSettings(
+            robot=self.keys.robot,
+            service="robot",
+            endpoint=endpoint,
+            run_dir=str(self.folder),
+            folder=str(INTERFACES.parent),
+            project="lab",
+            adapter=adapter,
+            options=options | {"interfaces": ["interfaces"]},
+            **settings,
+        )
+        path = self.folder / "robot.json"
+        path.write_bytes(msgspec.json.encode(values))
+        with (self.folder / "robot.log").open("ab") as log:
+            argv = [sys.executable, "-m", "aos_runtime.adapters", str(path)]
+            self.child = await Child.start(argv, stderr=log)
+
+    async def until_served(self, path: str, *, is_served: bool = True) -> None:
+        async with asyncio.timeout(DEADLINE_S), self.bus.presence(self.keys.all_serve) as present:
+            async for key, is_alive in present:
+                if key.endswith(path) and is_alive is is_served:
+                    return
+
+    async def call(self, path: str, fields: dict[str, Any], step: int, limit_s: float = 10.0) -> SkillResult:
+        call = SkillCall(ActivationId("m", 1, step), path, fields, limit_s)
+        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=DEADLINE_S)
+
+
+KINDS = {
+    "ros2": ("aos_skills.ros2.adapter:Ros2Adapter", "router"),
+    "dds": ("aos_skills.dds.adapter:DdsAdapter", "interface"),
+}
+
+
+@pytest_asyncio.fixture(params=KINDS)
+async def lab(
+    request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+) -> AsyncIterator[Lab]:
+    """A robot that adds and counts, and the adapter to it."""
+    types = RosTypes("jazzy", [INTERFACES])
+    options: dict[str, Any] = {}
+    robot: Any
+    if request.param == "ros2":
+        from aos_skills.ros2.node import Node
+
+        # The robot's router is that of AOS here: they do not get into each other's way.
+        robot = await Node.open(endpoint, types, name="robot")
+        options = {"router": endpoint}
+    else:
+        if importlib.util.find_spec("cyclonedds") is None:
+            pytest.skip("needs the extra `dds`")
+        from aos_skills.dds.node import DdsNode
+
+        options = {"domain": random.SystemRandom().randint(1, 100)}
+        robot = DdsNode(types, domain=options["domain"])
+    lab = Lab(bus, keys, robot, tmp_path)
+    robot.serve("/lab/add", "example_interfaces/srv/AddTwoInts", add)
+    robot.serve_action("/lab/count", FIBONACCI, count_up)
+    await lab.start(
+        endpoint,
+        KINDS[request.param][0],
+        options,
+        bind={
+            "/sum": Binding(target="/lab/add", result={"total": "sum"}),
+            "/count": Binding(target={"action": "/lab/count", "type": FIBONACCI}),
+        },
+        serves_others=True,
+    )
+    try:
+        yield lab
+    finally:
+        if lab.child is not None:
+            await lab.child.stop(10.0)
+        await robot.close()
+
+
+async def add(request: dict[str, Any]) -> dict[str, Any]:
+    return {"sum": request["a"] + request["b"]}
+
+
+async def count_up(
+    goal: dict[str, Any], stop: asyncio.Event, feedback: Callable[[dict[str, Any]], None]
+) -> dict[str, Any]:
+    """Counts to the order; one of 1000 it only starts."""
+    sequence = list(range(min(goal["order"], 3)))
+    feedback({"sequence": sequence})
+    if goal["order"] == 1000:
+        await stop.wait()
+    return {"sequence": sequence}
+
+
+async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
+    await lab.until_served("/sum")
+    assert (await lab.call("/sum", {"a": 20, "b": 22}, 1)).fields == {"total": 42}
+    await lab.until_served("/count")
+    async with lab.bus.listen(lab.keys.topic("/count/feedback"), TopicMessage) as feedback:
+        result = await lab.call("/count", {"order": 3}, 2)
+        assert (await anext(aiter(feedback)))[1].fields == {"sequence": [0, 1, 2]}
+    assert result.fields == {"sequence": [0, 1, 2]}
+    assert result.published == {"/count/feedback": 1}
+    with pytest.raises(AosError, match="AddTwoInts_Request has no field c") as raised:
+        await lab.call("/sum", {"c": 1}, 3)
+    assert raised.value.code == "AOS502"
+
+
+async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -> None:
+    await lab.until_served("/count")
+    async with lab.bus.listen(lab.keys.progress("/count"), SkillProgress) as progress:
+        running = asyncio.create_task(lab.call("/count", {"order": 1000}, 1))
+        async for _, told in progress:
+            if told.state == "executing":
+                assert told.text == '{"sequence": [0, 1, 2]}'
+                break
+        cancelled = await lab.bus.ask(
+            lab.keys.cancel("/count"), Cancel("enough"), Cancelled, timeout_s=DEADLINE_S
+        )
+        assert cancelled.ids == ("m-1-1",)
+        with pytest.raises(AosError) as raised:
+            await running
+        assert raised.value.code == "AOS507"
+    with pytest.raises(AosError) as raised:
+        await lab.call("/count", {"order": 1000}, 2, limit_s=0.3)
+    assert raised.value.code == "AOS503"
+    assert (await lab.call("/count", {"order": 1}, 3)).fields == {"sequence": [0]}
+
+
+async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
+    project = load_files({name: text.encode() for name, text in DOCUMENTS.items()}).project
+    assert project is not None
+    revision = ProjectRevision(1, "digest", project)
+
+    async def documents(_: ProjectQuery, __: str) -> ProjectRevision:
+        return revision
+
+    publish = lab.robot.publisher("/lab/said", "std_msgs/msg/String")
+    await lab.bus.answer(lab.keys.project, ProjectQuery, documents)
+    lab.bus.tell(lab.keys.announced, revision)
+    await lab.until_served("/lab/add")
+    async with asyncio.timeout(DEADLINE_S), lab.bus.listen(lab.keys.topic("/lab/said"), TopicMessage) as said:
+        # The adapter finds the publisher by itself, and what is said before that is lost.
+        while not said.has_items:
+            publish({"data": "done"})
+            await asyncio.sleep(0.01)
+        assert (await anext(aiter(said)))[1].fields == {"data": "done"}
+    result = await lab.call("/lab/add", {"a": 1, "b": 2}, 1)
+    assert result.fields == {"sum": 3}
+    assert result.published["/lab/said"] >= 1
+
+
+async def test_a_robot_that_leaves_is_withdrawn(lab: Lab) -> None:
+    await lab.until_served("/sum")
+    await lab.robot.close()
+    await lab.until_served("/sum", is_served=False)
