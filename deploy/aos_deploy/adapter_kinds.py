@@ -61,6 +61,11 @@ _KINDS = {
         value="interface",
         options=("peers", "domain", "distribution", "interfaces", "topics"),
     ),
+    "ros1": Kind(
+        adapter="aos_skills.ros1.adapter:Ros1Adapter",
+        value="master",
+        options=("python", "interfaces", "topics"),
+    ),
     "class": Kind(value="class", options=None),
     COMMAND: Kind(value="command"),
     EXTERNAL: Kind(value="note"),

@@ -1,4 +1,7 @@
-"""The adapters `ros2` and `dds` as processes, with a robot that is a ROS node of ours in this process."""
+"""The adapters `ros2`, `dds` and `ros1` as processes, with a robot that is a node of ours in this process.
+
+For ROS 1 the master is a real one, and the node a real rospy process.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import asyncio
 import importlib.util
 import random
 import sys
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +18,8 @@ import pytest
 import pytest_asyncio
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
+
+from ros1_core import roscore, skip_without_ros1
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
@@ -109,10 +114,10 @@ class Lab:
             argv = [sys.executable, "-m", "aos_runtime.adapters", str(path)]
             self.child = await Child.start(argv, stderr=log)
 
-    async def until_served(self, path: str, *, is_served: bool = True) -> None:
+    async def until_served(self, path: str) -> None:
         async with asyncio.timeout(DEADLINE_S), self.bus.presence(self.keys.all_serve) as present:
             async for key, is_alive in present:
-                if key.endswith(path) and is_alive is is_served:
+                if key.endswith(path) and is_alive:
                     return
 
     async def call(self, path: str, fields: dict[str, Any], step: int, limit_s: float = 10.0) -> SkillResult:
@@ -123,7 +128,16 @@ class Lab:
 KINDS = {
     "ros2": ("aos_skills.ros2.adapter:Ros2Adapter", "router"),
     "dds": ("aos_skills.dds.adapter:DdsAdapter", "interface"),
+    "ros1": ("aos_skills.ros1.adapter:Ros1Adapter", "master"),
 }
+
+
+@pytest.fixture(scope="module")
+def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The URI of the module's roscore."""
+    skip_without_ros1()
+    with roscore(tmp_path_factory.mktemp("ros")) as uri:
+        yield uri
 
 
 @pytest_asyncio.fixture(params=KINDS)
@@ -140,6 +154,11 @@ async def lab(
         # The robot's router is that of AOS here: they do not get into each other's way.
         robot = await Node.open(endpoint, types, name="robot")
         options = {"router": endpoint}
+    elif request.param == "ros1":
+        from aos_skills.ros1.node import Ros1Node
+
+        options = {"master": request.getfixturevalue("master")}
+        robot = await Ros1Node.open(options["master"], name="robot", interfaces=[INTERFACES])
     else:
         if importlib.util.find_spec("cyclonedds") is None:
             pytest.skip("needs the extra `dds`")
@@ -242,6 +261,9 @@ async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
 
 
 async def test_a_robot_that_leaves_is_withdrawn(lab: Lab) -> None:
-    await lab.until_served("/sum")
-    await lab.robot.close()
-    await lab.until_served("/sum", is_served=False)
+    async with asyncio.timeout(DEADLINE_S), lab.bus.presence(lab.keys.all_serve) as present:
+        async for key, is_alive in present:
+            if key.endswith("/sum"):
+                if not is_alive:
+                    break
+                await lab.robot.close()

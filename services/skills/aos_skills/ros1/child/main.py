@@ -4,7 +4,7 @@
                                                                 or  {"id": 1, "error": [code, text, hint]}
     {"id": 2, "do": "subscribe", "name": "/scan"}               ->  {"event": "message", "name": "/scan", ...}
 
-Each request has a thread of its own: what ROS blocks, blocks nothing else.
+Calls and actions have a thread each; all else is done in the order of the lines.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ import threading
 from typing import Any
 
 __all__ = ["main"]
+
+BLOCKING = ("call", "run")
 
 
 class Channel:
@@ -50,7 +52,10 @@ def main() -> None:
     channel.send(id=0, ok={})
     for line in sys.stdin:
         request = json.loads(line)
-        threading.Thread(target=_answer, args=(channel, robot, request), daemon=True).start()
+        if request["do"] in BLOCKING:
+            threading.Thread(target=_answer, args=(channel, robot, request), daemon=True).start()
+        else:
+            _answer(channel, robot, request)
     # Threads of rospy would keep the process.
     os._exit(0)
 

@@ -69,7 +69,7 @@ class Robot:
         try:
             return plain(rospy.ServiceProxy(name, cls).call(request))
         except rospy.ServiceException as error:
-            text = str(error)
+            text = str(error).replace("b'", "").rstrip("'")
             if "responded with an error" in text:
                 raise Refusal("AOS510", f"{name} failed: {text.partition(': ')[2] or text}")
             if "unable to connect" in text or "unavailable" in text:

@@ -1,0 +1,259 @@
+"""A robot that runs ROS 1 as a `RosNode`. Types are named as in ROS 1 or in ROS 2, `std_srvs/srv/Trigger`."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from aos_protocol.errors import AosError, SkillError
+from aos_skills.ros.definitions import definitions_in
+from aos_skills.ros.node import (
+    DEFAULT_QOS,
+    DISCOVERY_S,
+    ActionEnd,
+    Fields,
+    Qos,
+    RunGoal,
+    TopicFound,
+)
+from aos_skills.ros1.process import Ros1Process
+
+__all__ = ["DEFAULT_MASTER", "DEFAULT_PYTHON", "Ros1Node"]
+
+DEFAULT_MASTER = "http://127.0.0.1:11311"
+DEFAULT_PYTHON = "/usr/bin/python3"
+
+CANCEL_S = 1.8
+"""How long a robot may take to end a goal after it was asked to: less than an adapter has for it."""
+
+_log = logging.getLogger("aos.ros1")
+
+
+class Ros1Node:
+    """Belongs to the event loop that opened it."""
+
+    def __init__(self) -> None:
+        self._process: Ros1Process
+        self._names: dict[str, dict[str, str]] = {"services": {}, "actions": {}, "topics": {}}
+        self._has_changed = asyncio.Event()
+        self._takers: dict[str, Callable[[Fields], None]] = {}
+        self._feedback: dict[int, Callable[[Fields], None]] = {}
+        self._handlers: dict[str, Callable[[Fields], Awaitable[Fields]]] = {}
+        self._goals: dict[str, RunGoal] = {}
+        self._stops: dict[int, asyncio.Event] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    @classmethod
+    async def open(
+        cls,
+        master: str = DEFAULT_MASTER,
+        *,
+        name: str,
+        interfaces: Iterable[Path] = (),
+        python: str = DEFAULT_PYTHON,
+    ) -> Ros1Node:
+        """Joins the system of a master; the errors are those of `Ros1Process.start`."""
+        node = cls()
+        files = {str(one): str(path.resolve()) for one, path in definitions_in(interfaces).items()}
+        node._process = await Ros1Process.start(
+            python, master, {"node": name, "files": files}, node._on_event
+        )
+        return node
+
+    async def __aenter__(self) -> Ros1Node:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._process.close()
+
+    # --- topics --------------------------------------------------------------------------------------
+
+    def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
+        self._process.tell("advertise", name=topic, type=_ros1(type_name), latch=qos.is_transient_local)
+        return lambda fields: self._process.tell("publish", name=topic, fields=fields)
+
+    def subscribe(
+        self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
+    ) -> Callable[[], None]:
+        self._takers[topic] = take
+        self._process.tell("subscribe", name=topic, type=_ros1(type_name))
+        return lambda: self._takers.__setitem__(topic, _ignore)
+
+    async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
+        type_name = await self._wait_for("topics", topic, timeout_s)
+        return TopicFound(type_name, DEFAULT_QOS) if type_name not in ("", "*") else None
+
+    # --- services and actions ------------------------------------------------------------------------
+
+    async def call(
+        self,
+        service: str,
+        fields: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        discovery_s: float = DISCOVERY_S,
+    ) -> Fields:
+        found = await self._type("services", service, type_name, min(discovery_s, timeout_s))
+        try:
+            async with asyncio.timeout(timeout_s):
+                response: Fields = await self._process.ask("call", name=service, type=found, fields=fields)
+        except TimeoutError as error:
+            raise SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503") from error
+        return response
+
+    def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
+        self._handlers[service] = handler
+        self._process.tell("serve", name=service, type=_ros1(type_name))
+
+    async def run_action(
+        self,
+        action: str,
+        goal: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        cancelled: asyncio.Event | None = None,
+        on_feedback: Callable[[Fields], None] | None = None,
+    ) -> ActionEnd:
+        loop = asyncio.get_running_loop()
+        ends_at_s = loop.time() + timeout_s
+        found = await self._type("actions", action, type_name, min(DISCOVERY_S, timeout_s))
+        number, answer = self._process.begin("run", name=action, type=found, fields=goal)
+        self._feedback[number] = on_feedback or _ignore
+        cancelling = asyncio.create_task(_set(cancelled or asyncio.Event()))
+        leaving = asyncio.create_task(self._gone("actions", action))
+        try:
+            await asyncio.wait(
+                [answer, cancelling, leaving],
+                timeout=max(ends_at_s - loop.time(), 0.0),
+                return_when=asyncio.FIRST_COMPLETED,
+            )
+            if leaving.done() and not answer.done():
+                raise SkillError(
+                    f"the node that serves {action} has left while it ran",
+                    code="AOS504",
+                    hint="Whether the skill did its work is not known",
+                )
+            is_late = not answer.done() and not cancelling.done()
+            if not answer.done():
+                self._process.tell("cancel", of=number)
+                await asyncio.wait([answer], timeout=CANCEL_S)
+                if not answer.done():
+                    raise SkillError(
+                        f"{action} was asked to cancel its goal and did not within {CANCEL_S:g} s",
+                        code="AOS504",
+                        hint="The robot may still move: look at it, and at the node's log",
+                    )
+        finally:
+            cancelling.cancel()
+            leaving.cancel()
+            del self._feedback[number]
+        end = answer.result()
+        if is_late:
+            raise SkillError(f"{action} did not end within {timeout_s:g} s and was cancelled", code="AOS503")
+        return ActionEnd(end["status"], end["result"])
+
+    def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
+        self._goals[action] = run
+        self._process.tell("serve_action", name=action, type=_ros1(type_name))
+
+    def kind_of(self, name: str) -> str:
+        if name in self._names["services"]:
+            return "service"
+        return "action" if name in self._names["actions"] else ""
+
+    async def changed(self) -> None:
+        self._has_changed.clear()
+        await self._has_changed.wait()
+
+    # --- events --------------------------------------------------------------------------------------
+
+    def _on_event(self, event: str, line: dict[str, Any]) -> None:
+        if event == "names":
+            self._names = line
+            self._has_changed.set()
+        elif event == "message":
+            self._takers.get(line["name"], _ignore)(line["fields"])
+        elif event == "feedback":
+            self._feedback.get(line["of"], _ignore)(line["fields"])
+        elif event == "stop" and line["of"] in self._stops:
+            self._stops[line["of"]].set()
+        elif event in ("request", "goal"):
+            task = asyncio.get_running_loop().create_task(self._answer(event, line))
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
+
+    async def _answer(self, event: str, line: dict[str, Any]) -> None:
+        number, name = line["of"], line["name"]
+        stop = self._stops[number] = asyncio.Event()
+        fields: Fields = {}
+        error = ""
+        try:
+            if event == "request":
+                fields = await self._handlers[name](line["fields"])
+            else:
+                fields = await self._goals[name](
+                    line["fields"], stop, lambda one: self._process.tell("feedback", of=number, fields=one)
+                )
+        except AosError as failure:
+            error = str(failure)
+        except Exception as failure:
+            _log.exception("%s failed", name)
+            error = f"{type(failure).__name__}: {failure}"
+        finally:
+            del self._stops[number]
+        self._process.tell("answer", of=number, fields=fields, error=error)
+
+    # --- names ---------------------------------------------------------------------------------------
+
+    async def _gone(self, kind: str, name: str) -> None:
+        while name in self._names[kind]:
+            await self.changed()
+
+    async def _wait_for(self, kind: str, name: str, timeout_s: float) -> str:
+        try:
+            async with asyncio.timeout(timeout_s):
+                while not self._names[kind].get(name):
+                    await self.changed()
+        except TimeoutError:
+            return ""
+        return self._names[kind][name]
+
+    async def _type(self, kind: str, name: str, type_name: str, timeout_s: float) -> str:
+        found = await self._wait_for(kind, name, timeout_s)
+        if not found:
+            known = ", ".join(sorted(self._names[kind])) or "none"
+            raise SkillError(
+                f"no ROS 1 node serves {name}", code="AOS505", hint=f"The {kind} there are: {known}"
+            )
+        if type_name and _ros1(type_name) != found:
+            raise SkillError(
+                f"{name} is of type {found}, not {_ros1(type_name)}",
+                code="AOS509",
+                hint="Correct the type in the deploy file, or leave it out",
+            )
+        return found
+
+
+def _ros1(type_name: str) -> str:
+    """`std_srvs/srv/Trigger` as ROS 1 writes it."""
+    parts = type_name.split("/")
+    return f"{parts[0]}/{parts[-1]}"
+
+
+def _ignore(_: Fields) -> None:
+    """For messages that nobody wants any more."""
+
+
+async def _set(event: asyncio.Event) -> None:
+    await event.wait()

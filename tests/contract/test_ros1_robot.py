@@ -1,0 +1,128 @@
+"""ROS 1 with a real roscore and a robot that knows nothing of AOS."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import pytest_asyncio
+from ros1_core import PYTHON, roscore, skip_without_ros1
+
+from aos_protocol.errors import AosError, BusError, SkillError
+from aos_runtime.children import Child, guarded
+from aos_skills.ros1.node import Ros1Node
+
+ROBOT = Path(__file__).resolve().parents[1] / "ros1_robot.py"
+WITHOUT_ROS = ROBOT.parent / "data" / "python_without_ros.sh"
+DEADLINE_S = 20.0
+TEST = "actionlib/action/Test"
+
+
+@pytest.fixture(scope="module")
+def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The URI of the module's roscore."""
+    skip_without_ros1()
+    with roscore(tmp_path_factory.mktemp("ros")) as uri:
+        yield uri
+
+
+@pytest_asyncio.fixture
+async def robot(master: str, tmp_path: Path) -> AsyncIterator[Child]:
+    """The robot's process; whoever asks for its services waits for them."""
+    environment = {
+        "ROS_MASTER_URI": master,
+        "ROS_IP": "127.0.0.1",
+        "ROS_HOME": str(tmp_path),
+        "PYTHONPATH": "",
+    }
+    with (tmp_path / "robot.log").open("wb") as log:
+        robot = await Child.start(guarded([PYTHON, str(ROBOT)]), env=environment, stdout=log, stderr=log)
+    try:
+        yield robot
+    finally:
+        await robot.stop()
+
+
+@pytest_asyncio.fixture
+async def node(master: str) -> AsyncIterator[Ros1Node]:
+    async with await Ros1Node.open(master, name="aos") as node:
+        yield node
+
+
+async def test_services_answer_and_their_errors_are_told(robot: Child, node: Ros1Node) -> None:
+    stop = {"success": True, "message": "stands"}
+    assert await node.call("/robot/stop", {}, timeout_s=DEADLINE_S, discovery_s=DEADLINE_S) == stop
+    with pytest.raises(SkillError, match="the brake is worn") as raised:
+        await node.call("/robot/stop", {}, timeout_s=DEADLINE_S)
+    assert raised.value.code == "AOS510"
+    with pytest.raises(SkillError, match="is of type std_srvs/Trigger, not std_srvs/SetBool"):
+        await node.call("/robot/stop", {}, type_name="std_srvs/srv/SetBool", timeout_s=DEADLINE_S)
+    with pytest.raises(SkillError, match="std_srvs/TriggerRequest has no field speed"):
+        await node.call("/robot/stop", {"speed": 1}, timeout_s=DEADLINE_S)
+
+
+async def test_actions_give_feedback_end_fail_and_are_cancelled(robot: Child, node: Ros1Node) -> None:
+    await until(node, "/robot/drive", "action")
+    feedback: list[Any] = []
+    end = await node.run_action(
+        "/robot/drive", {"goal": 5}, timeout_s=DEADLINE_S, on_feedback=feedback.append
+    )
+    assert end == ("succeeded", {"result": 5})
+    assert {"feedback": 4} in feedback
+    assert (await node.run_action("/robot/drive", {"goal": -1}, timeout_s=DEADLINE_S)).status == "aborted"
+    cancelled = asyncio.Event()
+    end = await node.run_action(
+        "/robot/drive",
+        {"goal": 10_000},
+        timeout_s=DEADLINE_S,
+        cancelled=cancelled,
+        on_feedback=lambda _: cancelled.set(),
+    )
+    assert end.status == "canceled"
+    assert end.result["result"] < 10_000
+
+
+async def test_topics_are_found_by_name_and_latched_messages_come(robot: Child, node: Ros1Node) -> None:
+    found = await node.topic("/robot/said", DEADLINE_S)
+    assert found is not None
+    assert found.type_name == "std_msgs/String"
+    said: asyncio.Queue[Any] = asyncio.Queue()
+    node.subscribe("/robot/said", found.type_name, said.put_nowait)
+    assert await asyncio.wait_for(said.get(), DEADLINE_S) == {"data": "ready"}
+
+
+async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, node: Ros1Node) -> None:
+    await until(node, "/robot/drive", "action")
+    started = asyncio.Event()
+    driving = asyncio.create_task(
+        node.run_action("/robot/drive", {"goal": 10_000}, timeout_s=60.0, on_feedback=lambda _: started.set())
+    )
+    await started.wait()
+    robot.kill()
+    async with asyncio.timeout(DEADLINE_S):
+        while node.kind_of("/robot/drive"):
+            await node.changed()
+        # actionlib itself would wait for its end for ever.
+        with pytest.raises(SkillError, match="has left while it ran") as raised:
+            await driving
+    assert raised.value.code == "AOS504"
+
+
+async def test_without_a_master_or_rospy_it_is_said_what_to_do(master: str) -> None:
+    with pytest.raises(
+        BusError, match=r"no ROS master answers at http://127\.0\.0\.1:1: .*roscore"
+    ) as raised:
+        await Ros1Node.open("http://127.0.0.1:1", name="aos")
+    assert raised.value.code == "AOS605"
+    with pytest.raises(AosError, match=r"cannot import ROS 1: .*python3-rospy") as missing:
+        await Ros1Node.open(master, name="aos", python=str(WITHOUT_ROS))
+    assert missing.value.code == "AOS805"
+
+
+async def until(node: Ros1Node, name: str, kind: str) -> None:
+    async with asyncio.timeout(DEADLINE_S):
+        while node.kind_of(name) != kind:
+            await node.changed()
