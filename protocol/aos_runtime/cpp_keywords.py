@@ -1,8 +1,10 @@
-"""The words of C++20 that can name nothing else."""
+"""The words of C++20 and of model code that can name nothing else."""
 
 from __future__ import annotations
 
-__all__ = ["CPP_KEYWORDS"]
+import re
+
+__all__ = ["COMPILER_NAMES", "CPP_KEYWORDS", "SPECIAL_NAMES"]
 
 CPP_KEYWORDS = frozenset({
     "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch",
@@ -16,3 +18,13 @@ CPP_KEYWORDS = frozenset({
     "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "void", "volatile",
     "wchar_t", "while", "xor", "xor_eq",
 })  # fmt: skip
+
+SPECIAL_NAMES = frozenset({
+    "__heuristicValue", "__isFailureState", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime",
+    "__moduleResponse", "__moduleResponseStr", "__observed", "__possibleParameters", "__reward",
+    "__stopEvaluatingState",
+})  # fmt: skip
+"""What sections of model code read and set."""
+
+COMPILER_NAMES = re.compile(r"__[a-zA-Z]+__|__(builtin|func|int|attribute|asm|restrict|typeof)\w*")
+"""Names that compilers give a meaning."""

@@ -29,6 +29,7 @@ _TOKEN = re.compile(
     | (?P<word>[A-Za-z_]\w*)
     | (?P<continuation>\\[ \t\r\f\v]*\n)
     | (?P<directive>(?<![^\n])[ \t\f\v]*(?:\#|%:)[^\n]*)
+    | (?P<hash>\#[^\n]*)
     | (?P<scope><::(?![:>]))
     | (?P<bracket>[()\[\]{}]|<%|%>|<:|:>)
     | (?P<quote>["'])
@@ -39,6 +40,10 @@ _TOKEN = re.compile(
 _CANONICAL = {"<%": "{", "%>": "}", "<:": "[", ":>": "]"}
 _PARTNER = {")": "(", "]": "[", "}": "{"}
 _BEFORE_STATEMENT = frozenset({"", ";", "{", "}", ":", "do", "else", "try"})
+_DIRECTIVES = frozenset({
+    "define", "elif", "else", "endif", "error", "if", "ifdef", "ifndef", "import", "include", "line",
+    "pragma", "undef", "warning",
+})  # fmt: skip
 _CLOSES = {opening: closing for closing, opening in _PARTNER.items()}
 
 
@@ -67,6 +72,9 @@ class Fault(msgspec.Struct, frozen=True):
     kind: FaultKind
     message: str
     extent: Extent
+    hint: str = ""
+    instead: str = ""
+    """What to write in place of the first character, where that mends it."""
 
 
 class Tokens(msgspec.Struct, frozen=True):
@@ -119,6 +127,8 @@ def cut(code: str) -> Tokens:
         elif kind == "directive":
             start = match.end() - len(match.group().lstrip())
             faults.append(_directive(match.group(), lines.extent(start, match.end())))
+        elif kind == "hash":
+            faults.append(_no_comment(extent))
         elif kind == "continuation":
             faults.append(Fault(FaultKind.PREPROCESSOR, "a backslash at the end of a line", extent))
         elif kind == "open_comment":
@@ -213,7 +223,14 @@ def _never_closed(opening: str, extent: Extent) -> Fault:
 
 def _directive(text: str, extent: Extent) -> Fault:
     words = text.strip().removeprefix("%:").removeprefix("#").split(maxsplit=1)
+    if text.lstrip().startswith("#") and words and words[0] not in _DIRECTIVES:
+        return _no_comment(extent)
     return Fault(FaultKind.PREPROCESSOR, f"a preprocessor line (#{words[0] if words else ''})", extent)
+
+
+def _no_comment(extent: Extent) -> Fault:
+    message = "`#` does not begin a comment in C++"
+    return Fault(FaultKind.PREPROCESSOR, message, extent, "Write `//` instead", "//")
 
 
 def _end_of_line(code: str, position: int) -> int:

@@ -82,7 +82,7 @@ def test_an_original_bundle_loads_with_these_warnings(corpus: Path, name: str) -
 def test_a_misspelt_key_is_named_with_the_right_one(corpus: Path) -> None:
     (warning,) = [d for d in load_bundle(corpus / "sampling-rate").diagnostics if d.code == "AOS102"]
     assert '"IteratePrevStateVars"' in warning.message
-    assert warning.hint == 'Did you mean "IteratePreviousStateVars"?'
+    assert warning.hint == "Did you mean `IteratePreviousStateVars`?"
 
 
 def test_the_last_dynamic_model_of_a_file_counts(corpus: Path) -> None:

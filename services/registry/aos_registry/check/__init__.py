@@ -1,9 +1,9 @@
 """The rules across documents.
 
-`declarations` looks at names and types, `model_code` at the C++ of environment and skills, `responses` at
-what the two halves of a skill say to each other, `mapping_code` at the Python of the mappings,
-`endings` at what ends a mission, `observed_numbers` at numbers beside responses, `unused` at what nothing
-mentions.
+`declarations` looks at names and types, `defaults` at what variables start with, `model_code` at the C++ of
+environment and skills, `responses` at what the two halves of a skill say to each other, `mapping_code` at the
+Python of the mappings, `endings` at what ends a mission, `observed_numbers` at numbers beside responses,
+`unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from aos_protocol.findings import Findings
 from aos_protocol.local_types import reported_variables
 from aos_registry.assembly import Assembly
 from aos_registry.check.declarations import check_environment_names, check_skill_declarations
+from aos_registry.check.defaults import check_defaults
 from aos_registry.check.endings import check_endings
 from aos_registry.check.given_observation import (
     check_given_observation,
@@ -41,6 +42,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
     if assembly.environment is not None:
         check_environment_names(assembly.environment, scope, findings)
         check_environment_code(assembly.environment, scope, findings)
+        check_defaults(assembly.environment, findings)
         check_endings(assembly.environment, findings)
         check_environment_reports(assembly.environment, findings)
     for name, model in assembly.models.items():

@@ -51,6 +51,8 @@ def check_mapping(
         _check_variable(variable, findings)
         if variable.source is LocalSource.PARAMETER and model is not None:
             _check_parameter(variable, model, scope, findings)
+    if model is not None:
+        _check_passed_on(mapping, model, findings)
     local_names = [variable.name for variable in mapping.local_variables]
     if mapping.response_variable and mapping.response_variable not in local_names:
         message = f"unknown local variable `{mapping.response_variable}`"
@@ -213,6 +215,22 @@ def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, f
         findings.unknown(name, parameters, message, span, _listing(parameters))
         return
     _field_type(parameters[name], fields, span, scope, findings)
+
+
+def _check_passed_on(mapping: AbstractionMapping, model: SkillModel, findings: Findings) -> None:
+    """AOS140 for each parameter of the skill that no local variable takes: the robot never hears of it."""
+    taken = {
+        variable.parameter_path.split(".")[0]
+        for variable in mapping.local_variables
+        if variable.source is LocalSource.PARAMETER
+    }
+    for parameter in model.parameters:
+        if parameter.name not in taken:
+            message = (
+                f"the abstraction mapping of {model.name} never passes on the parameter {parameter.name}"
+            )
+            hint = f"Add a local variable with `action_parameter: {parameter.name}`, and a field that uses it"
+            findings.warning("AOS140", message, parameter.span, hint)
 
 
 def _check_assigned(

@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from aos_protocol.diagnostics import Span
+import msgspec
+
+from aos_protocol.diagnostics import Mend, Span
 from aos_protocol.documents import Assignment, Environment, SkillModel
 from aos_protocol.findings import Findings
 from aos_protocol.spelling import quoted
 from aos_registry.check.blocks import Block, environment_blocks, skill_blocks
 from aos_registry.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_registry.check.weights import check_weights
+from aos_runtime.cpp_keywords import COMPILER_NAMES, SPECIAL_NAMES
 from aos_runtime.snippets import (
     Access,
     Call,
@@ -24,13 +27,8 @@ from aos_runtime.snippets import (
     read_cpp_expression,
 )
 
-__all__ = ["SPECIAL_NAMES", "check_environment_code", "check_skill_code", "read_block"]
+__all__ = ["check_environment_code", "check_skill_code", "read_block"]
 
-SPECIAL_NAMES = frozenset({
-    "__heuristicValue", "__isFailureState", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime",
-    "__moduleResponse", "__moduleResponseStr", "__observed", "__possibleParameters", "__reward",
-    "__stopEvaluatingState",
-})  # fmt: skip
 _BUILT_INS = {
     "AOS": (
         "Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform", "SetNull", "IsInitialized",
@@ -38,7 +36,7 @@ _BUILT_INS = {
     ),
     "AOSUtils": ("Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform"),
 }  # fmt: skip
-_COMPILER_NAMES = re.compile(r"__[a-zA-Z]+__|__(builtin|func|int|attribute)\w*")
+_PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
 _LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
 
 
@@ -53,9 +51,10 @@ def check_environment_code(environment: Environment, scope: Scope, findings: Fin
     )
     for block in blocks:
         _check_loops(block, scope, findings)
-    temporaries = _temporary_enums(blocks)
-    for piece in environment_blocks(environment):
-        _BlockCheck(piece, scope, findings, temporaries).run()
+    pieces = tuple(environment_blocks(environment))
+    around = _Around(_temporary_enums(blocks), _declared_names(pieces))
+    for piece in pieces:
+        _BlockCheck(piece, scope, findings, around).run()
 
 
 def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> None:
@@ -70,9 +69,10 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
     )
     for block in blocks:
         _check_loops(block, scope, findings)
-    temporaries = _temporary_enums(blocks)
-    for piece in skill_blocks(model):
-        _BlockCheck(piece, scope, findings, temporaries).run()
+    pieces = tuple(skill_blocks(model))
+    around = _Around(_temporary_enums(blocks), _declared_names(pieces))
+    for piece in pieces:
+        _BlockCheck(piece, scope, findings, around).run()
 
 
 def read_block(block: Block) -> Cpp:
@@ -84,6 +84,11 @@ def _temporary_enums(blocks: Iterable[tuple[Assignment, ...]]) -> dict[str, int]
     """The enums that temporary variables declare, with how many values they have."""
     temporaries = (assignment.temporary for block in blocks for assignment in block)
     return {each.enum_name: len(each.enum_values) for each in temporaries if each and each.enum_values}
+
+
+def _declared_names(pieces: Iterable[Block]) -> frozenset[str]:
+    """What any code of the document declares: a name may be used in a later snippet of its section."""
+    return frozenset(each.name for piece in pieces for each in read_block(piece).declarations)
 
 
 def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings) -> None:
@@ -99,15 +104,24 @@ def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings
                 findings.unknown(loop.type, scope.compounds, message, loop.span, otherwise)
 
 
+class _Around(msgspec.Struct, frozen=True):
+    """What the document's other code declares: enums with how many values they have, and all names."""
+
+    enum_sizes: dict[str, int]
+    declared: frozenset[str]
+
+
 class _BlockCheck:
     """One snippet against the names of the project."""
 
-    def __init__(self, block: Block, scope: Scope, findings: Findings, enum_sizes: dict[str, int]) -> None:
+    def __init__(self, block: Block, scope: Scope, findings: Findings, around: _Around) -> None:
         self._block = block
         self._scope = scope
         self._findings = findings
         self._cpp = read_block(block)
-        self._enum_sizes = {name: len(enum.values) for name, enum in scope.enums.items()} | enum_sizes
+        self._enum_sizes = {name: len(enum.values) for name, enum in scope.enums.items()}
+        self._enum_sizes |= around.enum_sizes
+        self._declared = around.declared
         self._locals = {declaration.name: declaration.type for declaration in self._cpp.declarations}
 
     def run(self) -> None:
@@ -116,7 +130,9 @@ class _BlockCheck:
                 message, hint = f"{fault.message} in C++", "The compiler will tell more"
                 self._findings.warning("AOS108", message, self._span(fault.extent), hint)
             else:
-                self._findings.error("AOS108", fault.message, self._span(fault.extent))
+                span = self._span(fault.extent)
+                mend = Mend(span, 1, fault.instead) if fault.instead else None
+                self._findings.error("AOS108", fault.message, span, fault.hint, mend)
         if any(fault.kind is not FaultKind.SYNTAX for fault in self._cpp.faults):
             return
         self._check_semicolons()
@@ -130,7 +146,8 @@ class _BlockCheck:
             line = self._cpp.code.count("\n", 0, offset) + 1
             column = offset - (self._cpp.code.rfind("\n", 0, offset) + 1) + 1
             span = self._block.snippet.locate(line, column)
-            self._findings.warning("AOS127", "a semicolon is missing here", span, "It is put in")
+            mend = Mend(span, 0, ";")
+            self._findings.warning("AOS127", "a semicolon is missing here", span, "It is put in", mend)
 
     def _check_calls(self) -> None:
         for enum in self._cpp.declarations:
@@ -183,18 +200,27 @@ class _BlockCheck:
             self._check_named_path(mention, root)
         elif self._block.role.sees_chosen_action and root in self._scope.skills and len(mention.path) > 1:
             self._check_action_path(mention, root)
-        elif root.startswith("__") and not _COMPILER_NAMES.fullmatch(root):
-            self._check_reserved_name(mention, root)
+        elif root not in self._declared:
+            self._check_special_name(mention, root)
 
-    def _check_reserved_name(self, mention: Mention, root: str) -> None:
+    def _check_special_name(self, mention: Mention, root: str) -> None:
+        """A name that starts as those of the language, or is set like one of them and lacks underscores."""
         known = (*SPECIAL_NAMES, *self._scope.low_level_names)
-        if root not in known:
+        is_set = mention.access in (Access.WRITE, Access.UPDATE)
+        is_meant = is_set and root.strip("_").lower() in _PLAIN_SPECIAL_NAMES
+        is_special = root.startswith("__") and not COMPILER_NAMES.fullmatch(root)
+        if root in known:
+            return
+        if is_meant:
+            special = _PLAIN_SPECIAL_NAMES[root.strip("_").lower()]
+            self._unknown(root, (special,), f"unknown name `{root}`", self._span(mention.root))
+        elif is_special:
             self._unknown(root, known, f"unknown name `{root}`", self._span(mention.root))
 
     def _check_copy(self, mention: Mention, root: str) -> None:
         role = self._block.role
         is_write = mention.access in (Access.WRITE, Access.UPDATE)
-        if self._scope.is_one_state_model:
+        if self._scope.is_one_state_model and not (is_write and not role.writes):
             return
         span = self._span(mention.root)
         if root not in role.reads:

@@ -8,8 +8,9 @@ from aos_protocol.documents import AbstractionMapping, SkillModel
 from aos_protocol.findings import Findings
 from aos_protocol.spelling import quoted
 from aos_registry.check.blocks import DYNAMIC, Block, assignment_blocks
-from aos_registry.check.model_code import SPECIAL_NAMES, read_block
+from aos_registry.check.model_code import read_block
 from aos_registry.check.scope import STATE_COPIES, Scope
+from aos_runtime.cpp_keywords import SPECIAL_NAMES
 from aos_runtime.snippets import Access, Cpp, DeclarationKind, Mention
 
 __all__ = ["check_responses"]

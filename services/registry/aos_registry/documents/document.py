@@ -12,10 +12,11 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import AbstractionMapping, EnumType, Environment, LowLevelDocument, SkillModel
 from aos_protocol.findings import Findings
 from aos_registry.documents.source import Text
+from aos_runtime.cpp_keywords import COMPILER_NAMES, SPECIAL_NAMES
 
 __all__ = ["Document", "DocumentKind", "check_name", "enum_type", "normal_type"]
 
-_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}|_[A-Za-z0-9][A-Za-z0-9_]{0,62}|_")
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}")
 _TYPE_SPELLINGS = {
     "Bool": "bool",
     "boolean": "bool",
@@ -58,18 +59,24 @@ class Document(msgspec.Struct, frozen=True):
 
 
 def check_name(name: Text, what: str, findings: Findings) -> bool:
-    """Whether a name can stand in C++ and Python; an error where it cannot."""
-    if _IDENTIFIER.fullmatch(name.text):
+    """Whether a name can stand in C++ and Python; an error where it cannot.
+
+    What has such a name is read all the same: code that uses the name is not wrong as well.
+    """
+    if not _IDENTIFIER.fullmatch(name.text):
+        hint = "A name is at most 64 letters, digits and underscores, and does not start with a digit"
+    elif name.text in SPECIAL_NAMES or name.text == "__input" or COMPILER_NAMES.fullmatch(name.text):
+        hint = "It means something else already; choose another name"
+    else:
         return True
-    hint = "A name is at most 64 letters, digits and underscores, and starts with a letter"
     findings.error("AOS126", f"{name.text!r} cannot be the name of {what}", name.span, hint)
     return False
 
 
 def enum_type(name: Text, values: Iterable[Text], findings: Findings) -> EnumType:
     """The enum of these values; an error for each that cannot be a name."""
-    good = [value for value in values if check_name(value, "an enum value", findings)]
-    texts, spans = tuple(value.text for value in good), tuple(value.span for value in good)
+    values = tuple(value for value in values if check_name(value, "an enum value", findings) or value.text)
+    texts, spans = tuple(value.text for value in values), tuple(value.span for value in values)
     return EnumType(name.text, texts, name.span, spans)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from aos_protocol.documents import Assignment, Iteration, TemporaryVariable
-from aos_registry.documents.document import check_name, normal_type
+from aos_registry.documents.document import check_name, enum_type, normal_type
 from aos_registry.documents.json_record import Record
 
 __all__ = ["read_block"]
@@ -40,7 +40,8 @@ def _iterations(record: Record, key: str) -> tuple[Iteration, ...]:
         body = item.code("WhenConditionTrueCode")
         item.ignore("Comment")
         item.finish()
-        if kind and name and check_name(name, "a loop's item", record.findings):
+        if kind and name:
+            check_name(name, "a loop's item", record.findings)
             found.append(Iteration(kind.text, name.text, kind.span, condition, body))
     return tuple(found)
 
@@ -51,8 +52,9 @@ def _temporary(record: Record) -> TemporaryVariable | None:
     enum_name, values = record.text("EnumName"), record.texts("EnumValues")
     record.ignore("Comment")
     record.finish()
-    if name is None or kind is None or not check_name(name, "a temporary variable", findings):
+    if name is None or kind is None:
         return None
+    check_name(name, "a temporary variable", findings)
     if kind.text != "enum":
         return TemporaryVariable(name.text, normal_type(kind, findings), name.span)
     if enum_name is None or not values:
@@ -60,5 +62,5 @@ def _temporary(record: Record) -> TemporaryVariable | None:
         findings.error("AOS105", f'the temporary enum {name.text} lacks "{missing}"', record.span)
         return None
     check_name(enum_name, "an enum", findings)
-    enum_values = tuple(value.text for value in values if check_name(value, "an enum value", findings))
-    return TemporaryVariable(name.text, "enum", name.span, enum_name.text, enum_values)
+    enum = enum_type(enum_name, values, findings)
+    return TemporaryVariable(name.text, "enum", name.span, enum.name, enum.values)

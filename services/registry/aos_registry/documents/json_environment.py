@@ -101,8 +101,9 @@ def _types(record: Record) -> tuple[tuple[EnumType, ...], tuple[CompoundType, ..
         fields = tuple(_field(field) for field in item.records("Variables", "a field"))
         item.ignore("Comment")
         item.finish()
-        if name is None or kind is None or not check_name(name, "a type", record.findings):
+        if name is None or kind is None:
             continue
+        check_name(name, "a type", record.findings)
         if kind.text == "enum":
             if not values:
                 record.findings.error("AOS105", f"the enum {name.text} has no values", name.span)
@@ -122,8 +123,9 @@ def _field(record: Record) -> Field | None:
     low_level_type = _low_level_type(record, type_name)
     record.ignore("ML_IgnoreVariable", "ML_MaxPossibleValue", "Comment")
     record.finish()
-    if name is None or kind is None or not check_name(name, "a field", record.findings):
+    if name is None or kind is None:
         return None
+    check_name(name, "a field", record.findings)
     return Field(name.text, type_name, name.span, default, low_level_type, kind.span)
 
 
@@ -151,8 +153,9 @@ def _variable(record: Record) -> StateVariable | None:
     if value is not None and code is not None:
         message = 'a variable has "Default" or "DefaultCode", not both'
         record.findings.error("AOS106", message, record.key_span("DefaultCode"))
-    if name is None or kind is None or not check_name(name, "a variable", record.findings):
+    if name is None or kind is None:
         return None
+    check_name(name, "a variable", record.findings)
     for key in keys:
         if key.text.startswith("(") and not _RANGE.fullmatch(key.text):
             hint = "Write (start,stop,step)"
@@ -217,6 +220,7 @@ def _parameters(record: Record, key: str, what: str) -> tuple[Parameter, ...]:
     for item in record.records(key, what):
         name, kind = item.text("Name", required=True), item.text("Type", required=True)
         item.finish()
-        if name and kind and check_name(name, what, record.findings):
+        if name and kind:
+            check_name(name, what, record.findings)
             found.append(Parameter(name.text, kind.text, name.span, kind.span))
     return tuple(found)

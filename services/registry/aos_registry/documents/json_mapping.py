@@ -53,7 +53,8 @@ def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], Text | None]:
         item.ignore("Comment")
         assignments = _assignments(item)
         item.finish()
-        if response and check_name(response, "a response", record.findings):
+        if response:
+            check_name(response, "a response", record.findings)
             rules.append(ResponseRule(response.text, condition, response.span, assignments))
     variable = group.text("FromStringLocalVariable")
     group.ignore("Comment")

@@ -60,7 +60,8 @@ def _parameters(record: Record) -> tuple[Parameter, ...]:
         name, kind = item.text("Name", required=True), item.text("Type", required=True)
         item.ignore("Comment")
         item.finish()
-        if name and kind and check_name(name, "a parameter", record.findings):
+        if name and kind:
+            check_name(name, "a parameter", record.findings)
             type_name = normal_type(kind, record.findings)
             found.append(Parameter(name.text, type_name, name.span, kind.span))
     return tuple(found)

@@ -34,8 +34,7 @@ def build_local_variable(parts: LocalVariableParts, findings: Findings) -> Local
     if parts.name is None:
         findings.error("AOS105", "a local variable lacks its name", parts.span)
         return None
-    if not check_name(parts.name, "a local variable", findings):
-        return None
+    check_name(parts.name, "a local variable", findings)
     source = _source(parts, findings)
     if source is None:
         return None

@@ -74,8 +74,7 @@ def _loop(part: Part, findings: Findings) -> Iteration | None:
         message = f"`{part.word}:` needs a compound type and a name for each variable of it"
         findings.error("AOS104", message, part.value.span if part.value.text else part.span)
         return None
-    if not check_name(Text(match.group(2), part.value.after(match.start(2)).span), "a loop's item", findings):
-        return None
+    check_name(Text(match.group(2), part.value.after(match.start(2)).span), "a loop's item", findings)
     return Iteration(match.group(1), match.group(2), part.value.span)
 
 
@@ -95,8 +94,7 @@ def _temporary(part: Part, findings: Findings) -> TemporaryVariable | None:
     if match := _TEMPORARY_ENUM.fullmatch(value.text):
         enum_name, name = (Text(match.group(i), value.after(match.start(i)).span) for i in (1, 3))
         check_name(enum_name, "an enum", findings)
-        if not check_name(name, "a temporary variable", findings):
-            return None
+        check_name(name, "a temporary variable", findings)
         listed = enum_values(Text(match.group(2), value.after(match.start(2)).span), findings)
         values = enum_type(enum_name, listed, findings).values
         return TemporaryVariable(name.text, "enum", name.span, enum_name.text, values)
@@ -107,7 +105,6 @@ def _temporary(part: Part, findings: Findings) -> TemporaryVariable | None:
         findings.error("AOS104", f"`{part.word}:` needs a type and a name", span, hint)
         return None
     name = Text(match.group(2), value.after(match.start(2)).span)
-    if not check_name(name, "a temporary variable", findings):
-        return None
+    check_name(name, "a temporary variable", findings)
     kind = normal_type(Text(match.group(1), value.span), findings)
     return TemporaryVariable(name.text, kind, name.span)

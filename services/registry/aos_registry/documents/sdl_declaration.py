@@ -38,8 +38,7 @@ def read_declaration(part: Part, what: str, findings: Findings) -> Declaration |
     type_text = part.value.after(0)
     type_text = Text(match.group(1), type_text.span)
     name = Text(match.group(3), part.value.after(match.start(3)).span)
-    if not check_name(name, what, findings):
-        return None
+    check_name(name, what, findings)
     kind = normal_type(type_text, findings)
     return Declaration(kind, type_text, name, part.value.after(match.end()).strip())
 

@@ -120,8 +120,7 @@ def _type(section: Section, findings: Findings) -> EnumType | CompoundType | Non
     if not name.text:
         findings.error("AOS105", "`define_type:` needs a name", section.span)
         return None
-    if not check_name(name, "a type", findings):
-        return None
+    check_name(name, "a type", findings)
     members = section.last("enum_members", findings)
     fields = [_field(part, findings) for part in section.all("variable")]
     if members is not None and fields:

@@ -65,8 +65,7 @@ def _rule(section: Section, findings: Findings) -> ResponseRule | None:
     if not section.value.text:
         findings.error("AOS105", "`response:` needs a name", section.span)
         return None
-    if not check_name(section.value, "a response", findings):
-        return None
+    check_name(section.value, "a response", findings)
     assignments = _assignments(section, findings)
     return ResponseRule(section.value.text, condition, section.value.span, assignments)
 

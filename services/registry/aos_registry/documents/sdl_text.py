@@ -14,7 +14,7 @@ from typing import TypeVar
 
 import msgspec
 
-from aos_protocol.diagnostics import Span
+from aos_protocol.diagnostics import Mend, Span
 from aos_protocol.documents import Snippet
 from aos_protocol.findings import Findings
 from aos_protocol.spelling import nearest
@@ -34,6 +34,8 @@ __all__ = [
 ]
 
 _OPENING = re.compile(r"[ \t\f\v]*([A-Za-z_]\w*)[ \t]*:(?!:)")
+_WORD_ALONE = re.compile(r"[ \t]*(?P<word>[a-z]+(?:_[a-z]+)*)(?:[ \t]+(?P<rest>\S.*?))?[ \t]*$")
+_BETWEEN_NAMES = frozenset({"and", "else", "for", "if", "in", "is", "not", "or"})
 _COMMENT = re.compile(r"\s*(//|#)")
 _COMMENT_AFTER_VALUE = re.compile(r'(?:[^"\n]|"[^"\n]*")*?(?=\s(?://|#)(?:\s|$))')
 _CODE_LABELS = frozenset({
@@ -164,8 +166,42 @@ class _Scanner:
     def _take(self, line: Text) -> None:
         match = _OPENING.match(line.text)
         name = match.group(1) if match else ""
-        if match is None or not self._opens(name, line.after(match.start(1)), line.after(match.end())):
+        if match is not None and self._opens(name, line.after(match.start(1)), line.after(match.end())):
+            return
+        if not self._opens_without_colon(line):
             self._add_to_body(line)
+
+    def _opens_without_colon(self, line: Text) -> bool:
+        """Opens the section or part that a line begins with where only its colon is missing."""
+        match = _WORD_ALONE.match(line.text)
+        if match is None:
+            return False
+        word = match["word"]
+        inner = self._grammar[self._sections[-1].word].parts if self._sections else {}
+        is_known = word in inner or word in self._grammar
+        if not is_known or (self._is_in_code() and not self._is_no_code(word, match["rest"])):
+            return False
+        at = line.after(match.end("word"))
+        mend = Mend(at.span, 0, ":")
+        self._findings.error(
+            "AOS104", f"a colon is missing after `{word}`", at.span, f"Write `{word}:`", mend
+        )
+        return self._opens(word, line.after(match.start("word")), at)
+
+    def _is_no_code(self, word: str, rest: str) -> bool:
+        """Whether a line in code that begins with a word of the grammar cannot be meant as code.
+
+        A name stands alone in Python where it is an expression, which is one line.
+        """
+        assert self._current is not None
+        is_first = not any(each.text.strip() for each in (self._current.value, *self._current.lines))
+        if not rest:
+            return "_" in word and not (self._current.body is Body.PYTHON and is_first)
+        first = rest.split()[0]
+        is_statement = rest.endswith((";", "{", "}", ":")) or first in _BETWEEN_NAMES
+        # In Python `a -1` is an expression.
+        is_number = re.fullmatch(r"[-\d][\d.]*" if self._current.body is Body.CPP else r"\d[\d.]*", rest)
+        return (first.isidentifier() or is_number is not None) and not is_statement
 
     def _opens(self, name: str, at: Text, value: Text) -> bool:
         """Opens the section or part of that name; False where the line is no opening."""

@@ -1,0 +1,204 @@
+"""What the checks say to mistakes that a newcomer makes, and that they say it once."""
+
+from __future__ import annotations
+
+import pytest
+
+from aos_protocol.diagnostics import Diagnostic, Severity
+from aos_registry.load import load_files
+
+ENVIRONMENT = """project: hall
+horizon: 4
+
+define_type: Cell
+variable: int x 0
+
+state_variable: Cell first
+code:
+state.first.x = 1;
+
+state_variable: Cell second
+code:
+state.second.x = 2;
+
+action_parameter: int near
+code:
+state.near = 1;
+
+initial_belief:
+state.first.x = AOS.Bernoulli(0.5) ? 1 : 2;
+
+reward_code:
+if (state.second.x == 3) { __reward = 10; __isGoalState = true; }
+"""
+SKILL = """project: hall
+parameter: int steps
+
+precondition:
+__meetPrecondition = state.first.x > 0;
+violate_penalty: -1
+
+dynamic_model:
+state__.second.x = state.second.x + steps;
+__moduleResponse = walked;
+"""
+MAPPING = """project: hall
+response: walked
+response_rule: True
+
+module_activation: skill
+path: /walk
+parameter: steps
+code:
+steps
+
+local_variable: steps
+action_parameter: steps
+"""
+
+
+def found(
+    *, environment: str = ENVIRONMENT, skill: str = SKILL, mapping: str = MAPPING
+) -> tuple[Diagnostic, ...]:
+    files = {"hall.ef": environment, "walk.sd": skill, "walk.am": mapping}
+    return load_files({name: text.encode() for name, text in files.items()}).diagnostics
+
+
+def told(**texts: str) -> list[str]:
+    """Each finding as line, code, message and hint."""
+    return [f"{each.span.line} {each.code} {each.message}. {each.hint}" for each in found(**texts)]
+
+
+def test_the_bundle_itself_is_clean() -> None:
+    assert told() == []
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "word"),
+    [
+        (("environment", "horizon: 4", "horizon 4"), 2, "horizon"),
+        (("environment", "state_variable: Cell second", "state_variable Cell second"), 11, "state_variable"),
+        (("environment", "initial_belief:", "initial_belief"), 19, "initial_belief"),
+        (("environment", "reward_code:", "reward_code  "), 22, "reward_code"),
+        (("skill", "parameter: int", "parameter int"), 2, "parameter"),
+        (("skill", "dynamic_model:", "dynamic_model"), 8, "dynamic_model"),
+        (("skill", "violate_penalty: -1", "violate_penalty -1"), 6, "violate_penalty"),
+        (("mapping", "module_activation: skill", "module_activation skill"), 5, "module_activation"),
+        (("mapping", "local_variable: steps", "local_variable steps"), 11, "local_variable"),
+        (("mapping", "response_rule: True", "response_rule True"), 3, "response_rule"),
+    ],
+)
+def test_a_missing_colon_is_one_error(text: tuple[str, str, str], line: int, word: str) -> None:
+    document, before, after = text
+    whole = {"environment": ENVIRONMENT, "skill": SKILL, "mapping": MAPPING}[document]
+    (only,) = told(**{document: whole.replace(before, after)})
+    assert only == f"{line} AOS104 a colon is missing after `{word}`. Write `{word}:`"
+
+
+def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code() -> None:
+    mapping = MAPPING.replace("local_variable: steps", "local_variable: path").replace(
+        "code:\nsteps", "code:\npath"
+    )
+    assert told(mapping=mapping) == []
+    skill = SKILL.replace("state__.second.x =", "int parameter = 1;\nparameter = 2;\nstate__.second.x =")
+    assert told(skill=skill) == []
+
+
+@pytest.mark.parametrize("comment", ["# the door is open", "    #the door's open"])
+def test_a_comment_of_python_in_cpp_is_told_what_to_write(comment: str) -> None:
+    for code in (f"{comment}\n__moduleResponse", f"int n = 1; {comment}\n__moduleResponse"):
+        (only,) = found(skill=SKILL.replace("__moduleResponse", code))
+        assert (only.code, only.hint) == ("AOS108", "Write `//` instead")
+        assert only.mend is not None
+        assert (only.mend.length, only.mend.text) == (1, "//")
+
+
+@pytest.mark.parametrize(
+    ("text", "written", "meant"),
+    [
+        (("environment", "__isGoalState", "isGoalState"), "isGoalState", "__isGoalState"),
+        (("environment", "__isGoalState", "__isGoalStat"), "__isGoalStat", "__isGoalState"),
+        (("skill", "__moduleResponse", "_moduleResponse"), "_moduleResponse", "__moduleResponse"),
+        (("skill", "__meetPrecondition", "meetPrecondition"), "meetPrecondition", "__meetPrecondition"),
+    ],
+)
+def test_a_name_of_the_language_without_its_underscores_is_recognized(
+    text: tuple[str, str, str], written: str, meant: str
+) -> None:
+    document, before, after = text
+    whole = {"environment": ENVIRONMENT, "skill": SKILL}[document]
+    errors = [each for each in found(**{document: whole.replace(before, after)}) if each.is_error]
+    assert [(each.message, each.hint) for each in errors] == [
+        (f"unknown name `{written}`", f"Did you mean `{meant}`?")
+    ]
+    assert errors[0].mend is not None
+    assert errors[0].mend.text == meant
+
+
+def test_own_variables_may_be_called_like_names_of_the_language_without_underscores() -> None:
+    skill = SKILL.replace("__moduleResponse", "int reward = 0;\nreward += 1;\n__moduleResponse")
+    assert told(skill=skill) == []
+
+
+def test_names_may_begin_with_underscores() -> None:
+    environment = ENVIRONMENT.replace(
+        "initial_belief:\n",
+        "initial_belief:\nassignment:\ntemporary_variable: int __S\ncode:\n__S = 1;\nassignment:\ncode:\n",
+    ).replace("AOS.Bernoulli(0.5) ? 1", "AOS.Bernoulli(0.5) ? __S")
+    assert told(environment=environment) == []
+
+
+@pytest.mark.parametrize("name", ["__reward", "2fast", "__LINE__"])
+def test_a_refused_name_is_told_once(name: str) -> None:
+    block = f"assignment:\ntemporary_variable: int {name}\ncode:\nint n = {name};\nassignment:\ncode:\n"
+    (only,) = found(environment=ENVIRONMENT.replace("initial_belief:\n", f"initial_belief:\n{block}"))
+    assert only.code == "AOS126"
+
+
+def test_code_that_uses_a_variable_with_a_refused_name_is_not_wrong_as_well() -> None:
+    codes = {each.code for each in found(environment=ENVIRONMENT.replace("near", "__reward"))}
+    assert codes == {"AOS126"}
+
+
+def test_a_mission_without_a_goal_is_remarked() -> None:
+    (only,) = found(environment=ENVIRONMENT.replace("__isGoalState = true; ", ""))
+    assert (only.code, only.severity) == ("AOS139", Severity.REMARK)
+
+
+@pytest.mark.parametrize("reward", ["__reward = -10;", "__reward -= 3;", ""])
+def test_endings_that_are_all_penalised_are_a_warning(reward: str) -> None:
+    findings = found(environment=ENVIRONMENT.replace("__reward = 10;", reward))
+    assert [each.severity for each in findings if each.code == "AOS139"] == [Severity.WARNING]
+
+
+@pytest.mark.parametrize("reward", ["__reward += 3;", "__reward = near;", "__isFailureState = false;"])
+def test_an_ending_that_may_be_a_goal_is_none(reward: str) -> None:
+    environment = ENVIRONMENT.replace("__reward = 10;", reward.replace("near", "state.near"))
+    assert "AOS139" not in [each.code for each in found(environment=environment)]
+
+
+def test_a_parameter_that_the_mapping_never_passes_on_is_told() -> None:
+    mapping = MAPPING.partition("parameter:")[0]
+    (only,) = found(mapping=mapping)
+    assert (only.code, only.severity, only.span.file, only.span.line) == (
+        "AOS140",
+        Severity.WARNING,
+        "walk.sd",
+        2,
+    )
+
+
+def test_defaults_that_set_the_same_element_are_told() -> None:
+    both = ENVIRONMENT.replace("state.second.x = 2;", "state.second.x = 2;\nstate.first.x = 3;")
+    (only,) = told(environment=both)
+    assert only.startswith("14 AOS141 the defaults of first and second both set `state.first.x`")
+    copied = ENVIRONMENT.replace("state.second.x = 2;", "state.first.x = 2;")
+    (only,) = told(environment=copied)
+    assert only.startswith("13 AOS141 the default of second sets `state.first.x`, and not the variable")
+
+
+def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one_either() -> None:
+    skill = SKILL.replace("__meetPrecondition = state.first.x > 0", "state.first.x = 1")
+    one = ENVIRONMENT.replace("horizon: 4", "horizon: 4\none_state_model: true")
+    for environment in (ENVIRONMENT, one):
+        assert [each.code for each in found(environment=environment, skill=skill)] == ["AOS123"]
