@@ -14,7 +14,7 @@ from aos_protocol.local_types import reported_variables
 from aos_registry.assembly import Assembly
 from aos_registry.check.declarations import check_environment_names, check_skill_declarations
 from aos_registry.check.defaults import check_defaults
-from aos_registry.check.endings import check_endings
+from aos_registry.check.endings import check_endings, check_goals
 from aos_registry.check.given_observation import (
     check_given_observation,
     check_told_variables,
@@ -65,6 +65,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
     if assembly.low_level is not None:
         check_low_level(assembly.low_level, findings)
     if is_whole and assembly.environment is not None:
+        check_goals(assembly.environment, findings)
         check_unused_variables(assembly.environment, assembly.models.values(), findings)
 
 

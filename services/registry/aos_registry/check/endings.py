@@ -8,7 +8,7 @@ from aos_protocol.documents import Environment, SpecialState
 from aos_protocol.findings import Findings
 from aos_registry.check.blocks import SPECIAL, assignment_blocks
 
-__all__ = ["check_endings"]
+__all__ = ["check_endings", "check_goals"]
 
 _NEGATIVE = re.compile(r"\b__reward\s*(?:=\s*-|-=)")
 _OTHER_REWARD = re.compile(r"\b__reward\s*[+*/]?=(?!=|\s*(?:-|0*\.?0*\s*;))")
@@ -16,8 +16,7 @@ _ENDING_WORDS = ("__isGoalState", "__isFailureState")
 
 
 def check_endings(environment: Environment, findings: Findings) -> None:
-    """Terminal states that say nothing of failure, and whose reward is negative or missing; missing goals."""
-    _check_goals(environment, findings)
+    """Terminal states that say nothing of failure, and whose reward is negative or missing."""
     for special in environment.special_states:
         code = _code(special)
         if not (special.is_goal or "__isGoalState" in code):
@@ -33,7 +32,7 @@ def check_endings(environment: Environment, findings: Findings) -> None:
             findings.remark("AOS137", message, special.span, f"If it is a failure, say so with {word}")
 
 
-def _check_goals(environment: Environment, findings: Findings) -> None:
+def check_goals(environment: Environment, findings: Findings) -> None:
     """AOS139 where no ending can be a goal. Tasks that go on have none, so without endings it is a remark."""
     endings = [special for special in environment.special_states if _may_end(special)]
     if not endings:

@@ -224,6 +224,8 @@ def _check_passed_on(mapping: AbstractionMapping, model: SkillModel, findings: F
         for variable in mapping.local_variables
         if variable.source is LocalSource.PARAMETER
     }
+    if taken - {parameter.name for parameter in model.parameters}:
+        return  # A name that is told as unknown may have been meant for the missing one.
     for parameter in model.parameters:
         if parameter.name not in taken:
             message = (
