@@ -21,15 +21,17 @@ class Kind(msgspec.Struct, frozen=True, kw_only=True):
     """How an adapter of this kind is started.
 
     `adapter` is `module:Class`, empty where no adapter class of Python runs. The value of the kind's own word
-    in the deploy file becomes the option `value`. `options` are those it knows, None for any. It may take
-    `start_s` to get ready, and `stop_s` to end; when it ends by itself it is started again `restarts` times.
-    It imports the module `needs`, which comes with the `extra` of our package.
+    in the deploy file becomes the option `value`. `options` are those it knows, None for any. Its process may
+    take `start_s` to get ready, its paths `ready_s` from then on, and `stop_s` to end. When it ends by itself
+    it is started again `restarts` times. It imports the module `needs`, which comes with the `extra` of our
+    package.
     """
 
     adapter: str = ""
     value: str = ""
     options: tuple[str, ...] | None = ()
     start_s: float = 20.0
+    ready_s: float = 30.0
     stop_s: float = 5.0
     restarts: int = 3
     needs: str = ""
@@ -50,7 +52,11 @@ _KINDS = {
         needs="pybullet",
         extra="sim",
     ),
-    MODEL: Kind(adapter="aos_solver.model_adapter:ModelAdapter", value="note"),
+    MODEL: Kind(
+        adapter="aos_solver.model_adapter:ModelAdapter",
+        value="note",
+        ready_s=600.0,  # It compiles the model.
+    ),
     "ros2": Kind(
         adapter="aos_skills.ros2.adapter:Ros2Adapter",
         value="router",

@@ -26,6 +26,7 @@ __all__ = [
     "DeployFile",
     "Deployment",
     "MissionPart",
+    "SkillPart",
     "SolverPart",
     "check_endpoint",
     "read_deploy_file",
@@ -48,12 +49,31 @@ class BusPart(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MissionPart(msgspec.Struct, frozen=True, kw_only=True):
-    """When a mission ends. `stop_below_value` is an expected return; without one nothing is too poor."""
+    """When a mission ends. `stop_below_value` is an expected return; without one nothing is too poor.
+
+    It ends when `failure_limit` activations in a row brought no observation. It holds for `hold_s` at most,
+    for somebody or for adapters that have left.
+    """
 
     goal_probability: Probability = 0.9
     step_limit: Count = 30
     stop_below_value: float | None = None
     activation_timeout_s: Seconds = 120.0
+    failure_limit: Count = 3
+    hold_s: Seconds = 600.0
+
+
+class SkillPart(msgspec.Struct, frozen=True, kw_only=True):
+    """What follows when a skill fails. `timeout_s` is the mission's `activation_timeout_s` if not given.
+
+    The same action is tried again up to `retries` times, by default once for `retry` and else never. Then
+    `observe` goes on with the belief that it ran or did not, `hold` waits for `aos resume`, and `end` ends
+    the mission.
+    """
+
+    retries: Annotated[int, msgspec.Meta(ge=0)] | None = None
+    timeout_s: Seconds | None = None
+    on_failure: Literal["observe", "retry", "hold", "end"] = "observe"
 
 
 class SolverPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -80,9 +100,10 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
 
     `project` is the project that the bundles' documents name, by default the robot's name. `leave_out` names
     skills whose documents (`<skill>.*`) are kept back at the start. `watch` is the folder whose sub-folders
-    the registry takes as bundles, by default `drop` in the run directory. `adapters` gives adapters a name
-    and options. `bind` says which adapter serves which activation path of the abstraction mappings, `"*"`
-    stands for all others; see docs/deploy-file.md. `runs` is where run directories go.
+    the registry takes as bundles, by default `drop` in the run directory. `skills` says what follows when a
+    skill fails. `adapters` gives adapters a name and options. `bind` says which adapter serves which
+    activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `runs`
+    is where run directories go.
     """
 
     aos: Literal[1]
@@ -95,6 +116,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     mission: MissionPart = MissionPart()
     solver: SolverPart = SolverPart()
     world: str | None = None
+    skills: dict[str, SkillPart] = {}
     adapters: dict[str, Any] = {}
     bind: dict[str, Any] = {}
     runs: str = "runs"

@@ -20,6 +20,7 @@ class ExitCode(IntEnum):
     STEP_LIMIT = 6
     FAULT = 7
     MISSION_OVER = 8
+    SKILLS_FAILED = 9
     INTERRUPTED = 130
 
 
@@ -33,6 +34,7 @@ _MEANINGS = {
     ExitCode.STEP_LIMIT: "the step limit was reached",
     ExitCode.FAULT: "a fault while the mission ran",
     ExitCode.MISSION_OVER: "the mission ended with neither its goal nor a failure",
+    ExitCode.SKILLS_FAILED: "skills kept failing",
     ExitCode.INTERRUPTED: "interrupted",
 }
 
@@ -44,6 +46,7 @@ _BY_ENDING = {
     "failure": ExitCode.MISSION_FAILED,
     "nothing_worthwhile": ExitCode.NOTHING_WORTHWHILE,
     "step_limit": ExitCode.STEP_LIMIT,
+    "skills_failed": ExitCode.SKILLS_FAILED,
     "cancelled": ExitCode.INTERRUPTED,
     "fault": ExitCode.FAULT,
 }

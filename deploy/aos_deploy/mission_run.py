@@ -17,6 +17,7 @@ from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mis
 from aos_deploy.living_runs import noted
 from aos_deploy.printing import from_here
 from aos_deploy.program import programs_of_deployment
+from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_protocol.diagnostics import Diagnostic, has_errors
@@ -131,6 +132,7 @@ class MissionRun:
             tasks.create_task(self._push_bundles(supervisor))
             await supervisor.until_ready()
             self._services_ready_s = self._elapsed_s()
+        await until_skills_can_run(supervisor, self._deployment)
         await supervisor.bus.ask(
             supervisor.keys.start_mission, StartMission(), MissionState, timeout_s=_BUILD_TIMEOUT_S
         )

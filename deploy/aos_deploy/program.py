@@ -94,6 +94,7 @@ def _solver_settings(deployment: Deployment) -> dict[str, Any]:
         **budget,
         "policy": str(deployment.policy or ""),
         **msgspec.structs.asdict(file.mission),
+        "skills": {name: msgspec.structs.asdict(part) for name, part in file.skills.items()},
     }
 
 

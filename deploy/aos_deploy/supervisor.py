@@ -136,7 +136,7 @@ class Supervisor:
                 raise DeployError(
                     f"{program.name} was not ready within {program.start_s:g} s",
                     code="AOS802",
-                    hint=self._look_at_log(program.name),
+                    hint=self.look_at_log(program.name),
                 ) from None
 
     async def until_one_ended(self, *, timeout_s: float) -> None:
@@ -216,10 +216,11 @@ class Supervisor:
             )
         code = "AOS804" if running.ready.is_set() else "AOS802"
         return DeployError(
-            f"{name} ended unexpectedly: {_status_text(status)}", code=code, hint=self._look_at_log(name)
+            f"{name} ended unexpectedly: {_status_text(status)}", code=code, hint=self.look_at_log(name)
         )
 
-    def _look_at_log(self, name: str) -> str:
+    def look_at_log(self, name: str) -> str:
+        """Where a service's log is, and how it ends."""
         lines = self._run.last_log_lines(name)
         where = f"Its log is {self._run.log(name)}"
         return "\n    ".join([f"{where}; it ends:", *lines]) if lines else where

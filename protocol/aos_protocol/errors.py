@@ -112,6 +112,7 @@ CODES: dict[str, str] = {
     "AOS510": "the skill failed",
     "AOS511": "two adapters serve one path",
     "AOS512": "a skill may still be moving",
+    "AOS513": "the mission held for too long",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
     "AOS603": "another protocol version",

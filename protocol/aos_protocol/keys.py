@@ -17,6 +17,7 @@
     aos/<robot>/topic/<path>        stream  raw data of the robot                                TopicMessage
     aos/<robot>/model/check         query   can the solver use these documents       CheckModel -> ModelCheck
     aos/<robot>/mission/start       query   start the mission                    StartMission -> MissionState
+    aos/<robot>/mission/resume      query   go on with a mission that holds     ResumeMission -> MissionState
     aos/<robot>/mission/state       stream and query: where the mission is       MissionQuery -> MissionState
     aos/<robot>/decision/record     stream  decisions and their outcomes                       DecisionRecord
     aos/<robot>/decision/history    query   the records from a sequence number        HistoryQuery -> History
@@ -143,6 +144,10 @@ class Keys:
     @property
     def start_mission(self) -> str:
         return f"{self._root}/mission/start"
+
+    @property
+    def resume_mission(self) -> str:
+        return f"{self._root}/mission/resume"
 
     @property
     def mission_state(self) -> str:

@@ -37,6 +37,13 @@ _TAKEN = b"taken"
 """The attachment of a question that asks for a receipt, and of the receipt: a first, empty reply. Somebody
 who knows neither asks without, and answers without."""
 
+_ZENOH_TIMEOUT = b"Timeout"
+"""Zenoh's own error reply, the only one that is not an envelope."""
+
+MAX_STRAYS = 10
+STRAYS_S = 60.0
+"""How long after its deadline a question still hears of late replies, where somebody wants to know."""
+
 _log = logging.getLogger("aos.bus")
 
 
@@ -99,7 +106,15 @@ class Bus:
             subscription.close()
         await asyncio.to_thread(self._session.close)
 
-    async def ask(self, key: str, message: Message, reply: type[R], *, timeout_s: float) -> R:
+    async def ask(
+        self,
+        key: str,
+        message: Message,
+        reply: type[R],
+        *,
+        timeout_s: float,
+        on_stray: Callable[[str, R | AosError], None] | None = None,
+    ) -> R:
         """The answer of whoever serves `key`.
 
         NobodyAnswersError if nobody takes the question; LostAnswerError if whoever took it ended before the
@@ -110,9 +125,16 @@ class Bus:
         answer: asyncio.Future[tuple[bool, bytes] | None] = self._loop.create_future()
         is_taken = False
 
+        strays = 0
+
         def settle(result: tuple[bool, bytes] | None) -> None:
+            nonlocal strays
             if not answer.done():
                 answer.set_result(result)
+            elif on_stray is not None and result is not None and strays < MAX_STRAYS:
+                strays += 1
+                if result[1] != _ZENOH_TIMEOUT:
+                    on_stray("late" if answer.cancelled() else "repeated", _stray(result, key, reply))
 
         def take() -> None:
             nonlocal is_taken
@@ -134,15 +156,15 @@ class Bus:
             Callback(on_reply, partial(self._loop.call_soon_threadsafe, settle, None), indirect=False),
             payload=payload,
             attachment=_TAKEN,
-            timeout=timeout_s,
+            timeout=timeout_s if on_stray is None else timeout_s + STRAYS_S,
             # Otherwise a reply is held back until every responder has finished.
             consolidation=zenoh.ConsolidationMode.NONE,
         )
         try:
-            async with asyncio.timeout(timeout_s + _LATE_S):
+            async with asyncio.timeout(timeout_s + _LATE_S if on_stray is None else timeout_s):
                 result = await answer
         except TimeoutError:
-            result = (False, b"Timeout")
+            result = (False, _ZENOH_TIMEOUT)
         if result is None and is_taken:
             raise LostAnswerError(
                 f"who took the question on {key} ended before the answer",
@@ -325,9 +347,16 @@ def _read_answer(result: tuple[bool, bytes] | None, key: str, reply: type[R], ti
     is_answer, payload = result
     if is_answer:
         return decode(payload, reply)
-    if payload == b"Timeout":  # Zenoh's own error reply, the only one that is not an envelope.
+    if payload == _ZENOH_TIMEOUT:
         raise LateAnswerError(f"no answer on {key} within {timeout_s:g} s")
     raise decode_fault(payload)
+
+
+def _stray(result: tuple[bool, bytes], key: str, reply: type[R]) -> R | AosError:
+    try:
+        return _read_answer(result, key, reply, 0.0)
+    except AosError as error:
+        return error
 
 
 def _ignore(_: object) -> None:

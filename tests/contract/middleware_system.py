@@ -14,7 +14,7 @@ from mapping_documents import project_in, skill_of
 
 from aos_middleware.settings import Settings
 from aos_protocol.documents import Project
-from aos_protocol.keys import Keys
+from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import (
     Activate,
     ActivationId,
@@ -83,18 +83,41 @@ class Adapter:
         self.calls: list[SkillCall] = []
         self.cancelled: list[str] = []
         self.is_called = asyncio.Event()
+        self.is_cancelled = asyncio.Event()
 
-    async def serve(self, path: str, answer: Callable[[SkillCall], Awaitable[dict[str, Any]]]) -> None:
+    async def serve(
+        self,
+        path: str,
+        answer: Callable[[SkillCall], Awaitable[dict[str, Any]]],
+        changed: Callable[[SkillResult], SkillResult] = lambda result: result,
+    ) -> None:
         async def run(call: SkillCall, _: str) -> SkillResult:
             self.calls.append(call)
             self.is_called.set()
-            return SkillResult(call.id, await answer(call), dict(self._sent))
+            return changed(SkillResult(call.id, await answer(call), dict(self._sent)))
 
         await self._bus.answer(self._keys.call(path), SkillCall, run)
+        await self.announce(path)
 
-    async def serve_cancel(self, path: str) -> None:
+    async def announce(self, path: str, adapter: str = "scripted") -> None:
+        """Says that calls of the path are answered."""
+        await self._bus.announce(self._token(path, adapter))
+
+    def withdraw(self, path: str, adapter: str = "scripted") -> None:
+        """Says that they no longer are."""
+        self._bus.withdraw(self._token(path, adapter))
+
+    def _token(self, path: str, adapter: str) -> str:
+        return self._keys.serve(Serving(adapter, "1", self._bus.instance, path))
+
+    async def serve_cancel(self, path: str, is_still: asyncio.Event | None = None) -> None:
+        """Answers cancellations, once the robot stands still."""
+
         async def cancel(request: Cancel, _: str) -> Cancelled:
             self.cancelled.append(request.reason)
+            self.is_cancelled.set()
+            if is_still is not None:
+                await is_still.wait()
             return Cancelled()
 
         await self._bus.answer(self._keys.cancel(path), Cancel, cancel)
@@ -144,13 +167,13 @@ class System:
 
     async def state(self, revision: int) -> MappingState:
         """The state of the mappings once they are those of a revision."""
-        return await self._state_when(lambda state: state.revision >= revision)
+        return await self.state_when(lambda state: state.revision >= revision)
 
     async def refusal(self, revision: int) -> MappingState:
         """The state of the mappings once a revision is refused."""
-        return await self._state_when(lambda state: state.refused >= revision)
+        return await self.state_when(lambda state: state.refused >= revision)
 
-    async def _state_when(self, holds: Callable[[MappingState], bool]) -> MappingState:
+    async def state_when(self, holds: Callable[[MappingState], bool]) -> MappingState:
         return await state_when(
             self.bus, self.keys.mapping_state, MappingQuery(), MappingState, holds, timeout_s=PATIENCE_S
         )

@@ -72,7 +72,7 @@ async def test_an_unknown_skill_is_refused_with_the_nearest_name(system: System)
 
 async def test_a_path_without_adapter_fails_and_says_what_to_bind(system: System) -> None:
     outcome = await system.activate("pick")
-    assert (outcome.status, outcome.response) == ("failed", "")
+    assert (outcome.status, outcome.response) == ("refused", "")
     assert outcome.fault is not None
     assert outcome.fault.code == "AOS505"
     assert "/pick" in outcome.fault.message
@@ -82,11 +82,12 @@ async def test_a_path_without_adapter_fails_and_says_what_to_bind(system: System
 @pytest.mark.parametrize(
     ("code", "status"),
     [
-        ("AOS502", "failed"),
+        ("AOS502", "refused"),
         ("AOS503", "timed_out"),
         ("AOS504", "unknown"),
-        ("AOS506", "failed"),
+        ("AOS506", "refused"),
         ("AOS507", "cancelled"),
+        ("AOS510", "failed"),
     ],
 )
 async def test_an_adapters_error_becomes_a_defined_outcome(system: System, code: str, status: str) -> None:

@@ -7,7 +7,7 @@ import math
 import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import msgspec
 import pytest
@@ -17,7 +17,7 @@ from scripted_models import text_project
 
 from aos_middleware.settings import Settings
 from aos_protocol.documents import Project
-from aos_protocol.keys import Keys
+from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import (
     Activate,
     BeliefSummary,
@@ -144,6 +144,7 @@ class Robot:
     """A middleware process, and an adapter that answers from `RUNS`; the ports of a mission."""
 
     clock = SystemClock()
+    unavailable: ClassVar[dict[str, str]] = {}
 
     def __init__(self, bus: Bus, keys: Keys) -> None:
         self._bus = bus
@@ -170,6 +171,9 @@ class Robot:
     async def activate(self, request: Activate) -> Outcome:
         key = self._keys.activate(request.skill)
         return await self._bus.ask(key, request, Outcome, timeout_s=PATIENCE_S)
+
+    async def until_changed(self, timeout_s: float) -> None:
+        """The adapter stays."""
 
     async def newest_model(self, running: RunningModel) -> RunningModel:
         return running
@@ -210,6 +214,7 @@ async def robot(bus: Bus, other: Bus, keys: Keys, endpoint: str, tmp_path: Path)
     robot = Robot(bus, keys)
     await other.answer(keys.project, ProjectQuery, answer)
     await other.answer(keys.call("/count"), SkillCall, robot.run_skill)
+    await other.announce(keys.serve(Serving("counter", "1", other.instance, "/count")))
     middleware = await start_middleware(bus, keys, endpoint, tmp_path)
     try:
         await robot.await_mappings()

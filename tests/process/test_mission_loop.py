@@ -12,9 +12,18 @@ from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, Miss
 from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
 from aos_solver.endings import MissionLimits
+from aos_solver.failures import Failures, SkillRule
 from aos_solver.hot_plug import RunningModel
-from aos_solver.mission import MAX_LOST_ACTIVATIONS, Mission
+from aos_solver.mission import FAILURE_LIMIT, Mission
 from aos_solver.search import Search
+
+ANSWERS = {
+    "navigate": "arrived",
+    "pick": "pick_succeeded",
+    "observe_holding": "holding",
+    "observe_arm_outstretched": "not_outstretched",
+    "serve": "delivered",
+}
 
 Robot = Callable[[Activate], Outcome]
 
@@ -26,8 +35,13 @@ class Surroundings:
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
+        self.unavailable: dict[str, str] = {}
+        self.states: list[MissionState] = []
+        self.on_hold: Callable[[], None] = lambda: None
         self.journalled: list[tuple[str, Message]] = []
         self.records: list[DecisionRecord] = []
+
+    mission: Mission
 
     def journal(self, kind: str, payload: Message) -> None:
         self.journalled.append((kind, payload))
@@ -36,7 +50,10 @@ class Surroundings:
         self.records.append(record)
 
     def publish_state(self, state: MissionState) -> None:
-        """The mission keeps its own."""
+        self.states.append(state)
+
+    async def until_changed(self, timeout_s: float) -> None:
+        self.on_hold()
 
     async def activate(self, request: Activate) -> Outcome:
         assert self.journalled[-1] == ("intended", request)
@@ -62,14 +79,24 @@ async def finer(bundles: Path, cache_dir: Path) -> BuiltModel:
 
 
 async def run_mission(
-    built: BuiltModel, robot: Robot, *, step_limit: int = 30
+    built: BuiltModel,
+    robot: Robot,
+    *,
+    step_limit: int = 30,
+    rules: dict[str, SkillRule] | None = None,
+    around: Surroundings | None = None,
+    hold_s: float = 600.0,
 ) -> tuple[MissionState, Surroundings]:
-    around = Surroundings(robot)
+    around = around or Surroundings(robot)
     limits = MissionLimits(step_limit=step_limit)
     search = Search(simulations=100_000, seed=1)
     async with engine_of(built) as engine:
         model = RunningModel(1, built, engine)
-        mission = Mission("m", 1, model, limits, search, around, activation_timeout_s=1.0)
+        failures = Failures(rules or {}, FAILURE_LIMIT)
+        mission = Mission(
+            "m", 1, model, limits, search, around, activation_timeout_s=1.0, failures=failures, hold_s=hold_s
+        )
+        around.mission = mission
         return await mission.run(), around
 
 
@@ -90,23 +117,15 @@ async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(fine
 
 async def test_a_robot_that_never_answers_ends_the_mission_with_what_to_look_at(finer: BuiltModel) -> None:
     state, around = await run_mission(finer, timed_out)
-    assert (state.phase, state.ending) == ("ended", "fault")
-    assert "AOS503" in state.remark
-    assert "skill's log" in state.remark
-    assert sum(kind == "intended" for kind, _ in around.journalled) == MAX_LOST_ACTIVATIONS
+    assert (state.phase, state.ending) == ("ended", "skills_failed")
+    assert state.remark.startswith("3 activations in a row brought no observation, the last navigate(")
+    assert "AOS503: the skill took longer than it may" in state.remark
+    assert sum(kind == "intended" for kind, _ in around.journalled) == FAILURE_LIMIT
 
 
 async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) -> None:
-    answers = {
-        "navigate": "arrived",
-        "pick": "pick_succeeded",
-        "observe_holding": "holding",
-        "observe_arm_outstretched": "not_outstretched",
-        "serve": "delivered",
-    }
-
     def robot(request: Activate) -> Outcome:
-        return timed_out(request) if request.id.step == 1 else observed(request, answers[request.skill])
+        return timed_out(request) if request.id.step == 1 else observed(request, ANSWERS[request.skill])
 
     state, around = await run_mission(finer, robot)
     assert state.ending == "goal"
@@ -116,12 +135,89 @@ async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) ->
     assert set(statuses[1:]) == {"observed"}
 
 
-async def test_an_activation_that_failed_for_good_ends_the_mission_as_a_fault(finer: BuiltModel) -> None:
-    def robot(request: Activate) -> Outcome:
-        return Outcome(
-            request.id, request.skill, "failed", fault=Fault("AOS401", "pick.am:7: a division by zero")
-        )
+def good(request: Activate) -> Outcome:
+    return observed(request, ANSWERS[request.skill])
 
-    state, _ = await run_mission(finer, robot)
+
+def jammed(request: Activate) -> Outcome:
+    return Outcome(request.id, request.skill, "failed", fault=Fault("AOS510", "gripper jammed"))
+
+
+def statuses(around: Surroundings) -> list[str]:
+    return [record.outcome.status for record in around.records if record.outcome]
+
+
+async def test_a_skill_that_fails_is_tried_again_as_often_as_the_deploy_file_says(finer: BuiltModel) -> None:
+    def robot(request: Activate) -> Outcome:
+        return jammed(request) if request.skill == "pick" and request.id.step < 4 else good(request)
+
+    rules = {"pick": SkillRule(on_failure="retry", retries=2)}
+    state, around = await run_mission(finer, robot, rules=rules)
+    decisions = [record for record in around.records if record.outcome is None]
+    assert [each.skill for each in decisions[1:4]] == ["pick", "pick", "pick"]
+    assert decisions[2].why == "it is tried again after a failure, 1 of 2"
+    assert statuses(around)[1:4] == ["failed", "failed", "observed"]
+    assert state.ending == "goal"
+
+
+async def test_a_skill_that_may_not_fail_ends_the_mission_and_is_named(finer: BuiltModel) -> None:
+    def robot(request: Activate) -> Outcome:
+        return jammed(request) if request.skill == "pick" else good(request)
+
+    state, _ = await run_mission(finer, robot, rules={"pick": SkillRule(on_failure="end")})
+    assert state.ending == "skills_failed"
+    assert state.remark.startswith(
+        "the deploy file ends the mission when pick fails; pick: failed, AOS510: gr"
+    )
+
+
+async def test_a_mission_holds_until_somebody_lets_it_go_on(finer: BuiltModel) -> None:
+    def robot(request: Activate) -> Outcome:
+        return jammed(request) if request.id.step == 2 else good(request)
+
+    around = Surroundings(robot)
+    around.on_hold = lambda: around.mission.resume()
+    state, _ = await run_mission(finer, robot, rules={"pick": SkillRule(on_failure="hold")}, around=around)
+    (held,) = [each for each in around.states if each.phase == "holding"]
+    assert held.remark == "the mission holds: pick: failed, AOS510: gripper jammed"
+    assert state.ending == "goal"
+
+
+async def test_a_refused_activation_changes_nothing_in_the_belief(finer: BuiltModel) -> None:
+    def robot(request: Activate) -> Outcome:
+        fault = Fault("AOS505", "nobody is there")
+        return Outcome(request.id, request.skill, "refused", fault=fault)
+
+    _, around = await run_mission(finer, robot, step_limit=1)
+    decision, outcome = around.records
+    assert outcome.belief.marginals == decision.belief.marginals
+
+
+async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: BuiltModel) -> None:
+    around = Surroundings(good)
+    around.unavailable = {"navigate": "its adapter has left"}
+    await run_mission(finer, good, step_limit=2, around=around)
+    assert {record.skill for record in around.records} <= ANSWERS.keys() - {"navigate"}
+    # All actions are valued all the same: the belief and the model have not changed.
+    assert "navigate(destination=easy_table)" in {each.action for each in around.records[0].actions}
+
+    def come_back() -> None:
+        around.unavailable = {}
+
+    around = Surroundings(good)
+    around.unavailable = dict.fromkeys(ANSWERS, "its adapter has left")
+    around.on_hold = come_back
+    state, _ = await run_mission(finer, good, around=around)
+    assert [each.remark for each in around.states if each.phase == "holding"] == [
+        "the mission holds, for no skill can be run: its adapter has left"
+    ]
+    assert state.ending == "goal"
+
+
+async def test_a_mission_does_not_hold_for_ever(finer: BuiltModel) -> None:
+    around = Surroundings(good)
+    around.unavailable = dict.fromkeys(ANSWERS, "its adapter has left")
+    state, _ = await run_mission(finer, good, around=around, hold_s=0.01)
     assert state.ending == "fault"
-    assert "AOS401: pick.am:7: a division by zero" in state.remark
+    assert "AOS513" in state.remark
+    assert "its adapter has left" in state.remark

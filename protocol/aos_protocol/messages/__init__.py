@@ -36,6 +36,7 @@ from aos_protocol.messages.mission import (
     MissionState,
     ModelCheck,
     PredictedObservation,
+    ResumeMission,
     StartMission,
 )
 from aos_protocol.messages.skills import (
@@ -49,6 +50,7 @@ from aos_protocol.messages.skills import (
     SkillCall,
     SkillProgress,
     SkillResult,
+    Stray,
     TopicMessage,
 )
 
@@ -82,6 +84,7 @@ __all__ = [
     "ProjectRevision",
     "PushBundle",
     "RemoveDocuments",
+    "ResumeMission",
     "RevisionEntry",
     "Revisions",
     "RevisionsQuery",
@@ -89,5 +92,6 @@ __all__ = [
     "SkillProgress",
     "SkillResult",
     "StartMission",
+    "Stray",
     "TopicMessage",
 ]

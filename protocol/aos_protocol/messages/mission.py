@@ -21,6 +21,7 @@ __all__ = [
     "MissionState",
     "ModelCheck",
     "PredictedObservation",
+    "ResumeMission",
     "StartMission",
 ]
 
@@ -39,6 +40,10 @@ class ModelCheck(Message, frozen=True):
 
 class StartMission(Message, frozen=True):
     """Starts the mission that the solver was configured for. A second start changes nothing."""
+
+
+class ResumeMission(Message, frozen=True):
+    """Lets a mission go on that holds; one that does not is left alone. Answered by its MissionState."""
 
 
 class Marginal(Message, frozen=True):
@@ -77,11 +82,11 @@ class MissionQuery(Message, frozen=True):
 
 
 class MissionState(Message, frozen=True):
-    """Where the mission is: a `phase` of waiting, building, planning, acting, ended; and how it ended.
+    """Where the mission is: a `phase` of waiting, building, planning, acting, holding, ended; how it ended.
 
-    `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `step_limit`, `cancelled`, `fault`, or
-    empty while it runs. The first three are what the belief holds for sure enough: how the world has really
-    ended, nobody tells the robot. `remark` is one line for people.
+    `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `step_limit`, `skills_failed`,
+    `cancelled`, `fault`, or empty while it runs. The first three are what the belief holds for sure enough:
+    how the world has really ended, nobody tells the robot. `remark` is one line for people.
     """
 
     mission: str

@@ -17,6 +17,7 @@ __all__ = [
     "SkillCall",
     "SkillProgress",
     "SkillResult",
+    "Stray",
     "TopicMessage",
 ]
 
@@ -50,12 +51,14 @@ class Activate(Message, frozen=True):
 
 
 class Outcome(Message, frozen=True):
-    """How an activation ended: `status` is `observed`, `failed`, `timed_out`, `cancelled` or `unknown`.
+    """How an activation ended: `status` is `observed`, `refused` (nothing was begun), `failed`, `timed_out`,
+    `cancelled` or `unknown`.
 
     `response` is the observation, empty unless observed. `numbers` are what was observed beside it, by name:
     a number, or a list with null for those that are missing. Local variables are as they were when the rules
-    ran, as text. `fault` says what went wrong. `assigned` are the new low-level values that came with the
-    response, as plain data, by the path of the `anyValue` from its state variable.
+    ran, as text. `fault` says what went wrong; an observation has it where a rule has told a failure.
+    `assigned` are the new low-level values that came with the response, as plain data, by the path of the
+    `anyValue` from its state variable.
     """
 
     id: ActivationId
@@ -70,16 +73,29 @@ class Outcome(Message, frozen=True):
     numbers: dict[str, Any] = {}
 
 
+class Stray(Message, frozen=True):
+    """A reply of an adapter that was not used: `kind` is `late`, `repeated` or `foreign`."""
+
+    id: ActivationId
+    path: str
+    kind: str
+    text: str
+
+
 class MappingQuery(Message, frozen=True):
     """Asks the middleware which mappings it runs."""
 
 
 class MappingState(Message, frozen=True):
-    """The newest revision whose mappings run (0 before the first), its skills, and the newest one refused."""
+    """The newest revision whose mappings run (0 before the first), its skills, and the newest one refused.
+
+    `unavailable` are the skills that cannot be run now, each with the reason.
+    """
 
     revision: int
     skills: tuple[str, ...]
     refused: int = 0
+    unavailable: dict[str, str] = {}
 
 
 class SkillCall(Message, frozen=True):

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import msgspec
 
 from aos_middleware.evaluator import Evaluator, MappingFault
 from aos_middleware.low_level import LowLevelValues, assigned_variables
+from aos_middleware.motion_gate import MotionGate
 from aos_middleware.observed_numbers import observed_numbers
+from aos_middleware.served_paths import ServedPaths, no_adapter
 from aos_protocol.documents import AbstractionMapping, LocalSource
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
@@ -27,6 +30,7 @@ from aos_protocol.messages import (
     Outcome,
     SkillCall,
     SkillResult,
+    Stray,
     TopicMessage,
 )
 from aos_runtime.bus import Bus, Subscription
@@ -38,15 +42,23 @@ __all__ = ["Surroundings", "fault_of", "run_activation"]
 CATCH_UP_S = 0.5
 """How long to wait, after the call, for topic messages that were sent during it."""
 
-_REPLY_GRACE_S = 0.5
-_CANCEL_S = 3.0
+_REPLY_GRACE_S = 0.2
+_CANCEL_S = 0.25
+"""How long an activation that is late waits for word that its skill has stopped; the next one waits on."""
+
 SURELY_NOT_STARTED_S = 0.2
 """An adapter that is not there is known at once; one that is lost later may have moved something."""
 
 _BATCH = 256
 _QUEUE_SIZE = 4096
 
-_STATUS = {"AOS503": "timed_out", "AOS504": "unknown", "AOS507": "cancelled", "AOS606": "unknown"}
+_STATUS = {
+    "AOS503": "timed_out",
+    "AOS504": "unknown",
+    "AOS507": "cancelled",
+    "AOS606": "unknown",
+    **dict.fromkeys(("AOS502", "AOS505", "AOS506", "AOS511", "AOS512"), "refused"),
+}
 """What an error says about the skill; AOS606 is a defect of the adapter, in the middle of anything."""
 
 _log = logging.getLogger("aos.middleware")
@@ -56,7 +68,7 @@ class Surroundings(NamedTuple):
     """What an activation reaches outside: the bus, the robot's keys, the time.
 
     `published` is what had been sent on each topic when the last call ended; each activation updates it.
-    `low_level` holds the values that responses have given.
+    `low_level` holds the values that responses have given. `on_stray` is told of replies that are not used.
     """
 
     bus: Bus
@@ -64,15 +76,19 @@ class Surroundings(NamedTuple):
     clock: Clock
     published: dict[str, int]
     low_level: LowLevelValues
+    served: ServedPaths
+    gate: MotionGate
+    on_stray: Callable[[Stray], None]
 
 
 class _Observation(msgspec.Struct, frozen=True):
-    """What an activation brought: see `Outcome`."""
+    """What an activation brought: see `Outcome`. `failure` is why the skill failed, where a rule tells it."""
 
     response: str = ""
     local_variables: dict[str, str] = {}
     assigned: dict[str, Any] = {}
     numbers: dict[str, Any] = {}
+    failure: AosError | None = None
 
 
 async def run_activation(request: Activate, evaluator: Evaluator, around: Surroundings) -> Outcome:
@@ -86,6 +102,7 @@ async def run_activation(request: Activate, evaluator: Evaluator, around: Surrou
         fault, observation = error, _Observation(local_variables=error.local_variables)
     except AosError as error:
         fault = error
+    told = fault or observation.failure
     return Outcome(
         request.id,
         request.skill,
@@ -94,7 +111,7 @@ async def run_activation(request: Activate, evaluator: Evaluator, around: Surrou
         observation.local_variables,
         started_ns,
         around.clock.now_ns(),
-        None if fault is None else fault_of(fault),
+        None if told is None else fault_of(told),
         observation.assigned,
         observation.numbers,
     )
@@ -111,7 +128,9 @@ class _Activation:
     def __init__(self, request: Activate, evaluator: Evaluator, around: Surroundings) -> None:
         self._request = request
         self._evaluator = evaluator
-        self._bus, self._keys, self._clock, self._published_before, self._low_level = around
+        self._around = around
+        self._bus, self._keys, self._clock = around.bus, around.keys, around.clock
+        self._published_before, self._low_level = around.published, around.low_level
         self._mapping: AbstractionMapping = evaluator.emitted.mapping
         self._ends_at_s = self._clock.monotonic_s() + request.deadline_s
         self._topic_of = {
@@ -127,7 +146,14 @@ class _Activation:
         """From the fields of the call to what is observed."""
         constants = self._evaluator.emitted.constants
         fields = await self._evaluator.begin(*self._low_level.arguments(self._request, constants))
-        result = await self._listening_call(fields)
+        try:
+            result = await self._listening_call(fields)
+        except MappingFault:
+            raise
+        except AosError as error:
+            if not self._evaluator.emitted.handles_failures:
+                raise
+            return await self._observed_failure(error)
         if result.response:
             return _Observation(result.response, numbers=result.numbers)
         observed = await self._evaluator.finish(result.fields)
@@ -138,6 +164,22 @@ class _Activation:
             observed.local_variables,
             assigned_variables(observed.assigned, self._request),
             observed_numbers(self._evaluator.emitted.observed, observed.local_variables),
+        )
+
+    async def _observed_failure(self, error: AosError) -> _Observation:
+        """What the rules make of a skill that has failed; the skill's error where none of them holds."""
+        try:
+            observed = await self._evaluator.finish({}, _STATUS.get(error.code, "failed"), error.message)
+        except MappingFault as fault:
+            _log.warning("%s: the rules say nothing about its failure: %s", self._request.skill, fault)
+            raise error from fault
+        if observed.response is None:
+            raise error
+        return _Observation(
+            observed.response,
+            observed.local_variables,
+            assigned_variables(observed.assigned, self._request),
+            failure=error,
         )
 
     async def _listening_call(self, fields: dict[str, Any]) -> SkillResult:
@@ -165,18 +207,32 @@ class _Activation:
 
     async def _call(self, fields: dict[str, Any]) -> SkillResult:
         path = self._mapping.activation.path
+        if fault := self._around.served.fault(path):
+            raise fault
+        with self._around.gate.passing(path):
+            await self._around.gate.confirm()
+            return await self._call_path(path, fields)
+
+    async def _call_path(self, path: str, fields: dict[str, Any]) -> SkillResult:
+        """The answer to the call; there is doubt whether it has ended unless the adapter says that it has."""
+        request = self._request
         started_s = self._clock.monotonic_s()
         limit_s = max(self._ends_at_s - started_s, 0.0)
         if self._mapping.activation.max_duration_s is not None:
             limit_s = min(limit_s, self._mapping.activation.max_duration_s)
-        request = self._request
         call = SkillCall(request.id, path, fields, limit_s, request.skill, request.parameters)
+        has_ended = False
         try:
-            return await self._bus.ask(
-                self._keys.call(path), call, SkillResult, timeout_s=limit_s + _REPLY_GRACE_S
+            result = await self._bus.ask(
+                self._keys.call(path),
+                call,
+                SkillResult,
+                timeout_s=limit_s + _REPLY_GRACE_S,
+                on_stray=self._note_stray,
             )
+            has_ended = result.id == request.id
         except LateAnswerError as error:
-            await self._cancel(f"{self._request.skill} did not end within {limit_s:g} s")
+            has_ended = await self._cancel(f"{request.skill} did not end within {limit_s:g} s")
             raise _timed_out(path, limit_s) from error
         except LostAnswerError as error:
             raise _lost_adapter(path, self._clock.monotonic_s() - started_s) from error
@@ -184,19 +240,39 @@ class _Activation:
             # An adapter that does not use our bus gives no receipt: then time alone tells.
             after_s = self._clock.monotonic_s() - started_s
             is_surely_nobody = after_s < SURELY_NOT_STARTED_S
-            raise (_no_adapter(path) if is_surely_nobody else _lost_adapter(path, after_s)) from error
-
-    async def _cancel(self, reason: str) -> None:
-        """Has whatever moves stopped, as far as somebody answers."""
-        try:
-            await self._bus.ask(
-                self._keys.cancel(self._mapping.activation.path),
-                Cancel(reason, self._request.id),
-                Cancelled,
-                timeout_s=_CANCEL_S,
+            raise (no_adapter(path) if is_surely_nobody else _lost_adapter(path, after_s)) from error
+        except SkillError as error:
+            has_ended = _STATUS.get(error.code) != "unknown"
+            raise
+        finally:
+            if not has_ended:
+                self._around.gate.doubt(request.id, path)
+        if not has_ended:
+            self._note_stray("foreign", result)
+            raise SkillError(
+                f"the adapter of {path} answered for {result.id}, not for {request.id}",
+                code="AOS504",
+                hint="Mend the adapter: a result has the id of its call",
             )
+        return result
+
+    async def _cancel(self, reason: str) -> bool:
+        """Has the skill stopped; whether its adapter says that it has."""
+        cancel = Cancel(reason, self._request.id)
+        key = self._keys.cancel(self._mapping.activation.path)
+        try:
+            await self._bus.ask(key, cancel, Cancelled, timeout_s=_CANCEL_S)
         except AosError as error:
-            _log.warning("%s, and stopping it failed: %s", reason, error)
+            _log.warning("%s, and nobody says that it has stopped: %s", reason, error)
+            return False
+        return True
+
+    def _note_stray(self, kind: str, reply: SkillResult | AosError) -> None:
+        """A reply that is not used is kept for people."""
+        path, request = self._mapping.activation.path, self._request
+        text = str(reply) if isinstance(reply, AosError) else f"a result for {reply.id}"
+        _log.warning("%s: a %s reply for %s is not used: %s", path, kind, request.id, text)
+        self._around.on_stray(Stray(request.id, path, kind, text))
 
     async def _take(self, messages: Subscription[tuple[str, TopicMessage]]) -> None:
         """Evaluates topic messages until the stream is closed and empty."""
@@ -253,14 +329,6 @@ def _timed_out(path: str, limit_s: float) -> SkillError:
         f"the skill at {path} did not answer within {limit_s:g} s",
         code="AOS503",
         hint="See the skill's log; its time is the mapping's `max_duration` or the mission's limit",
-    )
-
-
-def _no_adapter(path: str) -> SkillError:
-    return SkillError(
-        f"no adapter answers calls of {path}",
-        code="AOS505",
-        hint=f"Name one for {path} under `bind:` in the deploy file, and see that it runs",
     )
 
 

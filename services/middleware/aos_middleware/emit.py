@@ -42,7 +42,8 @@ class EmittedMapping(msgspec.Struct, frozen=True):
 
     `origins[i]` is where line i + 1 of `python` came from, None for lines that no document part made.
     `constants` names the low-level constants behind the state's `anyValue`s, `observed` the local variables
-    that are observed as numbers; both are in the digest too.
+    that are observed as numbers; both are in the digest too. `handles_failures` says whether a rule looks at
+    how the skill has ended.
     """
 
     skill: str
@@ -52,6 +53,7 @@ class EmittedMapping(msgspec.Struct, frozen=True):
     mapping: AbstractionMapping
     constants: Mapping[str, str] = {}
     observed: tuple[str, ...] = ()
+    handles_failures: bool = False
 
     @property
     def file_name(self) -> str:
@@ -107,7 +109,9 @@ def emit_mapping(
     constant_names = dict(constants or {})
     observed = tuple(number.name for number in reported_numbers(skill.model))
     digest = _digest_of(python, constant_names, observed)
-    emitted = EmittedMapping(skill.name, python, digest, origins, mapping, constant_names, observed)
+    emitted = EmittedMapping(
+        skill.name, python, digest, origins, mapping, constant_names, observed, sections.handles_failures
+    )
     _check_whole(emitted)
     return emitted
 

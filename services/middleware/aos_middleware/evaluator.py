@@ -128,10 +128,15 @@ class Evaluator:
         longest_s = self._limits.evaluation_s * len(messages) * variables
         await self._ask(Take(list(messages)), Done, longest_s)
 
-    async def finish(self, result: dict[str, Any]) -> Observed:
-        """Ends the activation with the call's result: the response, if a rule holds, and local variables."""
+    async def finish(self, result: dict[str, Any], status: str = "succeeded", error: str = "") -> Observed:
+        """Ends the activation with the call's result: the response, if a rule holds, and local variables.
+
+        With another `status` the skill has failed, and there is no result.
+        """
         evaluations = 1 + len(self.emitted.mapping.local_variables)
-        return await self._ask(Finish(result), Observed, self._limits.evaluation_s * evaluations)
+        return await self._ask(
+            Finish(result, status, error), Observed, self._limits.evaluation_s * evaluations
+        )
 
     async def close(self) -> None:
         """Ends the worker. Closing twice does nothing."""

@@ -59,9 +59,14 @@ class Take(msgspec.Struct, frozen=True, tag=True):
 
 
 class Finish(msgspec.Struct, frozen=True, tag=True):
-    """The call's result; the activation is over. Answered by Observed."""
+    """The call's result; the activation is over. Answered by Observed.
+
+    `status` and `error` are what the rules see of a skill that has failed; then there is no result.
+    """
 
     result: dict[str, Any]
+    status: str = "succeeded"
+    error: str = ""
 
 
 class Done(msgspec.Struct, frozen=True, tag=True):

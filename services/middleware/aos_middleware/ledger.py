@@ -7,13 +7,14 @@ from typing import Self
 
 import msgspec
 
-from aos_protocol.messages import Activate, ActivationId, Fault, Outcome
+from aos_protocol.messages import Activate, ActivationId, Fault, Outcome, Stray
 from aos_runtime.journal import Journal
 
 __all__ = ["OutcomeLedger"]
 
 _STARTED = "started"
 _ENDED = "ended"
+_STRAY = "stray"
 
 
 class OutcomeLedger:
@@ -50,6 +51,10 @@ class OutcomeLedger:
         """Notes how an activation ended."""
         self._journal.append(_ENDED, outcome)
         self._outcomes[outcome.id] = outcome
+
+    def note(self, stray: Stray) -> None:
+        """Keeps a reply that was not used."""
+        self._journal.append(_STRAY, stray)
 
     def outcomes(self) -> list[Outcome]:
         """How the activations ended that did, in the order in which they were started."""

@@ -54,9 +54,10 @@ class Mappings:
         self,
         folder: Path,
         make_evaluator: Callable[[EmittedMapping], Evaluator],
-        on_change: Callable[[MappingState], None],
+        on_change: Callable[[], None],
     ) -> None:
-        """`folder` receives the modules of the newest revision, for people; `on_change` each new state."""
+        """`folder` receives the modules of the newest revision, for people; `on_change` is called after each
+        change."""
         self._folder = folder
         self._make_evaluator = make_evaluator
         self._on_change = on_change
@@ -70,6 +71,11 @@ class Mappings:
     def state(self) -> MappingState:
         """The newest revision in use with its skills, sorted, and the newest that was refused."""
         return MappingState(self._revision, tuple(sorted(self._newest)), self._refused)
+
+    @property
+    def paths(self) -> dict[str, str]:
+        """The activation path of each skill of the newest revision in use."""
+        return {skill: evaluator.emitted.mapping.activation.path for skill, evaluator in self._newest.items()}
 
     def evaluator(self, skill: str, revision: int = 0) -> Evaluator:
         """The evaluator of a skill in a revision, or in the newest where that one is not kept.
@@ -124,7 +130,7 @@ class Mappings:
         self._kept = dict(sorted(self._kept.items())[-_KEPT:])
         self._write(emitted)
         _log.info("revision %d: mappings of %s", announced.revision, ", ".join(sorted(mappings)))
-        self._on_change(self.state)
+        self._on_change()
         for evaluator in outdated - self._evaluators():
             async with evaluator.in_use:
                 await evaluator.close()
@@ -134,7 +140,7 @@ class Mappings:
         _log.error("revision %d is not used: %s", revision, error)
         for diagnostic in error.diagnostics:
             _log.error("%s: %s", diagnostic.span, diagnostic.message)
-        self._on_change(self.state)
+        self._on_change()
 
     def _same_or_new(self, emitted: EmittedMapping) -> Evaluator:
         current = self._newest.get(emitted.skill)

@@ -27,8 +27,20 @@ from aos_protocol.documents import (
 __all__ = ["Function", "ImportPart", "Sections", "Table"]
 
 _PRIMITIVES = frozenset({"bool", "int", "float", "double", "string", "str"})
+_OF_SKILL = ("__skill_status", "__skill_error")
+"""What rules can say of a skill that has failed."""
+
 _RESERVED = frozenset(
-    {"__input", "parameters", "local_variables", "request", "observe", "low_level_type", "stand_in"}
+    {
+        *_OF_SKILL,
+        "__input",
+        "parameters",
+        "local_variables",
+        "request",
+        "observe",
+        "low_level_type",
+        "stand_in",
+    }
     | {"TOPICS", "RESPONSE", "CONSTANTS"}
 )
 
@@ -57,11 +69,15 @@ class Table(msgspec.Struct, frozen=True):
 
 
 class Sections:
-    """Builds the parts of one mapping's module, collecting the document's mistakes in `diagnostics`."""
+    """Builds the parts of one mapping's module, collecting the document's mistakes in `diagnostics`.
+
+    After `observe`, `handles_failures` says whether a rule looks at how the skill has ended.
+    """
 
     def __init__(self, mapping: AbstractionMapping, low_level: LowLevelDocument | None) -> None:
         self.diagnostics: list[Diagnostic] = []
         self.marks = MarkedLines()
+        self.handles_failures = False
         self._mapping = mapping
         self._low_level = low_level
         self._variables = {variable.name: variable for variable in mapping.local_variables}
@@ -190,6 +206,9 @@ class Sections:
             lines.append("    return None")
         summary = "The response: that of the first rule that holds."
         reads = self._read_by(codes)
+        of_skill = [name for name in _OF_SKILL if any(name in code.reads for code in codes)]
+        self.handles_failures = bool(of_skill)
+        reads += of_skill
         return Function(
             "observe", ", ".join(["__assign", *reads] if has_assignments else reads), summary, tuple(lines)
         )

@@ -18,6 +18,8 @@ from aos_middleware.evaluator import EvaluationLimits, Evaluator
 from aos_middleware.ledger import OutcomeLedger
 from aos_middleware.low_level import LowLevelValues
 from aos_middleware.mappings import Mappings
+from aos_middleware.motion_gate import MotionGate
+from aos_middleware.served_paths import ServedPaths
 from aos_middleware.settings import Settings
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_protocol.messages import (
@@ -63,9 +65,19 @@ class _Middleware:
             allowed_imports=settings.allowed_imports,
         )
         self._mappings = Mappings(folder, self._make_evaluator, self._tell_state)
+        self._served = ServedPaths(service.bus, service.keys, self._tell_state)
         self._ledger = OutcomeLedger.open(run_dir / "middleware.db")
         self._low_level = LowLevelValues(self._ledger.outcomes())
-        self._around = Surroundings(service.bus, service.keys, service.clock, {}, self._low_level)
+        self._around = Surroundings(
+            service.bus,
+            service.keys,
+            service.clock,
+            {},
+            self._low_level,
+            self._served,
+            MotionGate(service.bus, service.keys, self._served),
+            self._ledger.note,
+        )
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}
 
@@ -75,6 +87,7 @@ class _Middleware:
             await bus.answer(keys.activate_any, Activate, self._activate)
             await bus.answer(keys.mapping_state, MappingQuery, self._answer_state)
             await self._service.ready()
+            tasks.create_task(self._served.follow())
             tasks.create_task(self._adopt_current())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
@@ -101,10 +114,16 @@ class _Middleware:
         return Evaluator(emitted, self._logs / f"mapping-{emitted.skill}.log", self._limits)
 
     async def _answer_state(self, _: MappingQuery, __: str) -> MappingState:
-        return self._mappings.state
+        return self._state()
 
-    def _tell_state(self, state: MappingState) -> None:
-        self._service.bus.tell(self._service.keys.mapping_state, state)
+    def _state(self) -> MappingState:
+        """The mappings that run, and which of their skills nobody could run."""
+        faults = {skill: self._served.fault(path) for skill, path in self._mappings.paths.items()}
+        unavailable = {skill: fault.message for skill, fault in faults.items() if fault is not None}
+        return msgspec.structs.replace(self._mappings.state, unavailable=unavailable)
+
+    def _tell_state(self) -> None:
+        self._service.bus.tell(self._service.keys.mapping_state, self._state())
 
     async def _activate(self, request: Activate, key: str) -> Outcome:
         """Runs an activation, joins the one of the same id, or tells again how it ended."""

@@ -58,6 +58,7 @@ class LoadedMapping:
         self._values: dict[str, Any] = {}
         self._last_given: dict[str, Any] = {}
         self._assigned: dict[str, Any] = {}
+        self._of_skill: dict[str, Any] = {}
         namespace: dict[str, Any] = {
             "__name__": load.file_name.removesuffix(".py"),
             "__builtins__": _builtins(load.allowed_imports),
@@ -84,8 +85,8 @@ class LoadedMapping:
                 for topic, fields in messages:
                     self._take(topic, fields)
                 return Done()
-            case Finish(result):
-                return Observed(self._finish(result), self._texts(), self._assigned)
+            case Finish(result, status, error):
+                return Observed(self._finish(result, status, error), self._texts(), self._assigned)
             case Load():
                 raise ValueError("the module is loaded already")
 
@@ -106,8 +107,10 @@ class LoadedMapping:
         functions = self._namespace.get("TOPICS", {}).get(topic, {})
         self._update(functions, message_from(fields))
 
-    def _finish(self, result: dict[str, Any]) -> str | None:
-        self._update(self._namespace.get("RESPONSE", {}), message_from(result))
+    def _finish(self, result: dict[str, Any], status: str, error: str) -> str | None:
+        self._of_skill = {"__skill_status": status, "__skill_error": error}
+        if status == "succeeded":
+            self._update(self._namespace.get("RESPONSE", {}), message_from(result))
         with self._watched(self._load.evaluation_s):
             observe = self._namespace["observe"]
             takes_assign = observe.__code__.co_varnames[:1] == ("__assign",)
@@ -127,7 +130,8 @@ class LoadedMapping:
         """Calls a generated function with the local variables it names."""
         code: CodeType = function.__code__
         names = code.co_varnames[len(message) : code.co_argcount]
-        self._last_given = {name: self._values[name] for name in names}
+        values = self._values | self._of_skill
+        self._last_given = {name: values[name] for name in names}
         return function(*message, **self._last_given)
 
     def _with_constants(self, plain: Any) -> Any:

@@ -12,7 +12,7 @@ __all__ = ["Ending", "MissionLimits", "believed_ending", "ending_after_planning"
 
 
 class Ending(StrEnum):
-    """How a mission ends; `FAULT` and `CANCELLED` come from outside the belief.
+    """How a mission ends; `SKILLS_FAILED`, `FAULT` and `CANCELLED` come from outside the belief.
 
     `OVER` is an ending of the documents that is neither a goal nor a failure.
     """
@@ -22,6 +22,7 @@ class Ending(StrEnum):
     FAILURE = "failure"
     NOTHING_WORTHWHILE = "nothing_worthwhile"
     STEP_LIMIT = "step_limit"
+    SKILLS_FAILED = "skills_failed"
     CANCELLED = "cancelled"
     FAULT = "fault"
 

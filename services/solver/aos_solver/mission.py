@@ -7,7 +7,7 @@ move before anything moves.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import msgspec
@@ -25,19 +25,32 @@ from aos_protocol.messages import (
 from aos_runtime.clock import Clock
 from aos_solver.child.answers import BeliefUpdate, Plan
 from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
+from aos_solver.failures import Failures
 from aos_solver.hot_plug import RunningModel
 from aos_solver.search import Search
 
 __all__ = ["Mission", "Ports"]
 
-MAX_LOST_ACTIVATIONS = 3
-"""Activations in a row without an answer before the mission ends: the robot is not there."""
+FAILURE_LIMIT = 3
+"""Activations in a row without an observation before a mission ends, unless it is told another number."""
+
+RAN_PROBABILITY = 0.5
+"""That a skill did its work which brought no observation; the belief is the mixture."""
 
 
 class Ports(Protocol):
     """What the loop needs from outside."""
 
     clock: Clock
+
+    @property
+    def unavailable(self) -> Mapping[str, str]:
+        """The skills that nobody could run now, each with the reason."""
+        ...
+
+    async def until_changed(self, timeout_s: float) -> None:
+        """Returns when other skills are available, when somebody wants the mission to go on, or in time."""
+        ...
 
     def journal(self, kind: str, payload: Message) -> None:
         """Write durably; returns once it is on the disk."""
@@ -69,6 +82,8 @@ class Mission:
         ports: Ports,
         *,
         activation_timeout_s: float,
+        failures: Failures | None = None,
+        hold_s: float = 600.0,
     ) -> None:
         self.state = MissionState(name, "waiting", 0, 0.0, revision=model.revision)
         self.records: list[DecisionRecord] = []
@@ -78,7 +93,9 @@ class Mission:
         self._search = search
         self._ports = ports
         self._activation_timeout_s = activation_timeout_s
-        self._lost_in_a_row = 0
+        self._failures = failures or Failures({}, FAILURE_LIMIT)
+        self._hold_s = hold_s
+        self._is_resumed = False
 
     async def run(self) -> MissionState:
         """Decide and act until the mission ends; machine faults end it as `fault` with their text."""
@@ -93,13 +110,16 @@ class Mission:
         if not self.state.ending:
             self._end(Ending.CANCELLED, reason)
 
+    def resume(self) -> None:
+        """Somebody has looked after what the mission holds for."""
+        self._is_resumed = True
+
     async def _run_until_ended(self) -> None:
         belief = await self._model.engine.summary()
         steps_taken = 0
         while not self._ends_with(ending_of_belief(belief, steps_taken, self._limits), belief):
             self._model = await self._ports.newest_model(self._model)
-            self._move_to("planning", steps_taken, belief)
-            plan = await self._search.run(self._model.engine, steps_taken + 1)
+            plan = await self._plan(steps_taken, belief)
             if self._ends_with(ending_after_planning(plan.best, self._limits), belief):
                 return
             steps_taken += 1
@@ -108,6 +128,67 @@ class Mission:
             await self._search.think(self._model.engine, steps_taken, plan.index)
             outcome = await self._act(decision)
             belief = await self._observe(decision, outcome)
+            self._failures.take(decision, outcome)
+            if self._failures.to_end:
+                return self._end(Ending.SKILLS_FAILED, self._failures.to_end)
+            if self._failures.to_hold:
+                await self._hold(self._failures.to_hold, steps_taken, belief, lambda: False)
+
+    async def _plan(self, steps_taken: int, belief: BeliefSummary) -> Plan:
+        """The next decision: for what can be carried out now, and still can be when it is made."""
+        while True:
+            barred = self._barred()
+            retried = self._failures.to_retry
+            if retried is not None and self._model.digest == retried.model_digest:
+                index = self._index_of(retried)
+                if index not in barred:
+                    return await self._repeated(retried, index)
+            if barred and not self._is_something_available():
+                why = "; ".join(sorted(set(self._ports.unavailable.values())))
+                text = f"the mission holds, for no skill can be run: {why}"
+                await self._hold(text, steps_taken, belief, self._is_something_available)
+                continue
+            self._move_to("planning", steps_taken, belief)
+            plan = await self._search.run(self._model.engine, steps_taken + 1, barred)
+            if plan.index not in self._barred():
+                return plan
+
+    def _barred(self) -> list[int]:
+        """The numbers of the actions that nobody could carry out now."""
+        unavailable = self._ports.unavailable
+        actions = self._model.engine.description.actions
+        return [number for number, action in enumerate(actions) if action.skill in unavailable]
+
+    def _is_something_available(self) -> bool:
+        return len(self._barred()) < len(self._model.engine.description.actions)
+
+    def _index_of(self, decision: DecisionRecord) -> int:
+        names = [action.name for action in self._model.engine.description.actions]
+        return names.index(decision.action)
+
+    async def _repeated(self, decision: DecisionRecord, index: int) -> Plan:
+        prediction = await self._model.engine.predict(index)
+        return Plan(
+            index,
+            0,
+            decision.horizon,
+            decision.actions,
+            prediction.predicted,
+            0.0,
+            planner=decision.planner,
+            why=self._failures.retry_text,
+        )
+
+    async def _hold(self, why: str, step: int, belief: BeliefSummary, goes_on: Callable[[], bool]) -> None:
+        """Decides nothing until it goes on by itself or somebody resumes the mission, which has a limit."""
+        ends_at_s = self._ports.clock.monotonic_s() + self._hold_s
+        self._is_resumed = False
+        self._move_to("holding", step, belief, remark=why)
+        while not (self._is_resumed or goes_on()):
+            left_s = ends_at_s - self._ports.clock.monotonic_s()
+            if left_s <= 0:
+                raise AosError(f"{why}; nothing has changed for {self._hold_s:g} s", code="AOS513")
+            await self._ports.until_changed(left_s)
 
     def _decide(self, step: int, plan: Plan, belief: BeliefSummary) -> DecisionRecord:
         chosen = self._model.engine.description.actions[plan.index]
@@ -141,7 +222,7 @@ class Mission:
             ActivationId(decision.mission, decision.epoch, decision.step),
             decision.skill,
             decision.parameters,
-            self._activation_timeout_s,
+            self._failures.rule(decision.skill).timeout_s or self._activation_timeout_s,
             decision.revision,
             self._model.engine.variables_of(decision.action),
         )
@@ -166,23 +247,18 @@ class Mission:
         return update.summary
 
     async def _updated_belief(self, decision: DecisionRecord, outcome: Outcome) -> BeliefUpdate:
-        """The belief after an outcome. Without an answer it is a mixture of "it ran" and "it did not"."""
+        """The belief after an outcome. Without an observation it is the mixture of "it ran" and "it did not";
+        after a refusal it is what it was.
+        """
         engine = self._model.engine
         if outcome.status == "observed":
-            self._lost_in_a_row = 0
+            # An observation that does not come from a mapping has no local variables.
             return await engine.update(
-                decision.action, outcome.response, outcome.local_variables, outcome.numbers
+                decision.action, outcome.response, outcome.local_variables or None, outcome.numbers
             )
-        if outcome.fault is not None and outcome.status == "failed":
-            raise AosError(outcome.fault.message, code=outcome.fault.code, hint=outcome.fault.hint)
-        self._lost_in_a_row += 1
-        if self._lost_in_a_row >= MAX_LOST_ACTIVATIONS:
-            raise AosError(
-                f"{decision.action} and the activations before it brought no answer",
-                code="AOS503",
-                hint="Look at the skill's log, and at its time limit in the deploy file",
-            )
-        return await engine.update_without_observation(decision.action, ran_probability=0.5)
+        if outcome.status == "refused":
+            return BeliefUpdate(0.0, False, await engine.summary())
+        return await engine.update_without_observation(decision.action, ran_probability=RAN_PROBABILITY)
 
     def _publish(self, record: DecisionRecord) -> None:
         self._ports.journal("decision", record)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import msgspec
 
 from aos_solver.child.answers import Plan
@@ -32,8 +34,8 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""
         return self.seed * SEEDS_PER_MISSION + step
 
-    async def run(self, engine: Engine, step: int) -> Plan:
-        """Decide on the engine's belief."""
+    async def run(self, engine: Engine, step: int, barred: Sequence[int] = ()) -> Plan:
+        """Decide on the engine's belief, for none of the actions of these numbers."""
         return await engine.plan(
             simulations=None if self.time_s is not None else self.simulations,
             time_s=self.time_s,
@@ -41,6 +43,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             horizon=self.horizon,
             planner=self.planner,
             threads=self.threads,
+            barred=barred,
         )
 
     async def think(self, engine: Engine, step: int, index: int) -> None:

@@ -8,6 +8,7 @@ background. Whoever starts the mission is told about a model that cannot be buil
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 from pathlib import Path
 
@@ -27,6 +28,7 @@ from aos_protocol.messages import (
     Outcome,
     ProjectQuery,
     ProjectRevision,
+    ResumeMission,
     StartMission,
 )
 from aos_runtime.journal import Journal
@@ -35,6 +37,7 @@ from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
+from aos_solver.failures import Failures
 from aos_solver.hot_plug import ModelShelf, RunningModel
 from aos_solver.mission import Mission
 from aos_solver.search import Search
@@ -87,6 +90,8 @@ class _Solver:
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()
+        self._changed = asyncio.Event()
+        self.unavailable: dict[str, str] = {}
 
     async def run(self) -> None:
         bus, keys = self._bus, self._keys
@@ -95,9 +100,11 @@ class _Solver:
             await bus.answer(keys.mission_state, MissionQuery, self._answer_state)
             await bus.answer(keys.decision_history, HistoryQuery, self._answer_history)
             await bus.answer(keys.check_model, CheckModel, self._check)
+            await bus.answer(keys.resume_mission, ResumeMission, self._resume)
             await self._service.ready()
             tasks.create_task(self._make_current())
             tasks.create_task(self._run_mission())
+            tasks.create_task(self._follow_mappings())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
                     tasks.create_task(self._shelf.make(revision))
@@ -119,6 +126,12 @@ class _Solver:
                 self._running = await self._shelf.first()
             self._search = self._search_by_policy(self._running)
         self._started.set()
+        return self._state()
+
+    async def _resume(self, _: ResumeMission, __: str) -> MissionState:
+        if self._mission is not None:
+            self._mission.resume()
+            self._changed.set()
         return self._state()
 
     async def _answer_state(self, _: MissionQuery, __: str) -> MissionState:
@@ -202,6 +215,8 @@ class _Solver:
             self._search,
             self,
             activation_timeout_s=settings.activation_timeout_s,
+            failures=Failures(settings.skills, settings.failure_limit),
+            hold_s=settings.hold_s,
         )
         await self._await_mappings(self._running.revision)
         state = await self._mission.run()
@@ -210,7 +225,7 @@ class _Solver:
     async def _await_mappings(self, revision: int) -> None:
         """Until the middleware has dealt with a revision, or the deadline; then activations tell."""
         try:
-            await state_when(
+            state = await state_when(
                 self._bus,
                 self._keys.mapping_state,
                 MappingQuery(),
@@ -218,8 +233,27 @@ class _Solver:
                 lambda state: max(state.revision, state.refused) >= revision,
                 timeout_s=MAPPING_DEADLINE_S,
             )
+            self._take_mapping_state(state)
         except AosError as error:
             log.warning("the mission starts without the mappings of revision %d: %s", revision, error)
+
+    async def _follow_mappings(self) -> None:
+        """Which skills can be run, as the middleware tells it."""
+        async with self._bus.listen(self._keys.mapping_state, MappingState) as states:
+            async for _, state in states:
+                self._take_mapping_state(state)
+
+    def _take_mapping_state(self, state: MappingState) -> None:
+        if state.unavailable != self.unavailable:
+            log.info("unavailable skills: %s", state.unavailable or "none")
+        self.unavailable = state.unavailable
+        self._changed.set()
+
+    async def until_changed(self, timeout_s: float) -> None:
+        self._changed.clear()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(timeout_s):
+                await self._changed.wait()
 
     def _next_epoch(self) -> int:
         epoch = 1 + len(self._journal.rows("epoch"))

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import Literal
 
+import msgspec
+
 from aos_runtime.lifecycle import ServiceSettings
+from aos_solver.failures import SkillRule
 
 __all__ = ["Settings"]
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):
-    """The deploy file's `solver:` and `mission:` parts.
+    """The deploy file's `solver:`, `mission:` and `skills:` parts.
 
     The planning budget is `time_s` if given, else `simulations`. `horizon` None takes the environment
     document's. With a `policy` file decisions come from it, without a search. `project` names the documents
@@ -28,6 +31,9 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     step_limit: int = 30
     stop_below_value: float | None = None
     activation_timeout_s: float = 120.0
+    failure_limit: int = 3
+    hold_s: float = 600.0
+    skills: dict[str, SkillRule] = msgspec.field(default_factory=dict)
     planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
     threads: int = 1
     ponder_while_acting: bool = True

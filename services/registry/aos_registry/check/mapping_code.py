@@ -28,6 +28,8 @@ __all__ = ["check_low_level", "check_mapping"]
 
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 _BUILT_IN_NAMES = frozenset(dir(builtins))
+_OF_SKILL = frozenset({"__skill_status", "__skill_error"})
+"""What rules can say of a skill that has failed."""
 
 
 def check_mapping(
@@ -38,7 +40,7 @@ def check_mapping(
     _check_local_names(mapping, findings)
     known = _known_names(mapping)
     for rule in mapping.rules:
-        _check_expression(rule.condition, known, findings)
+        _check_expression(rule.condition, known and known | _OF_SKILL, findings)
         for assignment in rule.assignments:
             made = scope.low_level_types | scope.low_level_names
             _check_expression(assignment.value, known and known | made, findings)

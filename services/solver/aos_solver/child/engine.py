@@ -151,14 +151,18 @@ class Engine:
         horizon: int | None = None,
         planner: Planner = "pomcp",
         threads: int = 1,
+        barred: Sequence[int] = (),
     ) -> Plan:
         """Searches from the current belief within the budget; `horizon` None takes the document's.
+
+        The decision is for none of the actions that are `barred`, which nobody could carry out now.
 
         With the planner `auto` the model's size decides, and the plan says why. POMCP can use
         several threads.
         """
         deadline_s = PLANNING_DEADLINE_S if time_s is None else time_s + ANSWER_DEADLINE_S
         command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}\t{planner}\t{threads}"
+        command = "\t".join((command, *map(str, barred)))
         return await self._ask(command, Plan, deadline_s=deadline_s)
 
     async def think(self, index: int, *, seed: int, time_s: float, threads: int = 1) -> None:

@@ -7,6 +7,7 @@ region, in the header's order, u32 states[states], u32 actions[vectors], f64 val
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Self
@@ -150,7 +151,7 @@ class PolicySearch(Search, frozen=True, kw_only=True):
     async def think(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""
 
-    async def run(self, engine: Engine, step: int) -> Plan:
+    async def run(self, engine: Engine, step: int, barred: Sequence[int] = ()) -> Plan:
         """The policy's action at the engine's belief; PlanningError AOS322 if the policy does not fit.
 
         Where the policy would stop it is the best of the other actions, whose value is then below that of
@@ -160,7 +161,9 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         self.policy.check_model(engine.model_digest)
         choice = self.policy.choose(await engine.export_belief(is_whole=False))
         names = [action.name for action in engine.description.actions]
-        best = int(np.argmax(choice.values[: len(names)]))
+        values = choice.values[: len(names)].copy()
+        values[list(barred)] = -np.inf
+        best = int(np.argmax(values))
         prediction = await engine.predict(best)
         actions = tuple(
             ActionValue(name, float(value), int(plans), 0.0)

@@ -98,7 +98,8 @@ void answer(Engine<Model>& engine, const std::vector<std::string_view>& fields, 
   if (command == "draw_belief") return engine.draw_belief(json);
   if (command == "summary") return engine.summary(json);
   if (command == "plan") {
-    return engine.plan(json, budget_of(fields, 1, 6), large(3), whole(4), planner_of(fields, 5));
+    return engine.plan(json, budget_of(fields, 1, 6), large(3), whole(4), planner_of(fields, 5),
+                       numbers_from<int>(fields, 7));
   }
   if (command == "think") return engine.think(json, budget_of(fields, 1, 5), large(3), whole(4));
   if (command == "count_processor_time") return engine.count_processor_time(json, whole(1) != 0);

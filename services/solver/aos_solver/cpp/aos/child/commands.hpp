@@ -74,7 +74,9 @@ class Engine {
 
   void summary(JsonWriter& json) const { belief_.write_summary(json); }
 
-  void plan(JsonWriter& json, Budget budget, std::uint64_t seed, int horizon, PlannerKind planner) {
+  // `barred_actions` are the numbers of actions that cannot be carried out now.
+  void plan(JsonWriter& json, Budget budget, std::uint64_t seed, int horizon, PlannerKind planner,
+            const std::vector<int>& barred_actions) {
     const auto start = std::chrono::steady_clock::now();
     const auto processor_start = processor_time();
     if (horizon <= 0) horizon = Model::horizon;
@@ -82,9 +84,11 @@ class Engine {
     planned_horizon_ = horizon;
     Sampler random{seed};
     const std::uint64_t known = search_.known_simulations();
-    const std::uint64_t simulations = search_.search(planner, belief_, budget, horizon, random);
+    for (const int action : barred_actions) checked(action);
+    const BarredActions barred{barred_actions};
+    const std::uint64_t simulations = search_.search(planner, belief_, budget, horizon, random, barred);
     const auto estimates = search_.estimates(belief_);
-    const int best = search_.choice(estimates);
+    const int best = search_.choice(estimates, barred);
     json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
     json.member("known_simulations", known);
     const std::string_view name = search_.name();

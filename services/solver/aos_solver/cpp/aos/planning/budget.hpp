@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,22 @@ struct Budget {
   std::uint64_t simulations = 0;  // 0: no limit
   double seconds = 0;             // 0: no limit
   int threads = 1;                // 1 to `most_search_threads`
+};
+
+// Actions that a decision may not take, since nobody could carry them out now. Later decisions may.
+class BarredActions {
+ public:
+  BarredActions() = default;
+  explicit BarredActions(const std::vector<int>& actions) {
+    for (const int action : actions) {
+      if (static_cast<std::size_t>(action) >= is_barred_.size()) is_barred_.resize(static_cast<std::size_t>(action) + 1);
+      is_barred_[static_cast<std::size_t>(action)] = true;
+    }
+  }
+  bool has(std::size_t action) const { return action < is_barred_.size() && is_barred_[action]; }
+
+ private:
+  std::vector<bool> is_barred_;
 };
 
 // An action's value, from how many simulations (0: unknown), the standard error of their mean, and what it earns at once.

@@ -50,7 +50,8 @@ class Despot {
         scenarios_(most_scenario_bytes / scenario_bytes()) {}
 
   // Runs the search and returns how many simulations it took, as budget.hpp counts them.
-  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
+  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+                       const BarredActions& barred = {}) {
     using Seconds = std::chrono::duration<double>;
     // Up to some seconds for the first decision, which no budget counts, and next to nothing later.
     evaluation_.prepare(belief, horizon);
@@ -59,6 +60,7 @@ class Despot {
                   ? PlanningClock::now() + std::chrono::duration_cast<PlanningClock::duration>(Seconds{budget.seconds})
                   : PlanningClock::time_point::max();
     horizon_ = horizon;
+    barred_ = barred;
     steps_ = 0;
     nodes_.clear();
     actions_.clear();
@@ -256,12 +258,14 @@ class Despot {
     double lower = node.default_lower;
     double upper = node.default_lower;
     for (std::size_t a = 0; a < tried_actions(number); ++a) {
+      if (is_barred(number, a)) continue;
       lower = std::max(lower, actions_[node.first_action + a].lower);
       upper = std::max(upper, actions_[node.first_action + a].upper);
     }
     node.lower = lower;
     node.upper = upper;
   }
+  bool is_barred(std::uint32_t number, std::size_t action) const { return number == 0 && barred_.has(action); }
   std::size_t tried_actions(std::uint32_t number) const { return number == 0 ? deviations_.size() : action_count(); }
 
   // --- trials ----------------------------------------------------------------------------------------
@@ -298,11 +302,13 @@ class Despot {
   // By the action with the highest upper bound, the observation with the largest excess.
   std::uint32_t promising_child(std::uint32_t number) {
     const Node& node = nodes_[number];
-    std::uint32_t best = node.first_action;
-    for (std::size_t a = 1; a < tried_actions(number); ++a) {
+    std::uint32_t best = no_node;
+    for (std::size_t a = 0; a < tried_actions(number); ++a) {
       const auto candidate = static_cast<std::uint32_t>(node.first_action + a);
-      if (actions_[candidate].upper > actions_[best].upper) best = candidate;
+      if (is_barred(number, a)) continue;
+      if (best == no_node || actions_[candidate].upper > actions_[best].upper) best = candidate;
     }
+    if (best == no_node) return no_node;
     ++actions_[best].trials;
     std::uint32_t chosen = no_node;
     double most = -std::numeric_limits<double>::infinity();
@@ -342,6 +348,7 @@ class Despot {
   Budget budget_;
   PlanningClock::time_point latest_;
   int horizon_ = 0;
+  BarredActions barred_;
   std::uint64_t steps_ = 0;  // of scenarios
   std::size_t scenario_count_ = 0;
   double origin_ = 0;  // what values are counted from

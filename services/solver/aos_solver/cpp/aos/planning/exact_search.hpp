@@ -1,7 +1,6 @@
 // The exact values of all actions with the horizon's decisions to go, where working them out fits the budget.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -44,9 +43,13 @@ class ExactSearch {
     for (const ExactValue& value : values_) estimates.push_back({value.value, 1, 0});
     return estimates;
   }
-  int best() const {
-    const auto is_worse = [](const ExactValue& left, const ExactValue& right) { return right.is_better_than(left); };
-    return static_cast<int>(std::max_element(values_.begin(), values_.end(), is_worse) - values_.begin());
+  int best(const BarredActions& barred) const {
+    const ExactValue* best = nullptr;
+    for (const ExactValue& value : values_) {
+      if (barred.has(static_cast<std::size_t>(&value - values_.data()))) continue;
+      if (best == nullptr || value.is_better_than(*best)) best = &value;
+    }
+    return best == nullptr ? 0 : static_cast<int>(best - values_.data());
   }
   // Another mission begins, whose tries do not depend on those of others.
   void start_over() { put_off_ = failures_ = 0; }

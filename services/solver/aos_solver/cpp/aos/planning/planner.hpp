@@ -39,18 +39,19 @@ template <class Model>
 class Planner {
  public:
   // See Pomcp, Despot, PointBased and ExactSearch.
-  std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
+  std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+                       const BarredActions& barred = {}) {
     horizon_ = horizon;
     used_ = chosen_kind(kind, belief, budget, horizon);
     switch (used_) {
       case PlannerKind::exact: return exact_.simulations();
-      case PlannerKind::despot: return despot().search(belief, budget, horizon, random);
+      case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred);
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = point_based_.search(budget);
         why_ += "; " + bounds_text(horizon);
         return simulations;
       }
-      default: return pomcp_.search(belief, budget, horizon, random);
+      default: return pomcp_.search(belief, budget, horizon, random, barred);
     }
   }
 
@@ -74,11 +75,17 @@ class Planner {
     }
   }
   // What to do: what is worth most, as far as its value can be believed.
-  int choice(const std::vector<ActionEstimate>& estimates) const {
-    if (used_ == PlannerKind::exact) return exact_.best();
+  int choice(const std::vector<ActionEstimate>& estimates, const BarredActions& barred = {}) const {
+    if (used_ == PlannerKind::exact) return exact_.best(barred);
+    const auto is_barred = [&](const ActionEstimate& estimate) {
+      return barred.has(static_cast<std::size_t>(&estimate - estimates.data()));
+    };
     std::uint32_t most = 0;
-    for (const ActionEstimate& estimate : estimates) most = std::max(most, estimate.n);
+    for (const ActionEstimate& estimate : estimates) {
+      if (!is_barred(estimate)) most = std::max(most, estimate.n);
+    }
     return preferred_action(estimates, horizon_, [&](const ActionEstimate& estimate) {
+      if (is_barred(estimate)) return false;
       return used_ == PlannerKind::pomcp ? is_well_visited(estimate.n, most) : estimate.n > 0;
     });
   }

@@ -61,15 +61,16 @@ class Pomcp {
   Pomcp(const StateSpace<Model>& space, SeenValues<Model>& values) : space_(space), values_(values) {}
 
   // Runs the search and returns how many simulations it took.
-  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
-    return search(belief, budget, horizon, random, -1, [] { return false; });
+  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+                       const BarredActions& barred = {}) {
+    return search(belief, budget, horizon, random, barred, -1, [] { return false; });
   }
 
   // Looks ahead below one action while it is carried out, until `is_over()`, which is asked every millisecond or so.
   template <class IsOver>
   std::uint64_t think_about(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                             IsOver&& is_over) {
-    return search(belief, budget, horizon, random, action, is_over);
+    return search(belief, budget, horizon, random, {}, action, is_over);
   }
 
   // For each action; values are over the whole belief, so that its ended part counts as nothing to gain.
@@ -122,8 +123,8 @@ class Pomcp {
   };
 
   template <class IsOver>
-  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, int first,
-                       IsOver&& is_over) {
+  std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+                       const BarredActions& barred, int first, IsOver&& is_over) {
     const bool has_values = values_.prepare(belief, horizon);
     const SeenValues<Model>* const values = has_values ? &values_ : nullptr;
     const bool may_estimate = !has_values && !Model::has_rollout_policy;
@@ -139,7 +140,7 @@ class Pomcp {
     }
     if (belief.probability_of(Ending::running) <= 0) return 0;
     const std::vector<double> prior = estimates != nullptr ? prior_of(belief, horizon, random) : std::vector<double>{};
-    for (const auto& tree : trees_) tree->begin(horizon, prior);
+    for (const auto& tree : trees_) tree->begin(horizon, prior, barred);
     if (has_values && steps_.prepare(space_, belief)) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
       return simulate_all(start_state, budget, start, random, first, is_over);

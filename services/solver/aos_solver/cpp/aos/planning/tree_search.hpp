@@ -42,9 +42,10 @@ class TreeSearch {
   }
 
   // Begins a decision. `prior` is how much less each action is worth than the best one, as far as can be said before; empty
-  // where nothing can.
-  void begin(int horizon, const std::vector<double>& prior) {
+  // where nothing can. The root's `barred` actions are not tried.
+  void begin(int horizon, const std::vector<double>& prior, const BarredActions& barred) {
     horizon_ = horizon;
+    barred_ = barred;
     prior_ = prior;
     rewards_.assign(action_count(), {});
     lowest_ = std::numeric_limits<double>::infinity();
@@ -59,6 +60,7 @@ class TreeSearch {
     if (++simulations_ % renewal == 0 || simulations_ == settled_visits) renew_spread();
     if (first < 0 && simulations_ % turns == 0) {
       first = static_cast<int>(simulations_ / turns % static_cast<std::uint64_t>(Model::action_count()));
+      if (barred_.has(static_cast<std::size_t>(first))) first = -1;
     }
     const double seen = descend(state, first < 0 ? choose(0) : static_cast<std::uint32_t>(first), random);
     lowest_ = std::min(lowest_, seen);
@@ -89,12 +91,12 @@ class TreeSearch {
   // where they meet, were they as good and as bad as the extremes seen.
   bool is_decided(double more) const {
     const HistoryNode& root = tree_.history(0);
-    if (root.first_action == no_node || root.n < settled_visits) return false;
+    if (root.first_action == no_node || root.n < settled_visits || barred_.has(root.best)) return false;
     const ActionNode* const actions = tree_.actions(root);
     const auto moved = [&](const ActionNode& node, double to) { return (node.n * node.q + more * to) / (node.n + more); };
     const double least = moved(actions[root.best], lowest_);
     for (std::uint32_t a = 0; a < action_count(); ++a) {
-      if (a != root.best && moved(actions[a], highest_) >= least) return false;
+      if (a != root.best && !barred_.has(a) && moved(actions[a], highest_) >= least) return false;
     }
     return true;
   }
@@ -282,6 +284,7 @@ class TreeSearch {
     double best_bound = -std::numeric_limits<double>::infinity();
     for (std::uint32_t a = 0; a < action_count(); ++a) {
       const ActionNode& node = actions[a];
+      if (number == 0 && barred_.has(a)) continue;
       if (node.n == 0 && prior_.empty() && (node.share >= usual_share || number == 0)) return a;
       const double n = std::max<double>(node.n, 1);
       const double squares = (node.squares + prior) * node.share;
@@ -300,6 +303,7 @@ class TreeSearch {
   bool reports_numbers_ = Model::reports_numbers();
   ObservationCells cells_;
   int horizon_ = 0;
+  BarredActions barred_;
   std::vector<Visit> visits_;
   std::vector<double> odds_;
   std::vector<double> prior_;

@@ -1,0 +1,68 @@
+"""Before the first decision: every path that a skill calls has somebody who answers it."""
+
+from __future__ import annotations
+
+from aos_deploy.deploy_file import Deployment
+from aos_deploy.supervisor import Supervisor
+from aos_deploy.typed import nearest
+from aos_protocol.errors import BusError, DeployError
+from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
+from aos_runtime.told_state import state_when
+
+__all__ = ["until_skills_can_run"]
+
+_ASK_S = 5.0
+_MAPPINGS_S = 30.0
+
+
+async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> None:
+    """Returns when all skills of the newest revision can be run.
+
+    DeployError AOS807 names the paths that nobody serves, or two adapters serve, after the time that adapters
+    may take to start; AOS801 a skill that only the deploy file knows.
+    """
+    bus, keys = supervisor.bus, supervisor.keys
+    project = await bus.ask(keys.project, ProjectQuery(deployment.project), ProjectRevision, timeout_s=_ASK_S)
+    known = {skill.name for skill in project.project.skills}
+    for name in deployment.file.skills:
+        if name not in known:
+            raise DeployError(
+                f"`skills:` in {deployment.path} names {name}, which no bundle has", hint=nearest(name, known)
+            )
+    newest: MappingState | None = None
+
+    def is_complete(state: MappingState) -> bool:
+        nonlocal newest
+        newest = state
+        return state.refused >= project.revision or (
+            state.revision >= project.revision and not state.unavailable
+        )
+
+    longest_s = max((plan.kind.ready_s for plan in deployment.adapters), default=_MAPPINGS_S)
+    try:
+        await state_when(
+            bus, keys.mapping_state, MappingQuery(), MappingState, is_complete, timeout_s=longest_s
+        )
+    except BusError as error:
+        if newest is None or not newest.unavailable:
+            raise
+        missing = "; ".join(f"{skill}: {why}" for skill, why in sorted(newest.unavailable.items()))
+        raise DeployError(
+            f"not every skill can be run within {longest_s:g} s: {missing}",
+            code="AOS807",
+            hint=_hint(supervisor, deployment),
+        ) from error
+
+
+def _hint(supervisor: Supervisor, deployment: Deployment) -> str:
+    bound = [f"{path} to {plan.name}" for plan in deployment.adapters for path in plan.bind]
+    bound += [f"all others to {plan.name}" for plan in deployment.adapters if plan.serves_others]
+    lines = [
+        f"The deploy file binds {', '.join(bound)}"
+        if bound
+        else "The deploy file binds nothing: see `bind:`",
+        *(f"{plan.name} is external: start it" for plan in deployment.adapters if not plan.is_process),
+        *(supervisor.look_at_log(plan.name) for plan in deployment.adapters if plan.is_process),
+        "Or play without a robot: aos-up --model",
+    ]
+    return "\n    ".join(lines)

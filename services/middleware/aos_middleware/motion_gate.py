@@ -1,0 +1,78 @@
+"""One motion of the robot at a time, whichever processes move it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from aos_middleware.served_paths import ServedPaths
+from aos_protocol.errors import AosError, LostAnswerError, NobodyAnswersError, SkillError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import ActivationId, Cancel, Cancelled
+from aos_runtime.bus import Bus
+
+__all__ = ["MotionGate"]
+
+CONFIRM_S = 3.0
+"""How long to wait for word that an earlier skill has stopped."""
+
+GONE_S = 1.0
+"""How long the token of a process that does not answer may still be there."""
+
+_log = logging.getLogger("aos.middleware")
+
+
+class MotionGate:
+    """Lets one call through at a time, and none while an earlier one may still be moving."""
+
+    def __init__(self, bus: Bus, keys: Keys, served: ServedPaths) -> None:
+        self._bus = bus
+        self._keys = keys
+        self._served = served
+        self._moving = ""
+        self._doubts: dict[ActivationId, str] = {}
+
+    @contextmanager
+    def passing(self, path: str) -> Iterator[None]:
+        """While the block runs, nothing else may move. SkillError AOS502 if something does."""
+        if self._moving:
+            raise SkillError(
+                f"{path} is refused: {self._moving} is running",
+                code="AOS502",
+                hint="One skill runs at a time",
+            )
+        self._moving = path
+        try:
+            yield
+        finally:
+            self._moving = ""
+
+    def doubt(self, activation: ActivationId, path: str) -> None:
+        """Nobody has said that this call has ended."""
+        self._doubts[activation] = path
+
+    async def confirm(self) -> None:
+        """Returns when everything that was called before stands still; SkillError AOS512 if nobody says so.
+
+        Whoever has left the bus moves nothing any more, as far as can be known.
+        """
+        for activation, path in list(self._doubts.items()):
+            if self._served.servers(path):
+                await self._confirm(activation, path)
+            del self._doubts[activation]
+            _log.info("%s of %s has stopped", path, activation)
+
+    async def _confirm(self, activation: ActivationId, path: str) -> None:
+        cancel = Cancel("another skill is to run", activation)
+        try:
+            await self._bus.ask(self._keys.cancel(path), cancel, Cancelled, timeout_s=CONFIRM_S)
+        except AosError as error:
+            is_gone = isinstance(error, NobodyAnswersError | LostAnswerError)
+            if is_gone and await self._served.has_left(path, GONE_S):
+                return
+            raise SkillError(
+                f"{path} may still be moving: it does not say that it has stopped ({error.message})",
+                code="AOS512",
+                hint="See the log of its adapter; every adapter has to answer cancellations",
+            ) from error

@@ -1,0 +1,79 @@
+"""Which paths can be called: who says by liveliness tokens that it answers them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+
+from aos_protocol.errors import SkillError
+from aos_protocol.keys import Keys, Serving
+from aos_runtime.bus import Bus
+
+__all__ = ["ServedPaths", "no_adapter"]
+
+_log = logging.getLogger("aos.middleware")
+
+
+class ServedPaths:
+    """Kept up to date by `follow`; `on_change` is called after each change."""
+
+    def __init__(self, bus: Bus, keys: Keys, on_change: Callable[[], None]) -> None:
+        self._bus = bus
+        self._keys = keys
+        self._on_change = on_change
+        self._changed = asyncio.Event()
+        self._servers: dict[str, list[Serving]] = {}
+
+    async def follow(self) -> None:
+        """Until the bus closes."""
+        async with self._bus.presence(self._keys.all_serve) as changes:
+            async for key, is_alive in changes:
+                serving = self._keys.serving_of(key)
+                if serving is None:
+                    continue
+                servers = self._servers.setdefault(serving.path, [])
+                servers.append(serving) if is_alive else servers.remove(serving)
+                verb = "serves" if is_alive else "has left"
+                _log.info("%s %s %s", serving.adapter, verb, serving.path)
+                self._changed.set()
+                if not changes.has_items:
+                    self._on_change()
+
+    def servers(self, path: str) -> list[Serving]:
+        """Who answers calls of a path now."""
+        return self._servers.get("/" + path.strip("/"), [])
+
+    def fault(self, path: str) -> SkillError | None:
+        """Why a path cannot be called now: AOS505 if nobody serves it, AOS511 if two do."""
+        servers = self.servers(path)
+        if not servers:
+            return no_adapter(path)
+        if len(servers) > 1:
+            names = " and ".join(f"{each.adapter} {each.version}" for each in servers)
+            return SkillError(
+                f"{path} is served by {names}",
+                code="AOS511",
+                hint="End one of them, or bind it to another path",
+            )
+        return None
+
+    async def has_left(self, path: str, within_s: float) -> bool:
+        """Whether nobody serves a path, now or within a short time."""
+        try:
+            async with asyncio.timeout(within_s):
+                while self.servers(path):
+                    self._changed.clear()
+                    await self._changed.wait()
+        except TimeoutError:
+            return False
+        return True
+
+
+def no_adapter(path: str) -> SkillError:
+    """Nothing was begun."""
+    return SkillError(
+        f"no adapter answers calls of {path}",
+        code="AOS505",
+        hint=f"Name one for {path} under `bind:` in the deploy file, and see that it runs",
+    )

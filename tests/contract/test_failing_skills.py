@@ -1,0 +1,143 @@
+"""Skills that fail: what the rules make of it, what may move next, and what is not used."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import msgspec
+import pytest
+from mapping_documents import skill_of
+from middleware_system import SENSE, System, answering, hang
+
+from aos_protocol.errors import SkillError
+from aos_protocol.messages import Outcome, SkillCall, SkillResult, Stray
+from aos_runtime.journal import Journal
+
+JAMMED = """\
+project: armadillo
+response: jammed
+response_rule: __skill_status == 'failed' and 'jam' in __skill_error
+response: late
+response_rule: __skill_status == 'timed_out'
+response: done
+response_rule: __skill_status == 'succeeded'
+module_activation: skill
+path: /sense
+max_duration: 0.3
+"""
+
+
+async def failing(call: SkillCall) -> dict[str, Any]:
+    raise SkillError("the gripper is jammed" if call.id.step == 1 else "no power", code="AOS510")
+
+
+async def with_mapping(system: System, text: str) -> None:
+    project = system.registry.current.project
+    system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
+    await system.state(system.registry.current.revision)
+
+
+async def test_a_rule_can_tell_how_a_skill_has_failed(system: System) -> None:
+    await with_mapping(system, JAMMED)
+    await system.adapter.serve("/sense", failing)
+    outcome = await system.activate("sense", 1)
+    assert (outcome.status, outcome.response) == ("observed", "jammed")
+    assert outcome.fault is not None
+    assert outcome.fault.message == "the gripper is jammed"
+
+
+async def test_a_failure_that_no_rule_tells_stays_one(system: System) -> None:
+    await with_mapping(system, JAMMED)
+    await system.adapter.serve("/sense", failing)
+    outcome = await system.activate("sense", 2)
+    assert (outcome.status, outcome.response) == ("failed", "")
+    assert outcome.fault is not None
+    assert (outcome.fault.code, outcome.fault.message) == ("AOS510", "no power")
+
+
+async def test_a_rule_can_tell_that_a_skill_was_too_late_or_has_succeeded(system: System) -> None:
+    await with_mapping(system, JAMMED)
+    await system.adapter.serve(
+        "/sense", lambda call: hang(call) if call.id.step == 1 else answering({})(call)
+    )
+    await system.adapter.serve_cancel("/sense")
+    assert (await system.activate("sense", 1)).response == "late"
+    assert (await system.activate("sense", 2)).response == "done"
+
+
+async def test_two_adapters_of_one_path_are_an_error_until_one_of_them_leaves(system: System) -> None:
+    await system.adapter.serve("/sense", answering({}))
+    await system.adapter.announce("/sense", "other")
+    await system.state_when(lambda state: "is served by" in state.unavailable.get("sense", ""))
+    outcome = await system.activate("sense", 1)
+    assert_refused(outcome, "AOS511", "/sense is served by scripted 1 and other 1")
+    system.adapter.withdraw("/sense", "other")
+    await system.state_when(lambda state: "sense" not in state.unavailable)
+    assert (await system.activate("sense", 2)).status == "observed"
+
+
+async def test_an_adapter_that_leaves_makes_its_skills_unavailable(system: System) -> None:
+    await system.adapter.serve("/sense", answering({}))
+    await system.state_when(lambda state: "sense" not in state.unavailable)
+    system.adapter.withdraw("/sense")
+    state = await system.state_when(lambda state: "sense" in state.unavailable)
+    assert state.unavailable["sense"] == "no adapter answers calls of /sense"
+
+
+async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -> None:
+    is_still = asyncio.Event()
+
+    async def sense(call: SkillCall) -> dict[str, Any]:
+        return await hang(call) if call.id.step == 1 else {}
+
+    await system.adapter.serve("/sense", sense)
+    await system.adapter.serve_cancel("/sense", is_still)
+    assert (await system.activate("sense", 1)).status == "timed_out"
+    system.adapter.is_cancelled.clear()
+    waiting = asyncio.create_task(system.activate("sense", 2))
+    await system.adapter.is_cancelled.wait()
+    assert [call.id.step for call in system.adapter.calls] == [1]
+    is_still.set()
+    assert (await waiting).status == "observed"
+
+
+async def test_an_adapter_that_cannot_be_cancelled_is_not_called_again(system: System) -> None:
+    await system.adapter.serve("/sense", hang)
+    assert (await system.activate("sense", 1)).status == "timed_out"
+    assert_refused(await system.activate("sense", 2), "AOS512", "/sense may still be moving")
+
+
+@pytest.mark.parametrize("kind", ["late", "foreign"])
+async def test_a_late_reply_and_one_for_another_id_are_kept_and_not_used(system: System, kind: str) -> None:
+    is_over = asyncio.Event()
+
+    async def sense(call: SkillCall) -> dict[str, Any]:
+        if kind == "late" and call.id.step == 1:
+            await is_over.wait()
+        return {}
+
+    def for_another(result: SkillResult) -> SkillResult:
+        other = msgspec.structs.replace(result.id, mission="another")
+        return (
+            msgspec.structs.replace(result, id=other) if kind == "foreign" and result.id.step == 1 else result
+        )
+
+    await with_mapping(system, SENSE)
+    await system.adapter.serve("/sense", sense, for_another)
+    await system.adapter.serve_cancel("/sense")
+    outcome = await system.activate("sense", 1)
+    assert outcome.status == ("timed_out" if kind == "late" else "unknown")
+    is_over.set()
+    await system.logged(f"a {kind} reply")
+    assert (await system.activate("sense", 2)).status == "observed"
+    with Journal.read(system.run_dir / "middleware.db") as journal:
+        (stray,) = [msgspec.json.decode(row.payload, type=Stray) for row in journal.rows("stray")]
+    assert (stray.id, stray.kind, stray.path) == (outcome.id, kind, "/sense")
+
+
+def assert_refused(outcome: Outcome, code: str, text: str) -> None:
+    assert outcome.status == "refused"
+    assert outcome.fault is not None
+    assert outcome.fault.code == code
+    assert text in outcome.fault.message
