@@ -47,6 +47,7 @@ _KINDS = {
         adapter="aos_skills.pybullet.adapter:PybulletAdapter",
         value="world",
         start_s=60.0,
+        ready_s=1.0,  # It serves its paths before it says that it is ready.
         stop_s=20.0,  # It makes the mission's picture while it stops.
         restarts=0,  # Its world would begin anew.
         needs="pybullet",

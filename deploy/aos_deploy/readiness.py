@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.supervisor import Supervisor
-from aos_deploy.typed import nearest
+from aos_deploy.typed import known_names
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
 from aos_runtime.told_state import state_when
@@ -12,7 +12,7 @@ from aos_runtime.told_state import state_when
 __all__ = ["until_skills_can_run"]
 
 _ASK_S = 5.0
-_MAPPINGS_S = 30.0
+_NOBODY_S = 1.0
 
 
 async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> None:
@@ -27,7 +27,7 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
     for name in deployment.file.skills:
         if name not in known:
             raise DeployError(
-                f"`skills:` in {deployment.path} names {name}, which no bundle has", hint=nearest(name, known)
+                f"`skills:` in {deployment.path} names {name}, which no bundle has", hint=known_names(known)
             )
     newest: MappingState | None = None
 
@@ -38,7 +38,7 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
             state.revision >= project.revision and not state.unavailable
         )
 
-    longest_s = max((plan.kind.ready_s for plan in deployment.adapters), default=_MAPPINGS_S)
+    longest_s = max((plan.kind.ready_s for plan in deployment.adapters), default=_NOBODY_S)
     try:
         await state_when(
             bus, keys.mapping_state, MappingQuery(), MappingState, is_complete, timeout_s=longest_s

@@ -258,7 +258,17 @@ def refused(deploy_file: Path, text: str, *options: str) -> Refused:
 def test_an_unknown_key_is_named(deploy_file: Path) -> None:
     result = refused(deploy_file, deploy_file.read_text() + "wrold: x\n")
     assert result.status == 1
-    assert "error[AOS102]: unknown key wrold. Did you mean world?" in result.text
+    assert "error[AOS102]: unknown key wrold. Did you mean `world`?" in result.text
+
+
+def test_a_path_that_nobody_serves_ends_the_start_and_is_named(deploy_file: Path) -> None:
+    text = deploy_file.read_text()
+    assert "  /serve: pybullet\n" in text
+    result = refused(deploy_file, text.replace("  /serve: pybullet\n", ""))
+    assert result.status == 3
+    assert "AOS807: not every skill can be run within 1 s: serve: no adapter answers" in result.text
+    assert "The deploy file binds /navigate to pybullet, " in result.text
+    assert "aos-up --model" in result.text
 
 
 def test_a_missing_deploy_file_is_named(tmp_path: Path) -> None:

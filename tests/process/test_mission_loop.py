@@ -118,7 +118,7 @@ async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(fine
 async def test_a_robot_that_never_answers_ends_the_mission_with_what_to_look_at(finer: BuiltModel) -> None:
     state, around = await run_mission(finer, timed_out)
     assert (state.phase, state.ending) == ("ended", "skills_failed")
-    assert state.remark.startswith("3 activations in a row brought no observation, the last navigate(")
+    assert state.remark.startswith("3 activations in a row brought no observation, the last ")
     assert "AOS503: the skill took longer than it may" in state.remark
     assert sum(kind == "intended" for kind, _ in around.journalled) == FAILURE_LIMIT
 

@@ -29,6 +29,7 @@ class BarredActions {
       is_barred_[static_cast<std::size_t>(action)] = true;
     }
   }
+  bool operator==(const BarredActions&) const = default;
   bool has(std::size_t action) const { return action < is_barred_.size() && is_barred_[action]; }
 
  private:

@@ -41,6 +41,9 @@ class Planner {
   // See Pomcp, Despot, PointBased and ExactSearch.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {
+    // What was barred has few visits in the tree, and would go on to be passed over.
+    if (barred != barred_) forget();
+    barred_ = barred;
     horizon_ = horizon;
     used_ = chosen_kind(kind, belief, budget, horizon);
     switch (used_) {
@@ -174,7 +177,8 @@ class Planner {
   PointBased<Model> point_based_{space_};
   std::unique_ptr<Despot<Model>> despot_;
   PlannerKind used_ = PlannerKind::pomcp;
-  int horizon_ = 1;  // of the last search
+  int horizon_ = 1;  // of the last search, and
+  BarredActions barred_;
   std::string why_;
 };
 

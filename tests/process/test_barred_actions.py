@@ -1,0 +1,24 @@
+"""Actions that nobody could carry out now are not decided for, whichever planner decides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_bundle, engine_of
+
+from aos_solver.child.engine import Planner
+
+
+@pytest.mark.parametrize("planner", ["pomcp", "despot", "sarsop", "auto"])
+async def test_a_barred_action_is_never_the_decision(
+    bundles: Path, cache_dir: Path, planner: Planner
+) -> None:
+    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+        barred: list[int] = []
+        while len(barred) < 4:
+            plan = await engine.plan(simulations=2000, seed=1, planner=planner, barred=barred)
+            assert plan.index not in barred
+            barred.append(plan.index)
+        # Nothing of it stays: the next decision is free again.
+        assert (await engine.plan(simulations=2000, seed=1, planner=planner)).index == barred[0]
