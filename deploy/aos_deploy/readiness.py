@@ -7,7 +7,7 @@ from aos_deploy.supervisor import Supervisor
 from aos_deploy.typed import known_names
 from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import MappingQuery, MappingState, ProjectQuery, ProjectRevision
-from aos_runtime.told_state import state_when
+from aos_runtime.reported_state import state_when
 
 __all__ = ["until_skills_can_run"]
 
