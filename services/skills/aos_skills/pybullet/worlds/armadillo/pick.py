@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from aos_skills.pybullet.parts.arm import TUCKED
+from aos_skills.pybullet.robots.mobile_arm.grasp import SHOULDER_AHEAD_M, grasp_from_above
 from aos_skills.pybullet.worlds.armadillo.room import TABLE_TOP_M
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 
@@ -13,7 +14,6 @@ __all__ = ["can_in_reach", "pick"]
 
 STRETCHED = (0.0, 0.75, 0.0, -0.75, 0.0, 1.5, 0.785)
 """Arm joint angles in radians of an arm that did not return."""
-SHOULDER_AHEAD_M = 0.25
 REACH_M = 0.8
 LOWEST_GRASP_M = 0.008
 """Lower, the finger tips stand on the table and do not close."""
@@ -36,10 +36,7 @@ def pick(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
     x, y, height = _perceived(world, can)
     above = TABLE_TOP_M + LIFT_M
     grasp = TABLE_TOP_M + max(height, LOWEST_GRASP_M)
-    robot.arm.move_tip((x, y, above))
-    robot.arm.move_tip((x, y, grasp), speed_m_s=0.15)
-    robot.gripper.close()
-    robot.arm.move_tip((x, y, above))
+    grasp_from_above(robot, (x, y, grasp), above)
     if world.is_holding and world.faults.draw("the arm stays out", world.file.faults.arm_stays_out):
         robot.arm.move(STRETCHED)
         return {"success": False}

@@ -1,0 +1,39 @@
+"""The form of the clean lab's world files."""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_skills.pybullet.parts.place import Place
+
+__all__ = ["CleanLabFile", "FaultModel"]
+
+
+class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Noise as a standard deviation in metres, faults as probabilities: a cup that glare hides, a cup that is
+    seen where none is, and a cup that is perceived where there is nothing to grasp.
+    """
+
+    pose_noise_m: float = 0.0
+    glare: float = 0.0
+    ghost: float = 0.0
+    misplaced: float = 0.0
+
+
+class CleanLabFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Stations and bins by name: where the robot stands in front of each. `groups` are sets of stations with
+    cups on different ones.
+    """
+
+    robot: Place
+    stations: dict[str, Place]
+    bins: dict[str, Place]
+    groups: list[Group]
+    faults: FaultModel = FaultModel()
+
+
+class Group(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """`cups` of them stand on as many of these stations."""
+
+    stations: list[str]
+    cups: int

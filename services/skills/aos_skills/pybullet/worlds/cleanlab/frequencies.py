@@ -1,0 +1,48 @@
+"""How often a pick ends how: `python -m aos_skills.pybullet.worlds.cleanlab.frequencies FILE.yaml 60`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from pathlib import Path
+
+from aos_skills.pybullet.world_file import load_world_file
+from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
+from aos_skills.pybullet.worlds.cleanlab.navigate import navigate
+from aos_skills.pybullet.worlds.cleanlab.pick import pick
+from aos_skills.pybullet.worlds.cleanlab.world import CleanLab
+
+OUTCOMES = ("held", "missed", "lost")
+
+
+def outcome_of_pick(file: CleanLabFile, seed: int) -> str:
+    """One pick of the first cup in a fresh laboratory: one of OUTCOMES; a missed cup still stands."""
+    world = CleanLab(file, seed)
+    place = file.stations[next(iter(world.cups))]
+    world.begin()
+    navigate(world, {"x": place.x, "y": place.y, "yaw": place.yaw})
+    world.begin()
+    pick(world, {})
+    outcome = "held" if world.held_cup else "missed" if world.cup_in_reach() is not None else "lost"
+    world.scene.close()
+    return outcome
+
+
+def main() -> None:
+    """Prints the share of each outcome, and says on stderr how far it is."""
+    parser = argparse.ArgumentParser(prog="frequencies", description=main.__doc__)
+    parser.add_argument("world", type=Path)
+    parser.add_argument("picks", type=int, nargs="?", default=60)
+    options = parser.parse_args()
+    file: CleanLabFile = load_world_file(options.world).room
+    counts: Counter[str] = Counter()
+    for number in range(options.picks):
+        counts[outcome_of_pick(file, number)] += 1
+        sys.stderr.write(f"\r{number + 1} of {options.picks} picks")
+    shares = ", ".join(f"{outcome} {counts[outcome] / options.picks:.2f}" for outcome in OUTCOMES)
+    sys.stdout.write(f"\n{options.picks} picks: {shares}\n")
+
+
+if __name__ == "__main__":
+    main()

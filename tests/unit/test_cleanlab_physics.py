@@ -1,0 +1,80 @@
+"""The simulated laboratory: cups are seen in pictures, grasped, and dropped into bins."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+from aos_skills.pybullet.parts.place import Place
+from aos_skills.pybullet.world_file import load_world_file
+from aos_skills.pybullet.worlds.cleanlab import KIND
+from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile, FaultModel
+from aos_skills.pybullet.worlds.cleanlab.world import CleanLab, filled_stations
+
+pytestmark = pytest.mark.physics
+
+
+@pytest.fixture
+def file(root: Path) -> CleanLabFile:
+    """The shipped laboratory, without faults."""
+    room: CleanLabFile = load_world_file(root / "deploy/worlds/cleanlab.yaml").room
+    return msgspec.structs.replace(room, faults=FaultModel())
+
+
+def call(world: CleanLab, path: str, fields: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Runs a skill to its end, as the adapter does."""
+    world.begin()
+    answer = KIND.skills[path](world, fields or {})
+    world.stop()
+    return answer
+
+
+def go(world: CleanLab, place: Place) -> None:
+    assert call(world, "/navigate", {"x": place.x, "y": place.y, "yaw": place.yaw})["success"]
+
+
+def at_station(file: CleanLabFile, name: str) -> CleanLabFile:
+    """The robot stands there from the beginning."""
+    return msgspec.structs.replace(file, robot=file.stations[name])
+
+
+def test_a_cup_is_seen_picked_and_taken_to_a_bin(file: CleanLabFile) -> None:
+    name = filled_stations(file, 1)[0]
+    world = CleanLab(at_station(file, name), 1)
+    assert call(world, "/look") == {"is_there": True}
+    call(world, "/pick")
+    assert world.held_cup == name
+    assert world.sensors()["/gripper"]["gap_m"] > 0.01
+    go(world, file.bins["left"])
+    assert world.held_cup == name
+    call(world, "/release")
+    assert world.held_cup is None
+    assert world.binned() == [name]
+
+
+def test_at_an_empty_station_nothing_is_seen_and_nothing_picked(file: CleanLabFile) -> None:
+    empty = next(name for name in file.stations if name not in filled_stations(file, 1))
+    world = CleanLab(at_station(file, empty), 1)
+    assert call(world, "/look") == {"is_there": False}
+    call(world, "/pick")
+    assert world.held_cup is None
+    assert world.sensors()["/gripper"]["gap_m"] < 0.01
+
+
+def test_glare_hides_a_cup_and_a_ghost_shows_one(file: CleanLabFile) -> None:
+    faulty = msgspec.structs.replace(file, faults=FaultModel(glare=1.0, ghost=1.0))
+    name = filled_stations(file, 1)[0]
+    empty = next(station for station in file.stations if station not in filled_stations(file, 1))
+    assert call(CleanLab(at_station(faulty, name), 1), "/look") == {"is_there": False}
+    assert call(CleanLab(at_station(faulty, empty), 1), "/look") == {"is_there": True}
+
+
+def test_cups_stand_on_different_stations_of_each_side(file: CleanLabFile) -> None:
+    drawn = {tuple(sorted(filled_stations(file, seed))) for seed in range(20)}
+    assert len(drawn) > 5
+    for names in drawn:
+        assert len([name for name in names if name in ("s1", "s2", "s3")]) == 2
+        assert len(names) == 4
