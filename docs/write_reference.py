@@ -1,8 +1,8 @@
-"""Writes what follows from the sources: errors.md, words.md, the schemas, and the tables of protocol.md.
+"""Writes what follows from the sources: errors.md, words.md, schemas, tables of protocol.md and limits.md.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
-not). In protocol.md the text between `<!-- generated: NAME -->` and `<!-- end -->` is replaced, the rest is
-written by hand.
+not). In the latter two the text between `<!-- generated: NAME -->` and `<!-- end -->` is replaced; the rest
+is written by hand.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+
+from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.language_server.meanings import BUILT_INS, SECTIONS
@@ -131,19 +133,20 @@ def words_page() -> str:
 # --- pages ---------------------------------------------------------------------------------------------
 
 
-def protocol_page(current: str) -> str:
+def with_generated_parts(current: str) -> str:
     """The page with its generated parts renewed."""
-    parts = {"keys": key_table, "messages": message_sections}
+    parts = {"keys": key_table, "messages": message_sections, "limits": limits_table}
     return GENERATED.sub(lambda match: f"{match[1]}\n{parts[match[2]]()}\n{match[3]}", current)
 
 
 def pages() -> dict[Path, str]:
     """The text that each page should have."""
-    protocol = DOCS / "protocol.md"
+    protocol, limits = DOCS / "protocol.md", DOCS / "limits.md"
     return {
         DOCS / "errors.md": errors_page(),
         DOCS / "words.md": words_page(),
-        protocol: protocol_page(protocol.read_text(encoding="utf-8")),
+        protocol: with_generated_parts(protocol.read_text(encoding="utf-8")),
+        limits: with_generated_parts(limits.read_text(encoding="utf-8")),
         **{
             DOCS / "schemas" / f"{name}.json": json.dumps(schema(), indent=2) + "\n"
             for name, schema in SCHEMAS.items()

@@ -9,7 +9,6 @@ import sys
 import tomllib
 from pathlib import Path
 
-import msgspec
 import pytest
 from packaging.requirements import Requirement
 
@@ -116,21 +115,14 @@ def test_every_decision_is_listed(root: Path) -> None:
     assert listed == sorted(path.name for path in folder.glob("[0-9]*.md"))
 
 
-def test_the_table_of_deadlines_has_the_values_of_the_sources(root: Path) -> None:
-    table = (root / "docs" / "architecture.md").read_text(encoding="utf-8")
-    rows = re.findall(r"\| ([\d.]+) \| `(aos_[\w.]+)` \|", table)
-    assert rows
-    for seconds, place in rows:
-        assert value_at(place) == float(seconds), place
-
-
-def value_at(place: str) -> object:
-    """The value of `module.CONSTANT`, or the default of `module.Struct.field`."""
-    parts = place.split(".")
-    if parts[-2][0].isupper():
-        struct = getattr(importlib.import_module(".".join(parts[:-2])), parts[-2])
-        return next(field.default for field in msgspec.structs.fields(struct) if field.name == parts[-1])
-    return getattr(importlib.import_module(".".join(parts[:-1])), parts[-1])
+def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(root / "docs")
+    table = importlib.import_module("limits_table")
+    assert table.value_at("aos_runtime.bus_config.LEASE_S") == 2.0
+    assert table.value_at("planning/state_space.hpp:states") == 400_000
+    for place in ("aos_runtime.bus_config.LEASES", "planning/state_space.hpp:stats", "aos_x.y.Z"):
+        with pytest.raises(AttributeError, match="any more"):
+            table.value_at(place)
 
 
 def test_the_changelog_knows_the_version(root: Path) -> None:

@@ -28,6 +28,8 @@ Family = str
 
 _OLDEST = {"gcc": 11, "clang": 15}
 _VERSION_TIMEOUT_S = 30.0
+DEADLINE_S = 90.0
+ZIG_DEADLINE_S = 600.0
 _HINT = f"Install g++ 11 or newer (apt install g++), or the `ziglang` wheel ({pip_install('compiler')})"
 
 
@@ -90,7 +92,7 @@ class Compiler(msgspec.Struct, frozen=True):
     @property
     def deadline_s(self) -> float:
         """How long one command may take; zig builds its C++ library when it links for the first time."""
-        return 600.0 if self.family == "zig" else 90.0
+        return ZIG_DEADLINE_S if self.family == "zig" else DEADLINE_S
 
 
 async def find_compiler(environment: Mapping[str, str] = os.environ) -> Compiler:
