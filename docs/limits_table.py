@@ -129,8 +129,12 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "outcome `timed_out`", "`mission.activation_timeout_s`, `max_duration`",
         ),
         Row(
-            "activations in a row that nobody answers",
-            "aos_solver.mission.MAX_LOST_ACTIVATIONS", "", "ending `fault`",
+            "activations in a row that brought no observation",
+            "aos_deploy.deploy_file.MissionPart.failure_limit", "", "ending `fault`", "`mission.failure_limit`",
+        ),
+        Row(
+            "holding, when no skill can be run or a person is waited for",
+            "aos_deploy.deploy_file.MissionPart.hold_s", "s", "AOS513", "`mission.hold_s`",
         ),
         Row(
             "solver waits for an activation longer than the activation's own limit",
