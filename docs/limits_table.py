@@ -130,7 +130,8 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
         Row(
             "activations in a row that brought no observation",
-            "aos_deploy.deploy_file.MissionPart.failure_limit", "", "ending `fault`", "`mission.failure_limit`",
+            "aos_deploy.deploy_file.MissionPart.failure_limit", "",
+            "ending `fault`", "`mission.failure_limit`",
         ),
         Row(
             "holding, when no skill can be run or a person is waited for",
