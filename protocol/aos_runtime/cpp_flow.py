@@ -7,6 +7,7 @@ leads from to what is used has an effect on nothing.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 import msgspec
@@ -45,10 +46,16 @@ class Flow(msgspec.Struct, frozen=True):
 
 
 class Flows(msgspec.Struct, frozen=True):
-    """All of a snippet. `is_opaque`: the text cannot be read, so that everything may be used."""
+    """All of a snippet. `is_opaque`: the text cannot be read, so that everything may be used.
+
+    `looped` decides how often a loop runs. `draws` stand for what the snippet's draws give, in the order of
+    the text; each is a name of its own among the sources.
+    """
 
     flows: tuple[Flow, ...] = ()
     used: frozenset[Name] = frozenset()
+    looped: frozenset[Name] = frozenset()
+    draws: tuple[Name, ...] = ()
     is_opaque: bool = False
 
 
@@ -62,7 +69,13 @@ def flows_of(cpp: Cpp) -> Flows:
         return Flows(is_opaque=True)
     reading = _Reading()
     reading.statement(root.children[0].child_by_field_name("body"), frozenset(), None)
-    return Flows(tuple(reading.flows), frozenset(reading.used))
+    draws = sorted(part.start_byte for part in _below(root) if is_draw(part))
+    return Flows(
+        tuple(reading.flows),
+        frozenset(reading.used),
+        frozenset(reading.looped),
+        tuple(map(_name_of_draw, draws)),
+    )
 
 
 _Control = frozenset[Name]
@@ -78,6 +91,7 @@ class _Reading:
     def __init__(self) -> None:
         self.flows: list[Flow] = []
         self.used: set[Name] = set()
+        self.looped: set[Name] = set()
 
     def statement(
         self, node: tree_sitter.Node | None, control: _Control, switch_control: _Control | None
@@ -97,7 +111,7 @@ class _Reading:
             self.statement(node.child_by_field_name("consequence"), inner, switch_control)
             self.statement(node.child_by_field_name("alternative"), inner, switch_control)
         elif node.type in ("while_statement", "do_statement"):
-            inner = self._condition(node.child_by_field_name("condition"), control)
+            inner = self._loop_condition(node.child_by_field_name("condition"), control)
             self.statement(node.child_by_field_name("body"), inner, None)
         elif node.type == "for_statement":
             self._for(node, control)
@@ -127,13 +141,18 @@ class _Reading:
         self._no_effects(node, control)
         return control | names_in(node)
 
+    def _loop_condition(self, node: tree_sitter.Node | None, control: _Control) -> _Control:
+        inner = self._condition(node, control)
+        self.looped |= inner
+        return inner
+
     def _for(self, node: tree_sitter.Node, control: _Control) -> None:
         first = node.child_by_field_name("initializer")
         if first is not None and first.type == "declaration":
             self._declaration(first, control)
         elif first is not None:
             self._expression(first, control)
-        inner = self._condition(node.child_by_field_name("condition"), control)
+        inner = self._loop_condition(node.child_by_field_name("condition"), control)
         update = node.child_by_field_name("update")
         if update is not None:
             self._expression(update, inner)
@@ -147,6 +166,7 @@ class _Reading:
             return
         self._no_effects(whole, control)
         inner = control | names_in(whole)
+        self.looped |= inner
         self._declare(declarator, inner, is_handle="reference" in declarator.type, of=names_in(whole))
         self.statement(node.child_by_field_name("body"), inner, None)
 
@@ -223,6 +243,7 @@ _WITHOUT_EFFECT = frozenset(
 _NESTED = frozenset({"compound_statement", "else_clause", "labeled_statement", "init_statement"})
 _HANDLE_DECLARATORS = frozenset({"reference_declarator", "pointer_declarator"})
 _DRAWS = frozenset({"Bernoulli", "IsInitialized", "SampleDiscrete", "SampleNormal", "SampleUniform"})
+_DRAW = re.compile(r"AOS(?:Utils)?\s*(?:\.|::)\s*(?:Bernoulli|SampleDiscrete|SampleNormal|SampleUniform)")
 _EFFECTS = frozenset({
     "assignment_expression", "update_expression", "lambda_expression", "new_expression", "delete_expression",
     "co_await_expression", "throw_statement",
@@ -246,7 +267,19 @@ def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
         elif part.type == "qualified_identifier":
             waiting += [child for child in part.named_children if child.type == "template_function"]
         else:
+            if is_draw(part):
+                yield _name_of_draw(part.start_byte)
             waiting += part.named_children
+
+
+def is_draw(node: tree_sitter.Node) -> bool:
+    """Whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or `AOSUtils::SampleDiscrete(w)`."""
+    function = node.child_by_field_name("function") if node.type == "call_expression" else None
+    return function is not None and _DRAW.fullmatch(_text(function)) is not None
+
+
+def _name_of_draw(start_byte: int) -> Name:
+    return Name(f"draw {start_byte}")
 
 
 def _of_state(node: tree_sitter.Node) -> Name | None:

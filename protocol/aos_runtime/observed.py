@@ -105,12 +105,16 @@ def _report_or_misuse(mention: Mention, cpp: Cpp, code: str) -> Report | Misuse:
         hint = f"There are numbers and arrays of them. {_to_write(f'{name}[i]')}"
         return Misuse(mention.extent, f"`{mention.text}` is no number", hint)
     for call in cpp.calls:
-        is_draw = len(call.name) == 2 and call.name[0] in ("AOS", "AOSUtils") and call.name[1] in _DRAWS
-        if is_draw and call.extent.start == reported.start and call.extent.end == reported.end:
+        if is_draw(call) and call.extent.start == reported.start and call.extent.end == reported.end:
             return Report(mention, call)
     message = f"`{mention.text}` is not reported straight from one draw, so its density is not known"
     hint = "Write the draw alone, arithmetic within its arguments, and a statement for each case"
     return Misuse(reported, message, f"{hint}: {_example(name)}")
+
+
+def is_draw(call: Call) -> bool:
+    """Whether it is a call such as `AOS.Bernoulli(p)`."""
+    return len(call.name) == 2 and call.name[0] in ("AOS", "AOSUtils") and call.name[1] in _DRAWS
 
 
 def _to_write(name: str) -> str:

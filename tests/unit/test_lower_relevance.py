@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 from scripted_models import bundle_project, mapping_text, text_project
 
-from aos_solver.emission.lower_relevance import irrelevant_variables
+from aos_solver.emission.lower_relevance import irrelevant_variables, sensing_draws
 
 HOME = """project: test
 horizon: 3
@@ -109,3 +110,50 @@ def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody(bundles: Pat
     project = bundle_project(bundles / "bench" / "rocksample-7-8")
     assert {"worth", "unsampled", "promising", "looking_good"} <= irrelevant_variables(project)
     assert not {"x", "y", "is_good", "has_left"} & irrelevant_variables(project)
+
+
+def shaping(act: str) -> list[bool]:
+    """Of each draw of a dynamic model, in order, whether it is known to shape only what is observed."""
+    project = text_project(
+        {
+            "home.ef": HOME,
+            "act.sd": f"project: test\ndynamic_model:\n{act}\n",
+            "act.am": mapping_text("done"),
+        }
+    )
+    (snippet,) = [part.code for part in project.skills[0].model.dynamic_model if part.code is not None]
+    starts = sensing_draws(project)[snippet]
+    return [at.start() in starts for at in re.finditer(r"AOS(Utils::|\.)", snippet.code)]
+
+
+NOISE = "state__.level = state.level; if (AOS.Bernoulli(0.2)) __moduleResponse = done;"
+
+
+@pytest.mark.parametrize(
+    ("act", "expected"),
+    [
+        (NOISE, [True]),
+        ("__moduleResponseStr = to_string(int(AOS.SampleNormal(state.level, 2)));", [True]),
+        (
+            "double noise = AOS.SampleNormal(0, 1); int heard = int(noise); __moduleResponseStr += heard;",
+            [True],
+        ),
+        ("if (AOS.Bernoulli(0.5)) __moduleResponse = AOSUtils::SampleDiscrete({0.5, 0.5});", [True, True]),
+        ("int known = AOS.SampleDiscrete({0.5, 0.5}); state__.known = known;", [True]),
+        ("if (AOS.Bernoulli(0.5)) state__.level++; __moduleResponse = AOS.Bernoulli(0.1);", [False, True]),
+        ("__moduleResponse = AOS.Bernoulli(0.5); state__.level += __moduleResponse;", [False]),
+        ("bool seen = AOS.Bernoulli(0.5); __reward = seen ? 1 : 0;", [False]),
+        ("bool seen = AOS.Bernoulli(0.5); while (seen) __moduleResponse = done;", [False]),
+        ("double x; do { x = AOS.SampleNormal(0, 1); } while (x < 0); __moduleResponse = int(x);", [False]),
+        ("int n = AOS.SampleDiscrete({0.5, 0.5}); for (int i = 0; i < n; i++) state__.known = 1;", [False]),
+        ("if (AOS.Bernoulli(0.5)) return; __moduleResponse = done;", [False]),
+        ("int* level = &state__.level; *level = AOS.Bernoulli(0.5);", [False]),
+        ("state__.level = state.row[AOS.Bernoulli(0.5)];", [False]),
+        ("std::vector<int> v{1}; v.push_back(AOS.Bernoulli(0.5)); state__.level = v.back();", [False]),
+        ("auto f = [&] { return AOS.Bernoulli(0.5); }; state__.level = f();", [False]),
+    ],
+)
+def test_a_draw_shapes_only_observations_where_nothing_else_can_depend_on_it(
+    act: str, expected: list[bool]
+) -> None:
+    assert shaping(act) == expected

@@ -22,7 +22,7 @@ def rewritten(code: str) -> str:
 def piece_of(code: str) -> Piece:
     origins = tuple(Span("a.sd", number, 1) for number in range(10, 11 + code.count("\n")))
     snippet = Snippet(code, origins)
-    return Piece(1, snippet, *rewrite(snippet, read_cpp(code), NAMES))
+    return Piece(1, snippet, *rewrite(read_cpp(code), NAMES, ()))
 
 
 @pytest.mark.parametrize(

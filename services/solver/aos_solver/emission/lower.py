@@ -28,7 +28,7 @@ from aos_solver.emission.lower_code import (
 )
 from aos_solver.emission.lower_copies import copies_of
 from aos_solver.emission.lower_names import check_names
-from aos_solver.emission.lower_relevance import irrelevant_variables
+from aos_solver.emission.lower_relevance import irrelevant_variables, sensing_draws
 from aos_solver.emission.lower_state import (
     capacities_of,
     lower_compounds,
@@ -68,7 +68,7 @@ class _Lowering:
         self._types = Types(
             environment.enums, environment.compounds, member_names(project), capacities_of(project), findings
         )
-        self._pieces = Pieces(findings)
+        self._pieces = Pieces(findings, sensing_draws(project))
         self._code = SectionLowering(
             self._types,
             self._pieces,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
@@ -74,10 +74,12 @@ def skill_sections(model: SkillModel) -> Iterator[tuple[Phase, tuple[Assignment,
 class Pieces:
     """Makes pieces and numbers them; refuses code that could leave its function or cannot be replayed."""
 
-    def __init__(self, findings: Findings) -> None:
+    def __init__(self, findings: Findings, sensing: Mapping[Snippet, frozenset[int]]) -> None:
+        """`sensing`: the draws that only shape what is observed."""
         self.made: list[Piece] = []
         self.identifiers: set[str] = set()
         self._findings = findings
+        self._sensing = sensing
 
     def code(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
         """Statements."""
@@ -90,7 +92,9 @@ class Pieces:
     def _make(self, snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> Piece:
         self._check(snippet, cpp)
         is_safe = all(fault.kind is FaultKind.SYNTAX for fault in cpp.faults)
-        text, edits = rewrite(snippet, cpp, rewriting) if is_safe else ("", ())
+        text, edits = (
+            rewrite(cpp, rewriting, self._sensing.get(snippet, frozenset())) if is_safe else ("", ())
+        )
         piece = Piece(len(self.made) + 1, snippet, text, edits)
         self.made.append(piece)
         return piece

@@ -1,21 +1,29 @@
-"""Which state variables matter to nobody: no reward, observation or ending depends on them.
+"""What has no influence: on anything, or on anything but what is observed.
 
-Documents keep in the state what the robot has learnt, for their rollout policies, and what people like to
-see. A model without these variables earns and shows the same with the same probabilities, so planners need
-not tell states apart by them. This is a cone of influence: it follows from the text of the code that a step
-runs, and where the text leaves a doubt the variable matters.
+Some state variables matter to nobody: no reward, observation or ending depends on them. Documents keep in
+the state what the robot has learnt, for their rollout policies, and what people like to see. A model without
+these variables earns and shows the same with the same probabilities, so planners need not tell states apart
+by them.
+
+Some draws shape only what is observed, such as the noise of a sensor.
+
+Both are cones of influence: they follow from the text of the code that a step runs, and where the text leaves
+a doubt a variable or a draw matters.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
-from aos_protocol.documents import Assignment, Environment, Project
+from aos_protocol.documents import Assignment, Environment, Project, Snippet
 from aos_runtime.cpp_flow import STATES, Flow, Name, flows_of
 from aos_runtime.document_code import snippets_of
+from aos_runtime.observed import is_draw
 from aos_runtime.snippets import read_cpp, read_cpp_expression
 
-__all__ = ["irrelevant_variables"]
+__all__ = ["irrelevant_variables", "sensing_draws"]
+
+_OBSERVATION = frozenset({"__moduleResponse", "__moduleResponseStr", "__observed"})
 
 
 def irrelevant_variables(project: Project) -> frozenset[str]:
@@ -26,6 +34,35 @@ def irrelevant_variables(project: Project) -> frozenset[str]:
     for code in _sections(project):
         reading.read(code)
     return variables - reading.relevant()
+
+
+def sensing_draws(project: Project) -> Mapping[Snippet, frozenset[int]]:
+    """The draws of dynamic models that shape only what is observed, by where their calls start.
+
+    Whatever such a draw gives, the step leads to the same state as far as its variables matter, with the same
+    reward, and every loop runs as often. So successors can be listed where observations are too many to list.
+    """
+    variables = frozenset(variable.name for variable in project.environment.variables)
+    reading = _Influence(project.environment, observations_matter=False)
+    reading.use_variables(variables - irrelevant_variables(project))
+    dynamic_models = [skill.model.dynamic_model for skill in project.skills]
+    sections = []
+    for code in _sections(project):
+        section = reading.read(code)
+        if any(code is model for model in dynamic_models):
+            sections.append((section, code))
+    influential = reading.influential()
+    found: dict[Snippet, frozenset[int]] = {}
+    for section, code in sections:
+        for snippet, cpp in snippets_of(code):
+            calls = sorted(call.function.start for call in cpp.calls if is_draw(call))
+            draws = flows_of(cpp).draws
+            if len(calls) == len(draws):
+                shaping = {
+                    at for at, draw in zip(calls, draws, strict=True) if (section, draw) not in influential
+                }
+                found[snippet] = found.get(snippet, frozenset(shaping)) & shaping
+    return found
 
 
 def _sections(project: Project) -> Iterator[tuple[Assignment, ...]]:
@@ -47,7 +84,8 @@ def _sections(project: Project) -> Iterator[tuple[Assignment, ...]]:
 class _Influence:
     """What may depend on what. Names of other variables are those of one section, numbered."""
 
-    def __init__(self, environment: Environment) -> None:
+    def __init__(self, environment: Environment, *, observations_matter: bool = True) -> None:
+        self._observations_matter = observations_matter
         self._variables = frozenset(variable.name for variable in environment.variables)
         self._types = {variable.name: variable.type for variable in environment.variables}
         self._sources: dict[tuple[int, Name], set[tuple[int, Name]]] = {}
@@ -61,8 +99,12 @@ class _Influence:
                 self._read_snippet(variable.default_code.code)
                 self._section += 1
 
-    def read(self, assignments: tuple[Assignment, ...]) -> None:
-        """Takes in a section, of which the snippets share their names."""
+    def use_variables(self, names: Iterable[str]) -> None:
+        """Variables of the state that matter in any case."""
+        self._use(Name(name, is_of_state=True) for name in names)
+
+    def read(self, assignments: tuple[Assignment, ...]) -> int:
+        """Takes in a section, of which the snippets share their names; gives its number."""
         self._section += 1
         for assignment in assignments:
             for loop in (*assignment.over_previous, *assignment.over_next):
@@ -72,9 +114,14 @@ class _Influence:
                     self._use_all_mentioned(loop.condition.code)
         for snippet, _ in snippets_of(assignments):
             self._read_snippet(snippet.code)
+        return self._section
 
     def relevant(self) -> set[str]:
         """The variables from which a chain of flows leads to what is used."""
+        return {name.text for _, name in self.influential() if name.is_of_state}
+
+    def influential(self) -> set[tuple[int, Name]]:
+        """All names from which a chain of flows leads to what is used, each with its section."""
         found = set(self._used)
         waiting = list(found)
         while waiting:
@@ -82,7 +129,7 @@ class _Influence:
                 if source not in found:
                     found.add(source)
                     waiting.append(source)
-        return {name.text for _, name in found if name.is_of_state}
+        return found
 
     # --- one snippet -----------------------------------------------------------------------------------
 
@@ -91,11 +138,14 @@ class _Influence:
         if flows.is_opaque:
             self._use(Name(name, is_of_state=True) for name in self._variables)
         self._use(flows.used)
+        if not self._observations_matter:
+            self._use(flows.looped)
         for flow in flows.flows:
             self._add(flow)
 
     def _add(self, flow: Flow) -> None:
-        if not flow.target.is_of_state and flow.target.text.startswith("__"):
+        is_result = not flow.target.is_of_state and flow.target.text.startswith("__")
+        if is_result and (self._observations_matter or flow.target.text not in _OBSERVATION):
             self._use(flow.sources)
             return
         targets = self._places([flow.target])

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import msgspec
 
-from aos_protocol.documents import Snippet
 from aos_runtime.observed import reports_in
 from aos_runtime.snippets import Call, Cpp, Extent
 from aos_solver.emission.program import Edit
@@ -16,6 +15,7 @@ from aos_solver.emission.rewrite_objects import object_edits
 
 __all__ = ["EnumValues", "Rewriting", "rewrite"]
 
+_SCOPE = re.compile(r"AOS(?:Utils)?")
 _STATES = frozenset({"state", "state_", "state__", "state___"})
 
 EnumValues = tuple[str, ...] | None
@@ -34,13 +34,14 @@ class Rewriting(msgspec.Struct, frozen=True):
     values: frozenset[str] = frozenset()
 
 
-def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tuple[Edit, ...]]:
-    """The text to emit, and what was edited.
+def rewrite(cpp: Cpp, rewriting: Rewriting, sensing: Collection[int]) -> tuple[str, tuple[Edit, ...]]:
+    """The text to emit, and what was edited. `sensing` are the starts of draws that only shape observations.
 
     - a missing last `;` is put in
     - `AOSUtils::` becomes `AOSUtils.`
     - `state.<Type>Objects`, a view made on demand, gets its `()`
     - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
+    - such a draw is told apart: `AOS.sensing().Bernoulli(p)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
     - objects and containers: see `rewrite_objects` and `rewrite_containers`
@@ -55,6 +56,9 @@ def rewrite(snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> tuple[str, tupl
     for call in cpp.calls:
         if call not in reported:
             edits += _of_call(call, cpp.code, rewriting)
+            if call.function.start in sensing:
+                scope = _SCOPE.match(cpp.code, call.function.start)
+                edits += [(scope.end(), ".sensing()")] if scope is not None else []
     # Last, since a bracket that goes to the same place has to come before it.
     edits += [(offset, ";") for offset in cpp.missing_semicolons]
     unique = list(dict.fromkeys(edits))

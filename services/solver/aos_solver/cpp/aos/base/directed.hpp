@@ -23,6 +23,16 @@ class DirectedDraws : public Draws<DirectedDraws> {
   // In [0, 1).
   virtual double uniform() = 0;
 
+  // For a draw that shapes only what is observed.
+  SensingDraws<DirectedDraws> sensing() { return SensingDraws<DirectedDraws>{*this}; }
+  bool skips_sensing() {
+    meets_sensing_ = true;
+    return skips_sensing_;
+  }
+  void skip_sensing(bool skips) { skips_sensing_ = skips; }
+  // Whether there was such a draw until now.
+  bool meets_sensing() const { return meets_sensing_; }
+
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ == nullptr) return ignore_number();
     sink_->take(key, distribution);
@@ -43,6 +53,8 @@ class DirectedDraws : public Draws<DirectedDraws> {
 
  private:
   NumberSink* sink_ = nullptr;
+  bool skips_sensing_ = false;
+  bool meets_sensing_ = false;
 };
 
 }  // namespace aos

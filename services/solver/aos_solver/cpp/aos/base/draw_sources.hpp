@@ -22,6 +22,9 @@ inline int next_outcome(const double* weights, int count, int taken, int first) 
   }
 }
 
+inline bool skips_sensing(const Sampler&) { return false; }
+inline bool skips_sensing(DirectedDraws& draws) { return draws.skips_sensing(); }
+
 template <class Source>
 inline constexpr AnySource::Functions functions_of{
     .flag = [](void* source, double probability) { return static_cast<Source*>(source)->flag(probability); },
@@ -30,6 +33,7 @@ inline constexpr AnySource::Functions functions_of{
           return static_cast<Source*>(source)->choose(weights, count, total);
         },
     .uniform = [](void* source) { return static_cast<Source*>(source)->uniform(); },
+    .skips_sensing = [](void* source) { return skips_sensing(*static_cast<Source*>(source)); },
     .report =
         [](void* source, std::uint32_t key, const Distribution& distribution) {
           static_cast<Source*>(source)->report(key, distribution);

@@ -152,6 +152,8 @@ class Sampler : public Draws<Sampler> {
   }
 
   bool flag(double probability) { return uniform() < probability; }
+  // For a draw that shapes only what is observed.
+  Sampler& sensing() { return *this; }
   // Without a sink, numbers that are reported are not drawn.
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ != nullptr) sink_->take(key, distribution);
@@ -176,6 +178,25 @@ class Sampler : public Draws<Sampler> {
   NumberSink* sink_ = nullptr;
 };
 
+// The draws that shape only what is observed, from a source that may skip them: then something is given that can be.
+template <class Source>
+class SensingDraws : public Draws<SensingDraws<Source>> {
+ public:
+  explicit SensingDraws(Source& source) : source_(source) {}
+
+  bool flag(double probability) { return source_.skips_sensing() ? probability > 0 : source_.flag(probability); }
+  int choose(const double* weights, int count, double total) {
+    if (!source_.skips_sensing()) return source_.choose(weights, count, total);
+    int first = 0;
+    while (weights[first] <= 0) ++first;
+    return first;
+  }
+  double uniform() { return source_.skips_sensing() ? 0.5 : source_.uniform(); }
+
+ private:
+  Source& source_;
+};
+
 class DirectedDraws;
 
 // A source that lives as long as this is used. What draws from it is compiled once, and not for each kind of source.
@@ -185,6 +206,7 @@ class AnySource : public Draws<AnySource> {
     bool (*flag)(void* source, double probability);
     int (*choose)(void* source, const double* weights, int count, double total);
     double (*uniform)(void* source);
+    bool (*skips_sensing)(void* source);
     void (*report)(void* source, std::uint32_t key, const Distribution& distribution);
   };
 
@@ -196,6 +218,8 @@ class AnySource : public Draws<AnySource> {
     return functions_.choose(source_, weights, count, total);
   }
   double uniform() { return functions_.uniform(source_); }
+  bool skips_sensing() const { return functions_.skips_sensing(source_); }
+  SensingDraws<AnySource> sensing() { return SensingDraws<AnySource>{*this}; }
   void report(std::uint32_t key, const Distribution& distribution) { functions_.report(source_, key, distribution); }
 
  private:

@@ -54,7 +54,11 @@ class Planner {
         why_ += "; " + bounds_text(horizon);
         return simulations;
       }
-      default: return pomcp_.search(belief, budget, horizon, random, barred);
+      default: {
+        const std::uint64_t simulations = pomcp_.search(belief, budget, horizon, random, barred);
+        if (pomcp_.has_prior()) why_ += "; what states are worth is learned from simulations";
+        return simulations;
+      }
     }
   }
 
@@ -89,7 +93,7 @@ class Planner {
     }
     return preferred_action(estimates, horizon_, [&](const ActionEstimate& estimate) {
       if (is_barred(estimate)) return false;
-      return used_ == PlannerKind::pomcp ? is_well_visited(estimate.n, most) : estimate.n > 0;
+      return used_ == PlannerKind::pomcp && !pomcp_.has_prior() ? is_well_visited(estimate.n, most) : estimate.n > 0;
     });
   }
 
@@ -131,7 +135,7 @@ class Planner {
       why_ = "SARSOP cannot be used: " + space_.obstacle();
       return PlannerKind::pomcp;
     }
-    if (const std::string obstacle = point_based_.prepare(belief, horizon); !obstacle.empty()) {
+    if (const std::string obstacle = point_based_obstacle(belief, horizon); !obstacle.empty()) {
       why_ = "SARSOP cannot be used: " + obstacle;
       return PlannerKind::pomcp;
     }
@@ -148,11 +152,19 @@ class Planner {
       why_ += ", and every observation of " + std::to_string(horizon) + " decisions fits the budget";
       return PlannerKind::exact;
     }
+    if (space_.leaves_out_observations()) {
+      why_ += ", but not what is observed: " + space_.observations_obstacle();
+      return PlannerKind::pomcp;
+    }
     if (const std::string obstacle = point_based_.prepare(belief, horizon); !obstacle.empty()) {
       why_ += "; SARSOP cannot be used: " + obstacle;
       return space_.lists_observations() ? PlannerKind::despot : PlannerKind::pomcp;
     }
     return PlannerKind::sarsop;
+  }
+
+  std::string point_based_obstacle(const Belief<Model>& belief, int horizon) {
+    return space_.leaves_out_observations() ? space_.observations_obstacle() : point_based_.prepare(belief, horizon);
   }
 
   std::string bounds_text(int horizon) const {

@@ -49,7 +49,7 @@ class PointBased {
     return take_model(entries);
   }
   // Whether the search tells observed numbers by cells only: upper bounds are then none.
-  bool tells_by_cells() const { return !space_.lists_observations(); }
+  bool tells_by_cells() const { return Model::reports_numbers(); }
   // Of an observation, at most.
   std::size_t cells() const { return cells_.most(); }
   // Whether values are of missions without end: the discount leaves next to nothing of what comes after the horizon, or

@@ -9,7 +9,8 @@
 //   the first decision (learned_values.hpp). What each action is worth on average over the belief, to somebody who sees the
 //   state after it (Littman, Cassandra and Kaelbling, 1995), then is the order in which actions are tried everywhere in
 //   the tree, and a history stays a leaf until it has been visited as often as there are actions. Where no estimate is good
-//   enough, or there is a rollout policy, a new history starts with a rollout.
+//   enough, or there is a rollout policy, a new history starts with a rollout. The root's values are drawn towards that
+//   order as far as they do not contradict it (prior_values.hpp).
 // - Where the states are few, told apart by all that is in them, simulations step by a table of the model and not by the
 //   documents' code (step_table.hpp).
 // - The exploration bonus of an action follows the spread of its own returns: immediate rewards say little about it, and a
@@ -44,6 +45,7 @@
 #include "aos/planning/bounds.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/learned_values.hpp"
+#include "aos/planning/prior_values.hpp"
 #include "aos/planning/simulated_state.hpp"
 #include "aos/planning/tree_search.hpp"
 
@@ -94,8 +96,14 @@ class Pomcp {
       result[static_cast<std::size_t>(a)] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n,
                                              running * reward / n};
     }
+    if (prior_.empty()) return result;
+    std::uint32_t most = 0;
+    for (const ActionEstimate& estimate : result) most = std::max(most, estimate.n);
+    draw_towards(prior_, result, [&](const ActionEstimate& estimate) { return is_well_visited(estimate.n, most); });
     return result;
   }
+  // Whether the estimates are drawn towards an order of the actions that was learned before.
+  bool has_prior() const { return !prior_.empty(); }
 
   // How many simulations went through the root.
   std::uint64_t known_simulations() const {
@@ -138,9 +146,10 @@ class Pomcp {
       trees_.clear();
       for (std::size_t i = 0; i < threads; ++i) trees_.push_back(std::make_unique<Tree>(most_search_bytes / threads));
     }
+    prior_.clear();
     if (belief.probability_of(Ending::running) <= 0) return 0;
-    const std::vector<double> prior = estimates != nullptr ? prior_of(belief, horizon, random) : std::vector<double>{};
-    for (const auto& tree : trees_) tree->begin(horizon, prior, barred);
+    if (estimates != nullptr) prior_ = prior_of(belief, horizon, random);
+    for (const auto& tree : trees_) tree->begin(horizon, prior_, barred);
     if (has_values && steps_.prepare(space_, belief)) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
       return simulate_all(start_state, budget, start, random, first, is_over);
@@ -251,6 +260,7 @@ class Pomcp {
   SeenValues<Model>& values_;
   StepTable<Model> steps_;
   LearnedValues<Model> estimates_;
+  std::vector<double> prior_;  // of the last search
   double seen_worth_ = 0;
 };
 

@@ -46,7 +46,8 @@ class StateSpace {
     rows_.readings.first.push_back(0);
   }
 
-  // Lists what can be reached from a belief. Returns whether all of it is listed; `obstacle` tells why it is not.
+  // Lists what can be reached from a belief, without what is observed where there is too much of it. Returns whether all
+  // of it is listed; `obstacle` tells why it is not.
   bool reach(const Belief<Model>& belief) {
     if (!obstacle_.empty() && !is_worth_another_try(belief)) return false;
     try {
@@ -54,6 +55,10 @@ class StateSpace {
       while (!is_closed()) list_rows_before(numbers_.size());
       return true;
     } catch (const NotEnumerable& limit) {
+      if (draws_.meets_sensing() && !skips_sensing_) {
+        leave_out_observations(limit.reason);
+        return reach(belief);
+      }
       give_up(limit.reason, belief);
     } catch (const ModelFault& fault) {
       give_up("model code fails in a state that can be reached: " + fault.text, belief);
@@ -81,7 +86,10 @@ class StateSpace {
   const point_based::FlatModel& rows() const { return rows_; }
   const ObservationNumbers<Model>& observations() const { return observations_; }
   // Whether the observations of the rows are what the robot observes. In a model that reports numbers they are reports.
-  static bool lists_observations() { return !Model::reports_numbers(); }
+  bool lists_observations() const { return !Model::reports_numbers() && !skips_sensing_; }
+  // Whether there are no observations in the rows, and why.
+  bool leaves_out_observations() const { return skips_sensing_; }
+  const std::string& observations_obstacle() const { return observations_obstacle_; }
   const NumberReports& reports() const { return reports_; }
   bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
 
@@ -125,6 +133,13 @@ class StateSpace {
     constexpr std::size_t far_fewer = 8;
     return far_fewer * belief.particles().size() <= given_up_with_;
   }
+  void leave_out_observations(std::string why) {
+    blame::at(0);
+    *this = StateSpace{limits_};
+    skips_sensing_ = true;
+    observations_obstacle_ = std::move(why);
+    draws_.skip_sensing(true);
+  }
   void give_up(std::string why, const Belief<Model>& belief) {
     blame::at(0);
     *this = StateSpace{limits_};
@@ -161,7 +176,7 @@ class StateSpace {
       for (std::size_t action = 0; action < rows_.actions; ++action) add_row(listed_, static_cast<int>(action));
     }
     rows_.states = listed_;
-    rows_.observations = reports_numbers_ ? reports_.reports().size() : observations_.size();
+    rows_.observations = skips_sensing_ ? 1 : reports_numbers_ ? reports_.reports().size() : observations_.size();
   }
 
   void add_row(std::uint32_t number, int action) {
@@ -186,6 +201,7 @@ class StateSpace {
   }
 
   std::uint32_t observation_of(int action, const Step& step) {
+    if (skips_sensing_) return 0;
     const std::uint32_t number = observations_.add(action, step.observation);
     return reports_numbers_ ? reports_.add(Model::skill_of(action), number) : number;
   }
@@ -235,6 +251,8 @@ class StateSpace {
   std::uint32_t listed_ = 0;  // states that have their rows
   bool reached_[ending_count]{};
   std::size_t work_ = 0;
+  bool skips_sensing_ = false;
+  std::string observations_obstacle_;
   std::string obstacle_;
   std::size_t given_up_with_ = 0;  // states of the belief
 
