@@ -237,7 +237,7 @@ struct skill__observe_holding : aos::SkillDefaults {
     aos::blame::at(22);
 #line 4 "observe_holding.sd"
 // In 2 of 11 runs the fingers report nothing although they hold the can; never the other way round.
-__moduleResponse = state.holding_can && AOS.Bernoulli(0.818) ? holding : not_holding;
+__moduleResponse = state.holding_can && AOS.sensing().Bernoulli(0.818) ? holding : not_holding;
 __reward = -1;
 #line 243 "model.cpp"
   }
@@ -311,7 +311,7 @@ state__.person_injured = state.arm_outstretched;
 state__.drink_served = __meetPrecondition && !state__.person_injured;
 
 // All 21 runs reported a delivery, whether or not there was a can in the hand.
-__moduleResponse = AOS.Bernoulli(1.0) ? delivered : not_delivered;
+__moduleResponse = AOS.sensing().Bernoulli(1.0) ? delivered : not_delivered;
 __reward = state__.person_injured ? -20 : -8;
 #line 317 "model.cpp"
   }

@@ -70,6 +70,9 @@ class Draws {
   }
   double SampleUniform(double low, double high) { return low + (high - low) * source().uniform(); }
 
+  // For a draw that shapes only what is observed; some sources skip these.
+  Source& sensing() { return source(); }
+
   void SetNull(bool& value) { value = false; }
   void Uninitialize(bool& value) { value = false; }
   void Initialize(bool& value) { value = true; }
@@ -152,8 +155,6 @@ class Sampler : public Draws<Sampler> {
   }
 
   bool flag(double probability) { return uniform() < probability; }
-  // For a draw that shapes only what is observed.
-  Sampler& sensing() { return *this; }
   // Without a sink, numbers that are reported are not drawn.
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ != nullptr) sink_->take(key, distribution);
