@@ -59,17 +59,21 @@ _KINDS = {
         ready_s=600.0,  # It compiles the model.
     ),
     "ros2": Kind(
-        adapter="aos_skills.ros2.adapter:Ros2Adapter",
+        adapter="aos_skills.ros.adapter:Ros2Adapter",
         value="router",
         options=("domain", "distribution", "interfaces", "topics"),
+        needs="rosbags",
+        extra="ros",
     ),
     "dds": Kind(
-        adapter="aos_skills.dds.adapter:DdsAdapter",
+        adapter="aos_skills.ros.adapter:DdsAdapter",
         value="interface",
         options=("peers", "domain", "distribution", "interfaces", "topics"),
+        needs="cyclonedds",
+        extra="dds",
     ),
     "ros1": Kind(
-        adapter="aos_skills.ros1.adapter:Ros1Adapter",
+        adapter="aos_skills.ros.adapter:Ros1Adapter",
         value="master",
         options=("python", "interfaces", "topics"),
     ),

@@ -102,8 +102,8 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     skills whose documents (`<skill>.*`) are kept back at the start. `watch` is the folder whose sub-folders
     the registry takes as bundles, by default `drop` in the run directory. `skills` says what follows when a
     skill fails. `adapters` gives adapters a name and options. `bind` says which adapter serves which
-    activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `runs`
-    is where run directories go.
+    activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `serve`
+    says how `aos-up --serve` shows them to others. `runs` is where run directories go.
     """
 
     aos: Literal[1]
@@ -119,6 +119,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     skills: dict[str, SkillPart] = {}
     adapters: dict[str, Any] = {}
     bind: dict[str, Any] = {}
+    serve: dict[str, Any] = {}
     runs: str = "runs"
 
 

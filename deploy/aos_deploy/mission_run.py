@@ -7,6 +7,7 @@ import os
 import signal
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Protocol
 
 import msgspec
 
@@ -219,7 +220,20 @@ class MissionRun:
         return round(self._clock.monotonic_s() - self._begun_s, 3)
 
 
-async def run_until_interrupted(mission: MissionRun) -> int:
+class _End(Protocol):
+    @property
+    def exit_code(self) -> int: ...
+
+
+class Stoppable(Protocol):
+    """What runs until it ends or is cancelled, and can be ended at once."""
+
+    async def run(self) -> _End: ...
+
+    def kill(self) -> None: ...
+
+
+async def run_until_interrupted(mission: Stoppable) -> int:
     """The exit code. The first signal stops everything in order, any further one at once."""
     loop = asyncio.get_running_loop()
     work = loop.create_task(mission.run())

@@ -126,9 +126,9 @@ class Lab:
 
 
 KINDS = {
-    "ros2": ("aos_skills.ros2.adapter:Ros2Adapter", "router"),
-    "dds": ("aos_skills.dds.adapter:DdsAdapter", "interface"),
-    "ros1": ("aos_skills.ros1.adapter:Ros1Adapter", "master"),
+    "ros2": ("aos_skills.ros.adapter:Ros2Adapter", "router"),
+    "dds": ("aos_skills.ros.adapter:DdsAdapter", "interface"),
+    "ros1": ("aos_skills.ros.adapter:Ros1Adapter", "master"),
 }
 
 

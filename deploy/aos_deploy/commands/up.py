@@ -41,6 +41,13 @@ def up(
     model: Annotated[
         bool, typer.Option("--model", help="Every skill is played by its own document; no robot is needed")
     ] = False,
+    serve: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KIND",
+            help="Run no mission: serve the skills and topics to others, as ros2, dds or ros1, until Ctrl-C",
+        ),
+    ] = None,
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
     version: Version = False,
@@ -58,6 +65,7 @@ def up(
     from aos_deploy.adapters import played_by_model
     from aos_deploy.deploy_file import check_endpoint, read_deploy_file
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
+    from aos_deploy.serve_run import ServeRun
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
 
@@ -77,7 +85,11 @@ def up(
         check_installed(adapter.name, adapter.kind)
     title = f"{file.robot} · {deploy.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
-    mission = MissionRun(deployment, view, SystemClock())
+    mission: MissionRun | ServeRun = (
+        MissionRun(deployment, view, SystemClock())
+        if serve is None
+        else ServeRun(deployment, serve, view, SystemClock())
+    )
     with view:
         code = asyncio.run(run_until_interrupted(mission))
     if mission.error is not None:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from aos_protocol.distribution import pip_install
 from aos_protocol.errors import BusError, DeployError
 from aos_skills.ros.node import Qos as RosQos
 from aos_skills.ros.types import Field, RosTypes
@@ -36,7 +37,7 @@ except ImportError as error:  # pragma: no cover - the extra is not installed
     raise DeployError(
         "the adapter for DDS needs the package cyclonedds",
         code="AOS805",
-        hint="Install it with: .venv/bin/pip install 'aos[dds]'",
+        hint=f"Run {pip_install('dds')}",
     ) from error
 
 __all__ = ["HEADER", "Endpoint", "Participant", "Writer"]

@@ -10,15 +10,15 @@ import asyncio
 import json
 import logging
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from aos_protocol.errors import AosError, DeployError, SkillError
 from aos_runtime.adapters import Call, Host
+from aos_skills.ros.connect import connect
 from aos_skills.ros.documented import documented
 from aos_skills.ros.node import Fields, RosNode
 
-__all__ = ["RosAdapter", "Way", "interface_places", "way_to"]
+__all__ = ["DdsAdapter", "Ros1Adapter", "Ros2Adapter", "RosAdapter", "Way", "way_to"]
 
 MAX_PROGRESS_TEXT = 120
 
@@ -52,16 +52,11 @@ def way_to(path: str, target: Any) -> Way:
     )
 
 
-def interface_places(host: Host) -> list[Path]:
-    """The folders and files that the option `interfaces` names, from the deploy file's folder."""
-    given = host.options.get("interfaces", [])
-    return [host.folder / place for place in ([given] if isinstance(given, str) else given)]
-
-
 class RosAdapter:
-    """What subclasses add is `connect`: the node through which the robot is reached."""
+    """Options are those of `connect`, and `topics`: the robot's name for a topic of the documents."""
 
     version = "1"
+    kind = ""
 
     def __init__(self, host: Host) -> None:
         self.host = host
@@ -72,12 +67,8 @@ class RosAdapter:
         self._has_new_names = asyncio.Event()
         self.node: RosNode
 
-    async def connect(self) -> RosNode:
-        """Joins the robot's system."""
-        raise NotImplementedError
-
     async def start(self) -> None:
-        self.node = await self.connect()
+        self.node = await connect(self.kind, f"aos_{self.host.name}", self.host.options, self.host.folder)
         self._tasks = [
             asyncio.create_task(self._follow_documents()),
             asyncio.create_task(self._follow_robot()),
@@ -201,6 +192,24 @@ class RosAdapter:
             return end.result
         code = "AOS507" if end.status == "canceled" else "AOS510"
         raise SkillError(f"the action {way.name} was {end.status}: {end.result}", code=code)
+
+
+class Ros2Adapter(RosAdapter):
+    """A robot whose ROS 2 nodes run rmw_zenoh."""
+
+    kind = "ros2"
+
+
+class DdsAdapter(RosAdapter):
+    """A robot whose ROS 2 nodes run Cyclone DDS, or Fast DDS for topics."""
+
+    kind = "dds"
+
+
+class Ros1Adapter(RosAdapter):
+    """A robot that runs ROS 1."""
+
+    kind = "ros1"
 
 
 async def _set(event: asyncio.Event) -> None:

@@ -1,0 +1,100 @@
+"""A robot for others: adapters up, served to nodes of ROS, until it is stopped. No mission runs."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from datetime import UTC, datetime
+
+import msgspec
+
+from aos_deploy.deploy_file import Deployment
+from aos_deploy.endpoint import hold_endpoint
+from aos_deploy.events import Report, Told
+from aos_deploy.exit_codes import ExitCode, exit_code_of_error
+from aos_deploy.living_runs import noted
+from aos_deploy.printing import from_here
+from aos_deploy.program import programs_of_deployment
+from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_deploy.serving import serving_program
+from aos_deploy.supervisor import Supervisor, supervised
+from aos_protocol.errors import AosError
+from aos_runtime.clock import Clock
+from aos_runtime.lifecycle import ServiceSettings, root_cause
+
+__all__ = ["ServeEnd", "ServeRun"]
+
+
+class ServeEnd(msgspec.Struct, frozen=True):
+    """How it ended."""
+
+    exit_code: int
+
+
+class ServeRun:
+    """Serves a deployment's adapters as `kind`. `report` is told what happens, as it happens."""
+
+    def __init__(self, deployment: Deployment, kind: str, report: Report, clock: Clock) -> None:
+        self._deployment = deployment
+        self._server = serving_program(deployment, kind)
+        self._report = report
+        self._clock = clock
+        self._supervisor: Supervisor | None = None
+        self.error: AosError | None = None
+
+    async def run(self) -> ServeEnd:
+        """Until it is cancelled, which is its normal end, or a process ends by itself."""
+        with hold_endpoint(self._deployment.file.bus.listen) as endpoint:
+            run = RunDirectory.create(
+                self._deployment.runs, self._deployment.file.robot, self._clock.now_ns()
+            )
+            self._report(Told(f"run directory {from_here(run.path)}"))
+            code = ExitCode.GOAL_REACHED
+            try:
+                with noted(run):
+                    await self._serve(run, endpoint)
+            except asyncio.CancelledError:
+                self._report(Told("stopped"))
+            except AosError as error:
+                self.error = error
+                code = exit_code_of_error(error, has_started=False)
+            run.close()
+        return ServeEnd(int(code))
+
+    def kill(self) -> None:
+        """Ends every process without waiting for it."""
+        if self._supervisor is not None:
+            self._supervisor.kill()
+
+    async def _serve(self, run: RunDirectory, endpoint: str) -> None:
+        deployment = self._deployment
+        robot = deployment.file.robot
+        base = ServiceSettings(robot=robot, service="", endpoint=endpoint, run_dir=str(run.path))
+        adapters = {plan.name for plan in deployment.adapters}
+        programs = [one for one in programs_of_deployment(deployment) if one.name in adapters]
+        try:
+            async with supervised((*programs, self._server), base, run, self._report, self._clock) as all_of:
+                self._supervisor = all_of
+                await all_of.start()
+                run.write_record(self._record(endpoint, all_of))
+                await all_of.until_ready()
+                types = self._server.settings["types"]
+                for name, type_name in types.items():
+                    self._report(Told(f"{name} is {type_name}"))
+                self._report(Told(f"{robot} serves; Ctrl-C stops it"))
+                await asyncio.Event().wait()
+        except BaseExceptionGroup as group:
+            raise root_cause(group) from group
+
+    def _record(self, endpoint: str, supervisor: Supervisor) -> RunRecord:
+        file = self._deployment.file
+        started = datetime.fromtimestamp(self._clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
+        return RunRecord(
+            robot=file.robot,
+            endpoint=endpoint,
+            deploy_file=str(self._deployment.path),
+            seed=file.solver.seed,
+            started=started,
+            pid=os.getpid(),
+            pids=supervisor.pids,
+        )
