@@ -211,7 +211,7 @@ async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
         assert (await anext(aiter(feedback)))[1].fields == {"sequence": [0, 1, 2]}
     assert result.fields == {"sequence": [0, 1, 2]}
     assert result.published == {"/count/feedback": 1}
-    with pytest.raises(AosError, match="AddTwoInts_Request has no field c") as raised:
+    with pytest.raises(AosError, match=r"AddTwoInts_?Request has no field c") as raised:
         await lab.call("/sum", {"c": 1}, 3)
     assert raised.value.code == "AOS502"
 

@@ -40,7 +40,7 @@ except ImportError as error:  # pragma: no cover - the extra is not installed
         hint=f"Run {pip_install('dds')}",
     ) from error
 
-__all__ = ["HEADER", "Endpoint", "Participant", "Writer"]
+__all__ = ["HEADER", "Endpoint", "Participant", "Reader", "Writer"]
 
 HEADER = struct.Struct("<Qq")
 """What Cyclone's requests and replies begin with: who asks, and as its how-manieth question."""
@@ -75,6 +75,13 @@ class Writer(NamedTuple):
 
     send: Callable[[bytes], None]
     matched: Callable[[], int]
+
+
+class Reader(NamedTuple):
+    """Says how many writers it has found, and can be closed."""
+
+    matched: Callable[[], int]
+    close: Callable[[], None]
 
 
 class Participant:
@@ -128,8 +135,8 @@ class Participant:
         qos: RosQos,
         *,
         has_header: bool = False,
-    ) -> Callable[[], int]:
-        """Has payloads taken on the event loop. Gives what says how many writers it has found."""
+    ) -> Reader:
+        """Has payloads taken on the event loop."""
         cls = self._classes.of(type_name, has_header)
 
         def on_data(reader: DataReader) -> None:
@@ -143,7 +150,13 @@ class Participant:
             lambda listener: DataReader(self._participant, dds_topic, qos=_qos(qos), listener=listener),
             on_data,
         )
-        return lambda: reader.get_subscription_matched_status().current_count
+
+        def close() -> None:
+            if reader in self._entities:
+                self._entities.remove(reader)
+                reader.__del__()
+
+        return Reader(lambda: reader.get_subscription_matched_status().current_count, close)
 
     def _topic(self, name: str, cls: type[IdlStruct], qos: RosQos) -> Topic:
         if name not in self._topics:

@@ -21,6 +21,7 @@ __all__ = ["DdsNode"]
 
 _CDR = b"\x00\x01\x00\x00"
 _MATCH_POLL_S = 0.01
+_MATCH_S = 1.0
 
 _log = logging.getLogger("aos.dds")
 
@@ -37,6 +38,8 @@ class DdsNode:
         self._participant.changed = self._on_change
         self._has_changed = asyncio.Event()
         self._clients: dict[str, _Client] = {}
+        self._matched: dict[str, Callable[[], int]] = {}
+        self._feedback = action_client.Feedback()
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def __aenter__(self) -> Self:
@@ -61,23 +64,22 @@ class DdsNode:
     def subscribe(
         self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
     ) -> Callable[[], None]:
-        is_wanted = True
-
         def on_payload(payload: bytes) -> None:
             try:
                 fields = self.types.decoded(type_name, payload)
             except AosError as error:
                 _log.warning("on %s: %s", topic, error)
             else:
-                if is_wanted:
-                    take(fields)
+                take(fields)
 
-        def undo() -> None:
-            nonlocal is_wanted
-            is_wanted = False
+        reader = self._participant.reader(f"rt{topic}", type_name, on_payload, qos)
+        self._matched[topic] = reader.matched
+        return reader.close
 
-        self._participant.reader(f"rt{topic}", type_name, on_payload, qos)
-        return undo
+    async def until_heard(self, topic: str) -> None:
+        ends_at_s = asyncio.get_running_loop().time() + _MATCH_S
+        while not self._matched[topic]() and asyncio.get_running_loop().time() < ends_at_s:  # noqa: ASYNC110
+            await asyncio.sleep(_MATCH_POLL_S)
 
     async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
         found = await self._wait_for(True, f"rt{topic}", timeout_s)
@@ -165,6 +167,7 @@ class DdsNode:
     ) -> ActionEnd:
         return await action_client.run_action(
             self,
+            self._feedback,
             action,
             goal,
             type_name=type_name,
@@ -223,13 +226,13 @@ class _Client:
         self._requests: Writer = participant.writer(
             f"rq{service}Request", f"{type_name}_Request", DEFAULT_QOS, has_header=True
         )
-        self._count_replies = participant.reader(
+        self._replies = participant.reader(
             f"rr{service}Reply", f"{type_name}_Response", self._on_reply, DEFAULT_QOS, has_header=True
         )
 
     async def ask(self, request: bytes) -> bytes:
         # A request that is sent before both sides have found each other is lost.
-        while not (self._requests.matched() and self._count_replies()):  # noqa: ASYNC110
+        while not (self._requests.matched() and self._replies.matched()):  # noqa: ASYNC110
             await asyncio.sleep(_MATCH_POLL_S)
         number = next(self._numbers)
         answer: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()

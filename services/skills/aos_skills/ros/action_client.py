@@ -10,7 +10,7 @@ from typing import Protocol
 from aos_protocol.errors import AosError, SkillError
 from aos_skills.ros.node import DISCOVERY_S, ActionEnd, Fields, RosNode
 
-__all__ = ["STATUS", "run_action"]
+__all__ = ["STATUS", "Feedback", "ServiceNode", "run_action"]
 
 STATUS = {
     1: "accepted",
@@ -35,13 +35,44 @@ class ServiceNode(RosNode, Protocol):
         """
         ...
 
+    async def until_heard(self, topic: str) -> None:
+        """Returns when what is published on a topic that is subscribed to arrives, as far as can be known."""
+        ...
+
     async def service_gone(self, service: str) -> None:
         """Returns once no node serves the service."""
         ...
 
 
+class Feedback:
+    """Who takes the feedback of which goal: one subscription for each action, however many goals run."""
+
+    def __init__(self) -> None:
+        self._takers: dict[str, dict[bytes, Callable[[Fields], None]]] = {}
+
+    async def listen(
+        self, node: ServiceNode, action: str, type_name: str, goal: bytes, take: Callable[[Fields], None]
+    ) -> None:
+        """Has a goal's feedback taken until it is forgotten."""
+        if action not in self._takers:
+            takers = self._takers[action] = {}
+
+            def on_message(message: Fields) -> None:
+                takers.get(bytes(message["goal_id"]["uuid"]), _ignore)(message["feedback"])
+
+            topic = f"{action}/_action/feedback"
+            node.subscribe(topic, f"{type_name}_FeedbackMessage", on_message)
+            await node.until_heard(topic)
+        self._takers[action][goal] = take
+
+    def forget(self, action: str, goal: bytes) -> None:
+        """Nobody takes this goal's feedback any more."""
+        self._takers.get(action, {}).pop(goal, None)
+
+
 async def run_action(
     node: ServiceNode,
+    all_feedback: Feedback,
     action: str,
     goal: Fields,
     *,
@@ -59,13 +90,9 @@ async def run_action(
         min(DISCOVERY_S, timeout_s),
     )
     type_name = goal_type.removesuffix("_SendGoal")
-    goal_id = {"uuid": list(uuid.uuid4().bytes)}
-
-    def on_message(message: Fields) -> None:
-        if on_feedback is not None and message["goal_id"] == goal_id:
-            on_feedback(message["feedback"])
-
-    stop_listening = node.subscribe(f"{action}/_action/feedback", f"{type_name}_FeedbackMessage", on_message)
+    goal_key = uuid.uuid4().bytes
+    goal_id = {"uuid": list(goal_key)}
+    await all_feedback.listen(node, action, type_name, goal_key, on_feedback or _ignore)
     try:
         accepted = await node.call(
             f"{action}/_action/send_goal",
@@ -94,7 +121,7 @@ async def run_action(
     except* AosError as group:
         raise _first(group) from None
     finally:
-        stop_listening()
+        all_feedback.forget(action, goal_key)
     end = result.result()
     if reason == "late":
         raise SkillError(f"{action} did not end within {timeout_s:g} s and was cancelled", code="AOS503")
@@ -146,6 +173,10 @@ async def _cancel(node: ServiceNode, action: str, goal_id: Fields, result: async
             code="AOS504",
             hint="The robot may still move: look at it, and at the node's log",
         ) from error
+
+
+def _ignore(_: Fields) -> None:
+    """For feedback that nobody wants."""
 
 
 def _lost(action: str) -> SkillError:

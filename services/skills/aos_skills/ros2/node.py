@@ -35,6 +35,7 @@ class Node:
         self._node = Endpoint(domain, bus.id, 0, 0, Kind.NODE, name)
         self._numbers = itertools.count(_FIRST_ENTITY)
         self._clients: dict[str, _Client] = {}
+        self._feedback = action_client.Feedback()
         bus.announce(self._node.token)
         self.graph = Graph(bus, domain)
 
@@ -90,6 +91,9 @@ class Node:
             stop()
 
         return undo
+
+    async def until_heard(self, topic: str) -> None:
+        """A router knows of a subscription before it hears of a goal from the same session."""
 
     async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
         publisher = await self.graph.wait_for(Kind.PUBLISHER, topic, timeout_s)
@@ -169,6 +173,7 @@ class Node:
     ) -> ActionEnd:
         return await action_client.run_action(
             self,
+            self._feedback,
             action,
             goal,
             type_name=type_name,
