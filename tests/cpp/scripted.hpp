@@ -17,6 +17,7 @@ namespace aos {
 class Script {
  public:
   explicit Script(const char* draws) : rest_(draws) {}
+  Script& sensing() { return *this; }
   bool Bernoulli(double probability) { return next(probability >= 0.5 ? 1 : 0) != 0; }
   int SampleDiscrete(int name, std::initializer_list<double>) { return name + 1 + static_cast<int>(next(0)); }
   template <class Weights = std::initializer_list<double>>
@@ -50,6 +51,7 @@ class Script {
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}
+  Dice& sensing() { return *this; }
   std::uint64_t bits() {
     std::uint64_t mixed = state_ += 0x9e3779b97f4a7c15u;
     mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
