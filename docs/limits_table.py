@@ -184,6 +184,21 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "aos_deploy.adapter_kinds.Kind.restarts", "times", "the mission ends",
         ),
     ),
+    "Robots that speak ROS": (
+        Row("a server or publisher appears", "aos_skills.ros.node.DISCOVERY_S", "s", "AOS505"),
+        Row("a goal ends after it was cancelled", "aos_skills.ros.action_client.CANCEL_S", "s", "AOS504"),
+        Row(
+            "the process that speaks ROS 1 becomes ready", "aos_skills.ros1.process.START_S", "s", "AOS605",
+        ),
+        Row(
+            "a message of ROS 1, as text",
+            "aos_skills.ros1.process.MAX_LINE_BYTES", "bytes", "it is left out",
+        ),
+        Row(
+            "a call by a node that is served",
+            "aos_skills.ros.server.ServerSettings.timeout_s", "s", "AOS503",
+        ),
+    ),
     "Processes and bus": (
         Row(
             "a service becomes ready, unless its program says otherwise",

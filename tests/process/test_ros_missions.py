@@ -15,6 +15,8 @@ from typing import Any
 import pytest
 from ros1_core import roscore, skip_without_ros1
 
+from aos_runtime.parent import PARENT_VARIABLE
+
 pytestmark = [pytest.mark.physics, pytest.mark.slow]
 
 BIN = Path(sys.executable).parent
@@ -131,6 +133,26 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
     assert summary["ending"] in ("goal", "failure", "nothing_worthwhile", "step_limit")
     assert any(action.startswith("navigate") for action in summary["actions"])
     assert mission.returncode in (0, 4, 5, 6)
+
+
+def test_the_shipped_robot_serves_a_ros_2_program_of_others(
+    root: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    pytest.importorskip("zenoh_ros2_sdk", reason="needs the package zenoh-ros2-sdk")
+    arguments = [str(root / "deploy" / "armadillo-robot.yaml"), "--serve", "ros2", "--runs", str(tmp_path)]
+    with up([*arguments, "--listen", "tcp/127.0.0.1:0"], cache_dir) as robot:
+        list(events_of_until(robot, "Ctrl-C stops it"))
+        run = json.loads((tmp_path / "latest" / "run.json").read_text())
+        program = subprocess.run(
+            [sys.executable, "-m", "tests.ros2_sdk_client", run["endpoint"].rpartition(":")[2]],
+            cwd=root,
+            env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+        )
+        assert program.stdout.splitlines()[-1:] == ["True 7"], program.stderr
+    assert robot.returncode == 0
 
 
 def events_of_until(process: subprocess.Popen[str], text: str) -> Iterator[dict[str, Any]]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from aos_protocol.errors import AosError, SkillError
+from aos_skills.ros.action_client import CANCEL_S
 from aos_skills.ros.definitions import definitions_in
 from aos_skills.ros.node import (
     DEFAULT_QOS,
@@ -25,9 +26,6 @@ __all__ = ["DEFAULT_MASTER", "DEFAULT_PYTHON", "Ros1Node"]
 
 DEFAULT_MASTER = "http://127.0.0.1:11311"
 DEFAULT_PYTHON = "/usr/bin/python3"
-
-CANCEL_S = 1.8
-"""How long a robot may take to end a goal after it was asked to: less than an adapter has for it."""
 
 _log = logging.getLogger("aos.ros1")
 

@@ -111,8 +111,19 @@ class Ros1Process:
             self._child.stdin.write(json.dumps(line).encode() + b"\n")
 
     async def _read(self) -> None:
-        while text := await self._child.stdout.readline():
-            line = json.loads(text)
+        while True:
+            try:
+                text = await self._child.stdout.readline()
+            except ValueError:
+                _log.warning("a message of more than %d bytes is left out", MAX_LINE_BYTES)
+                continue
+            if not text:
+                break
+            try:
+                line = json.loads(text)
+            except ValueError:
+                # It is what remains of a line that was too long.
+                continue
             if "event" in line:
                 self._on_event(line.pop("event"), line)
                 continue

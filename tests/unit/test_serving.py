@@ -1,0 +1,114 @@
+"""What is served to ROS: the types from the deploy file and from documents, and what is said of mistakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.deploy_file import Deployment, read_deploy_file
+from aos_deploy.serving import serving_program
+from aos_protocol.errors import DeployError
+from aos_registry.load import load_bundle
+from aos_skills.ros.adapter import Way, way_to
+from aos_skills.ros.documented import documented
+
+
+def deployment(folder: Path, root: Path, serve: str) -> Deployment:
+    """Our armadillo with a `serve:` part."""
+    path = folder / "robot.yaml"
+    path.write_text(
+        f"aos: 1\nrobot: armadillo\nbundles: [{root}/deploy/bundles/armadillo-rough]\n"
+        f"world: {root}/deploy/worlds/armadillo.yaml\nbind: {{'*': pybullet}}\n{serve}"
+    )
+    return read_deploy_file(path)
+
+
+def test_types_are_written_shortly_or_in_full(root: Path, tmp_path: Path) -> None:
+    program = serving_program(
+        deployment(
+            tmp_path,
+            root,
+            "serve:\n  types: {/pick: std_srvs/Trigger, serve: std_srvs/srv/Trigger,"
+            " /joints: a_msgs/msg/Joints}\n"
+            "  ros1: {master: 'http://127.0.0.1:1'}\n",
+        ),
+        "ros1",
+    )
+    assert program.settings["types"] == {
+        "/pick": "std_srvs/srv/Trigger",
+        "/serve": "std_srvs/srv/Trigger",
+        "/joints": "a_msgs/msg/Joints",
+    }
+    assert program.settings["options"]["master"] == "http://127.0.0.1:1"
+
+
+@pytest.mark.parametrize(
+    ("serve", "kind", "message"),
+    [
+        ("", "ros2", r"nothing in robot\.yaml has a ROS type .*serve: \{types: \{/pick"),
+        (
+            "serve: {types: {/pick: std_srvs/Trigger}}\n",
+            "ros3",
+            "nothing can be served as 'ros3'. Known are ros2",
+        ),
+        (
+            "serve: {type: {}}\n",
+            "ros2",
+            r"serve in robot\.yaml has an unknown key type. Its keys are interfaces",
+        ),
+        ("serve: {ros1: {domain: 1}}\n", "ros1", r"serve\.ros1 in robot\.yaml has an unknown key domain"),
+        ("serve: {ros1: here}\n", "ros1", r"serve\.ros1 in robot\.yaml is not a mapping"),
+        ("serve: {types: {/pick: Trigger}}\n", "ros2", "'Trigger' is not the name of a ROS interface"),
+    ],
+)
+def test_mistakes_are_said_with_their_place(
+    root: Path, tmp_path: Path, serve: str, kind: str, message: str
+) -> None:
+    with pytest.raises(DeployError, match=message):
+        serving_program(deployment(tmp_path, root, serve), kind)
+
+
+def test_the_shipped_robot_has_a_type_for_every_path_and_topic(root: Path) -> None:
+    shipped = read_deploy_file(root / "deploy" / "armadillo-robot.yaml")
+    types = serving_program(shipped, "ros2").settings["types"]
+    loaded = load_bundle(root / "deploy" / "bundles" / "armadillo-finer")
+    assert loaded.project is not None
+    known = documented(loaded.project)
+    assert {*known.paths, *known.topics, "/retract"} == set(types)
+
+
+@pytest.mark.corpus
+def test_original_mappings_name_their_services_types(corpus: Path) -> None:
+    project = load_bundle(corpus / "armadillo-rough").project
+    assert project is not None
+    assert documented(project).paths == {
+        "/pick_unknown": "robotican_demos_upgrade/srv/pick_unknown",
+        "/custom_actions/navigate": "armadillo_navigation_upgrade/srv/navigate_srv",
+        "/arm_outstretched_indicator": "robotican_demos_upgrade/srv/arm_outstretched_indicator",
+        "/object_grasp_indicator": "robotican_demos_upgrade/srv/grasp_indicator",
+        "/deliver_to_person": "std_srvs/srv/Trigger",
+    }
+
+
+@pytest.mark.parametrize(
+    ("target", "way"),
+    [
+        (None, Way("", "/pick")),
+        ("arm/pick", Way("", "/arm/pick")),
+        ({"service": "/arm/pick"}, Way("service", "/arm/pick")),
+        ({"action": "/go", "type": "a_msgs/action/Go"}, Way("action", "/go", "a_msgs/action/Go")),
+    ],
+)
+def test_a_path_is_bound_to_a_name_a_service_or_an_action(target: object, way: Way) -> None:
+    assert way_to("/pick", target) == way
+
+
+@pytest.mark.parametrize(
+    "target", [3, {}, {"topic": "/pick"}, {"service": "/a", "action": "/b"}, {"action": 1}]
+)
+def test_anything_else_is_an_error_that_shows_how_to_write_it(target: object) -> None:
+    with pytest.raises(
+        DeployError, match=r"/pick is bound to .*Write the name of one, or \{service: /pick\}"
+    ):
+        way_to("/pick", target)
