@@ -42,6 +42,7 @@ class Call:
         skill: str = "",
         parameters: dict[str, Any] | None = None,
         on_progress: Callable[[float, str], None] = lambda progress, text: None,
+        on_message: Callable[[str, dict[str, Any]], None] = lambda topic, fields: None,
     ) -> None:
         self.id = id
         self.path = path
@@ -51,11 +52,16 @@ class Call:
         self.skill = skill
         self.parameters = parameters or {}
         self._on_progress = on_progress
+        self._on_message = on_message
         self._is_cancelled = threading.Event()
 
     def progress(self, progress: float, text: str = "") -> None:
         """Tells how far it is, from 0 to 1, and what it does. From any thread, as often as you like."""
         self._on_progress(progress, text)
+
+    def publish(self, topic: str, **fields: Any) -> None:
+        """Sends a message on a topic. From any thread."""
+        self._on_message(topic, fields)
 
     @property
     def is_cancelled(self) -> bool:

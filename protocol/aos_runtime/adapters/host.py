@@ -100,6 +100,8 @@ class Host:
         self._ledger = Ledger(self.run_dir / f"adapter-{self.name}.db")
         self._published: Counter[str] = Counter()
         self._unsent: deque[tuple[str, dict[str, Any]]] = deque(maxlen=MAX_UNSENT_MESSAGES)
+        self._sending = threading.Lock()
+        self._is_sending = False
         self._lost = 0
         self._serving: dict[str, str] = {}
         self._answered: set[str] = set()
@@ -158,10 +160,12 @@ class Host:
 
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
         """Sends a message on a topic. From any thread, in order."""
-        if len(self._unsent) == MAX_UNSENT_MESSAGES:
-            self._lost += 1
-        self._unsent.append((topic, fields))
-        if len(self._unsent) == 1:
+        with self._sending:
+            if len(self._unsent) == MAX_UNSENT_MESSAGES:
+                self._lost += 1
+            self._unsent.append((topic, fields))
+            is_first, self._is_sending = not self._is_sending, True
+        if is_first:
             self._loop.call_soon_threadsafe(self._send)
 
     async def revisions(self) -> AsyncIterator[ProjectRevision]:
@@ -235,6 +239,7 @@ class Host:
             request.skill,
             request.parameters,
             self._on_progress,
+            self.publish,
         )
         self._ledger.start(request)
         try:
@@ -340,9 +345,11 @@ class Host:
         self._service.bus.tell(self._service.keys.progress(call.path), progress)
 
     def _send(self) -> None:
-        """Sends what waits, numbered for each topic."""
-        while self._unsent:
-            topic, fields = self._unsent.popleft()
+        """Sends what waits, numbered for each topic; what comes meanwhile goes with the next turn."""
+        with self._sending:
+            waiting, self._is_sending = list(self._unsent), False
+            self._unsent.clear()
+        for topic, fields in waiting:
             self._published[topic] += 1
             message = TopicMessage(self._published[topic], fields)
             self._service.bus.tell(self._service.keys.topic(topic), message)

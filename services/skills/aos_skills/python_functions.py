@@ -1,0 +1,214 @@
+"""The adapter `python`: skills that are functions in a file of the user's, or in an installed package.
+
+    bind: {/drive: {python: my_robot.py:drive}, /turn: {python: "my_robot.py:Robot.turn"}}
+
+A function gets the call, and the call's fields by name. The methods of a class share one object of it, made
+when the adapter starts. The user's code runs on a thread of its own, with an event loop of its own: whatever
+it does, calls and cancellations are answered.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import importlib
+import importlib.util
+import inspect
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from aos_protocol.errors import DeployError, SkillError
+from aos_runtime.adapters import Answer, Call, Host
+
+__all__ = ["PythonAdapter"]
+
+_END_S = 1.0
+
+
+class PythonAdapter:
+    """Loads what paths are bound to, and calls it."""
+
+    version = "1"
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+        self._modules: dict[str, ModuleType] = {}
+        self._objects: dict[tuple[str, str], Any] = {}
+        self._functions: dict[str, Callable[..., Any]] = {}
+        self._task: asyncio.Task[Any] | None = None
+        self._loop = asyncio.new_event_loop()
+        # A daemon, so that a function that never ends does not keep the process.
+        self._thread = threading.Thread(target=self._loop.run_forever, name="skills", daemon=True)
+
+    async def start(self) -> None:
+        """Loads every function; DeployError AOS801 names what cannot be found."""
+        self._thread.start()
+        loading = asyncio.run_coroutine_threadsafe(self._load_all(), self._loop)
+        await asyncio.wrap_future(loading)
+        await self._host.serve(*self._functions)
+
+    async def call(self, call: Call) -> Answer:
+        """Runs the function; one that is not asynchronous runs on a thread, and looks at `is_cancelled`."""
+        function = self._functions[call.path]
+        fields = _fitting(function, call)
+        running = asyncio.run_coroutine_threadsafe(self._run(function, call, fields), self._loop)
+        ended = asyncio.wrap_future(running)
+        try:
+            return await asyncio.shield(ended)
+        except asyncio.CancelledError:
+            stopping = asyncio.run_coroutine_threadsafe(self._cancel(call), self._loop)
+            await asyncio.wait({asyncio.wrap_future(stopping), ended})
+            raise
+
+    async def close(self) -> None:
+        """Closes the objects that can be closed."""
+        if self._thread.is_alive():
+            closing = asyncio.run_coroutine_threadsafe(self._close_all(), self._loop)
+            await asyncio.wait({asyncio.wrap_future(closing)}, timeout=_END_S)
+            self._loop.call_soon_threadsafe(self._loop.stop)
+
+    # --- on the user's thread ------------------------------------------------------------------------
+
+    async def _load_all(self) -> None:
+        for path, binding in self._host.bound.items():
+            target = binding.target
+            target = target if isinstance(target, str) else ""
+            if ":" not in target and "file" in self._host.options:
+                target = f"{self._host.options['file']}:{target or path.rpartition('/')[2]}"
+            if ":" not in target:
+                raise DeployError(
+                    f"{path} is not bound to a function",
+                    hint=f"Write it as {path}: {{{self._host.name}: my_robot.py:function}}",
+                )
+            self._functions[path] = self._function(path, target)
+
+    def _function(self, path: str, target: str) -> Callable[..., Any]:
+        place, _, name = target.rpartition(":")
+        module = self._module(path, place)
+        owner, _, attribute = name.rpartition(".")
+        try:
+            if owner:
+                found = getattr(self._object(place, owner, getattr(module, owner)), attribute)
+            else:
+                found = getattr(module, name)
+                if inspect.isclass(found):
+                    found = self._object(place, name, found)
+        except AttributeError as error:
+            known = ", ".join(each for each in vars(module) if not each.startswith("_"))
+            raise DeployError(
+                f"{path} is bound to {target}, and {place} has no {name}", hint=f"It has {known or 'nothing'}"
+            ) from error
+        if not callable(found):
+            raise DeployError(f"{path} is bound to {target}, which cannot be called")
+        return found  # type: ignore[no-any-return]
+
+    def _module(self, path: str, place: str) -> ModuleType:
+        if place in self._modules:
+            return self._modules[place]
+        try:
+            if place.endswith(".py"):
+                module = _from_file(self._host.folder / place)
+            else:
+                module = importlib.import_module(place)
+        except Exception as error:
+            raise DeployError(
+                f"{path} is bound to {place}, which cannot be loaded: {type(error).__name__}: {error}",
+                hint=f"A file is found from the deploy file's folder, {self._host.folder}; see the log too",
+            ) from error
+        self._modules[place] = module
+        return module
+
+    def _object(self, place: str, name: str, kind: Any) -> Any:
+        if (place, name) not in self._objects:
+            self._objects[place, name] = kind(self._host) if _takes_host(kind) else kind()
+        return self._objects[place, name]
+
+    async def _run(self, function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
+        self._task = asyncio.current_task()
+        kind = type(function)
+        if inspect.iscoroutinefunction(function) or inspect.iscoroutinefunction(kind.__call__):
+            answer = await function(call, **fields)
+        else:
+            answer = await self._on_thread(function, call, fields)
+        return {} if answer is None else answer
+
+    async def _on_thread(self, function: Callable[..., Any], call: Call, fields: dict[str, Any]) -> Any:
+        ended: asyncio.Future[Any] = self._loop.create_future()
+
+        def settle(answer: Any, error: BaseException | None) -> None:
+            if ended.done():
+                return
+            if error is None:
+                ended.set_result(answer)
+            else:
+                ended.set_exception(error)
+
+        def work() -> None:
+            try:
+                answer, error = function(call, **fields), None
+            except BaseException as failure:
+                answer, error = None, failure
+            self._loop.call_soon_threadsafe(settle, answer, error)
+
+        threading.Thread(target=work, name=call.path, daemon=True).start()
+        try:
+            return await asyncio.shield(ended)
+        except asyncio.CancelledError:
+            await asyncio.wait({ended})
+            raise
+
+    async def _cancel(self, call: Call) -> None:
+        call.cancel()
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.wait({self._task})
+
+    async def _close_all(self) -> None:
+        for each in self._objects.values():
+            close = getattr(each, "close", None)
+            if callable(close):
+                closed = close()
+                if inspect.isawaitable(closed):
+                    await closed
+
+
+def _from_file(path: Path) -> ModuleType:
+    """A module by its file; what stands beside it can be imported."""
+    if not path.is_file():
+        raise FileNotFoundError(f"there is no file {path}")
+    folder = str(path.resolve().parent)
+    if folder not in sys.path:
+        sys.path.insert(0, folder)
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def _takes_host(kind: Any) -> bool:
+    try:
+        return len(inspect.signature(kind).parameters) == 1
+    except (TypeError, ValueError):
+        return False
+
+
+def _fitting(function: Callable[..., Any], call: Call) -> dict[str, Any]:
+    """The call's fields; SkillError AOS502 where the function does not take them."""
+    signature = inspect.signature(function)
+    try:
+        signature.bind(call, **call.fields)
+    except TypeError as error:
+        takes = ", ".join(list(signature.parameters)[1:]) or "no fields"
+        sends = ", ".join(call.fields) or "none"
+        raise SkillError(
+            f"{call.path} cannot be called with these fields: {error}",
+            code="AOS502",
+            hint=f"The function takes {takes}; the mapping sends {sends}. See `fields:` in the deploy file",
+        ) from error
+    return call.fields

@@ -1,0 +1,218 @@
+"""Skills that are functions in a file, called over the real bus, and whatever they do wrong."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+import pytest_asyncio
+
+from aos_protocol.errors import AosError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    ActivationId,
+    Cancel,
+    Cancelled,
+    SkillCall,
+    SkillProgress,
+    SkillResult,
+    TopicMessage,
+)
+from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.bus import Bus
+from aos_runtime.children import Child
+
+PATIENCE_S = 30.0
+
+ROBOT = """
+import asyncio, time
+
+async def drive(call, x, y=0.0):
+    call.progress(0.5, "half way")
+    call.publish("/pose", x=x, y=y)
+    return {"success": True}
+
+async def wait(call):
+    call.progress(0.1, "waiting")
+    await asyncio.Event().wait()
+
+def block(call):
+    while not call.is_cancelled:
+        time.sleep(0.01)
+
+async def hang(call):
+    call.progress(0.1, "hanging")
+    time.sleep(1000)
+
+async def fail(call):
+    raise RuntimeError("gripper jammed")
+
+async def odd(call):
+    return 3
+
+class Arm:
+    def __init__(self):
+        self.picks = 0
+
+    async def pick(self, call):
+        self.picks += 1
+
+    async def count(self, call):
+        return {"picks": self.picks}
+"""
+
+
+class Robot:
+    """A process with the adapter, and how the middleware speaks to it."""
+
+    def __init__(self, bus: Bus, keys: Keys, endpoint: str, folder: Path) -> None:
+        self.bus = bus
+        self.keys = keys
+        self.endpoint = endpoint
+        self.folder = folder
+        self.child: Child | None = None
+        (folder / "robot.py").write_text(ROBOT)
+
+    async def launch(self, **bound: str) -> Child:
+        values = AdapterSettings(
+            robot=self.keys.robot,
+            service="python",
+            endpoint=self.endpoint,
+            run_dir=str(self.folder),
+            adapter="aos_skills.python_functions:PythonAdapter",
+            folder=str(self.folder),
+            bind={f"/{path}": Binding(target=target) for path, target in bound.items()},
+            cancel_s=0.5,
+        )
+        path = self.folder / "python.json"
+        path.write_bytes(msgspec.json.encode(values))
+        with (self.folder / "python.log").open("ab") as log:
+            argv = [sys.executable, "-m", "aos_runtime.adapters", str(path)]
+            self.child = await Child.start(argv, stderr=log)
+        return self.child
+
+    async def start(self, **bound: str) -> None:
+        await self.launch(**bound)
+        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.all_serve) as present:
+            paths: set[str] = set()
+            async for key, _ in present:
+                serving = self.keys.serving_of(key)
+                assert serving is not None
+                paths.add(serving.path)
+                if len(paths) == len(bound):
+                    return
+
+    async def call(self, path: str, step: int = 1, **fields: Any) -> SkillResult:
+        call = SkillCall(ActivationId("m", 1, step), path, fields, 20.0)
+        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=PATIENCE_S)
+
+    async def cancel(self, path: str) -> Cancelled:
+        return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=PATIENCE_S)
+
+    async def refusal(self, path: str, step: int = 1, **fields: Any) -> AosError:
+        with pytest.raises(AosError) as error:
+            await self.call(path, step, **fields)
+        return error.value
+
+
+@pytest_asyncio.fixture
+async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path) -> AsyncIterator[Robot]:
+    robot = Robot(bus, keys, endpoint, tmp_path)
+    try:
+        yield robot
+    finally:
+        if robot.child is not None:
+            await robot.child.stop(5.0)
+
+
+async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: Robot) -> None:
+    await robot.start(drive="robot.py:drive")
+    progress = robot.bus.listen(robot.keys.progress("/drive"), SkillProgress)
+    poses = robot.bus.listen(robot.keys.topic("/pose"), TopicMessage)
+    async with asyncio.timeout(PATIENCE_S), progress, poses:
+        result = await robot.call("/drive", x=1.5)
+        assert (result.fields, result.published) == ({"success": True}, {"/pose": 1})
+        assert (await anext(poses))[1].fields == {"x": 1.5, "y": 0.0}
+        told = [(await anext(progress))[1] for _ in range(3)]
+    assert [(each.state, each.progress, each.text) for each in told] == [
+        ("accepted", 0.0, ""),
+        ("executing", 0.5, "half way"),
+        ("succeeded", 1.0, ""),
+    ]
+
+
+async def test_methods_of_a_class_share_one_object(robot: Robot) -> None:
+    await robot.start(pick="robot.py:Arm.pick", count="robot.py:Arm.count")
+    assert (await robot.call("/pick", 1)).fields == {}
+    assert (await robot.call("/count", 2)).fields == {"picks": 1}
+
+
+@pytest.mark.parametrize(
+    ("function", "fields", "code", "text"),
+    [
+        ("fail", {}, "AOS510", "/skill failed: RuntimeError: gripper jammed"),
+        ("odd", {}, "AOS510", "/skill answered 3, which is no mapping of field names to values"),
+        ("drive", {"z": 1}, "AOS502", "The function takes x, y; the mapping sends z"),
+    ],
+)
+async def test_what_goes_wrong_in_a_function_fails_that_call_alone(
+    robot: Robot, function: str, fields: dict[str, Any], code: str, text: str
+) -> None:
+    await robot.start(skill=f"robot.py:{function}", drive="robot.py:drive")
+    error = await robot.refusal("/skill", 1, **fields)
+    assert error.code == code
+    assert text in str(error)
+    assert (await robot.call("/drive", 2, x=0)).fields == {"success": True}
+
+
+@pytest.mark.parametrize("function", ["wait", "block"])
+async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, function: str) -> None:
+    await robot.start(skill=f"robot.py:{function}", drive="robot.py:drive")
+    async with robot.bus.listen(robot.keys.progress("/skill"), SkillProgress) as progress:
+        running = asyncio.create_task(robot.refusal("/skill", 1))
+        await anext(progress)
+        assert (await robot.cancel("/skill")).ids == ("m-1-1",)
+    assert (await running).code == "AOS507"
+    assert (await robot.call("/drive", 2, x=0)).fields == {"success": True}
+
+
+async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown(robot: Robot) -> None:
+    await robot.start(skill="robot.py:hang")
+    async with robot.bus.listen(robot.keys.progress("/skill"), SkillProgress) as progress:
+        running = asyncio.create_task(robot.refusal("/skill", 1))
+        async for _, each in progress:
+            if each.state == "executing":
+                break
+        with pytest.raises(AosError) as error:
+            await robot.cancel("/skill")
+    assert error.value.code == "AOS504"
+    await running
+    assert robot.child is not None
+    async with asyncio.timeout(PATIENCE_S):
+        assert await robot.child.wait() == 1
+    assert "/skill did not stop within 0.5 s" in (robot.folder / "python.log").read_text()
+
+
+@pytest.mark.parametrize(
+    ("target", "text"),
+    [
+        ("robot.py:fly", "robot.py has no fly. It has asyncio, time, drive"),
+        ("nowhere.py:drive", "there is no file"),
+        ("drive", "/skill is not bound to a function. Write it as /skill: {python: my_robot.py:function}"),
+        ("robot.py:time", "which cannot be called"),
+    ],
+)
+async def test_what_cannot_be_bound_ends_the_process_with_one_message(
+    robot: Robot, target: str, text: str
+) -> None:
+    child = await robot.launch(skill=target)
+    async with asyncio.timeout(PATIENCE_S):
+        assert await child.wait() == 1
+    log = (robot.folder / "python.log").read_text()
+    assert text in log
+    assert "Traceback" not in log
