@@ -24,7 +24,8 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     `settings` are what it is told beyond robot, endpoint and run directory. It is ready when its liveliness
     token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL. Once it was ready it
     is started again up to `restarts` times when it ends by itself. With a `command` it is a program of the
-    user's own: it gets its settings in the environment, and is ready when it serves its paths.
+    user's own: it gets its settings in the environment, and is ready when it serves its paths. The word
+    `python` stands for the Python that this runs in. Others may go on without an adapter.
     """
 
     name: str
@@ -35,11 +36,13 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     restarts: int = 0
     command: tuple[str, ...] = ()
     folder: str | None = None
+    is_adapter: bool = False
 
     def argv(self, settings: Path) -> list[str]:
         """The command line."""
         if self.command:
-            return guarded(list(self.command))
+            program, *arguments = self.command
+            return guarded([sys.executable if program == "python" else program, *arguments])
         return [sys.executable, "-m", self.module, str(settings)]
 
 
@@ -82,6 +85,7 @@ def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:
         restarts=kind.restarts,
         command=tuple(plan.options["command"]) if plan.is_command else (),
         folder=str(folder) if plan.is_command else None,
+        is_adapter=True,
     )
 
 

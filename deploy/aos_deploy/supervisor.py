@@ -195,6 +195,10 @@ class Supervisor:
                 return
             self._changed(program.name, "ended", _status_text(status))
             if not running.ready.is_set() or running.starts > program.restarts:
+                if running.ready.is_set() and self._has_other_adapters(running):
+                    # What it served is unavailable; the mission goes on with the rest.
+                    self._changed(program.name, "given up", self._end_of(running, status).message)
+                    return
                 raise self._end_of(running, status)
             await asyncio.sleep(_RESTART_S * 2 ** (running.starts - 1))
             if self._is_stopping:
@@ -203,6 +207,12 @@ class Supervisor:
             self._run.forget_fault(program.name)
             running.child = await self._process(program)
             self._changed(program.name, "starting", f"for the {running.starts}. time")
+
+    def _has_other_adapters(self, running: _Running) -> bool:
+        others = (each for each in self._running.values() if each is not running)
+        return running.program.is_adapter and any(
+            each.program.is_adapter and each.child.returncode is None for each in others
+        )
 
     def _end_of(self, running: _Running, status: int) -> AosError:
         name = running.program.name

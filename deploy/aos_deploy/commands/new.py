@@ -12,19 +12,22 @@ from typing import Annotated
 
 import typer
 
+from aos_deploy.adapter_templates import KINDS, adapter_files
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files, shipped
 from aos_protocol.errors import DocumentError
 from aos_protocol.spelling import did_you_mean
 from aos_registry.convert import Dialect, convert
-from aos_registry.load import read_bundle_files
+from aos_registry.load import load_bundle, read_bundle_files
 from aos_registry.merge import pushed_project
 
 __all__ = ["register"]
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
-new_app = typer.Typer(no_args_is_help=True, help="Write documents or a whole example to start from.")
+new_app = typer.Typer(
+    no_args_is_help=True, help="Write documents, an adapter or a whole example to start from."
+)
 
 
 def register(app: typer.Typer) -> None:
@@ -71,6 +74,32 @@ def skill(
     is_json = all(file.endswith(".json") for file in documents)
     _write(bundle, _in_dialect(texts, Dialect.JSON if is_json else Dialect.SDL))
     typer.echo(f"Check it: aos lint {bundle}")
+
+
+@new_app.command(epilog="Example: aos new adapter python --in fetch")
+def adapter(
+    kind: Annotated[str, typer.Argument(help=f"Of {', '.join(KINDS)}")],
+    bundle: Annotated[Path, typer.Option("--in", help="The bundle's directory")],
+    folder: Annotated[Path, typer.Option("--to", help="Where the files are made")] = Path(),
+) -> None:
+    """Write a deploy file for a bundle, and the program that serves its paths.
+
+    The program has a function for each path, with its fields and its result. It moves nothing yet.
+    """
+    if kind not in KINDS:
+        hint = did_you_mean(kind, KINDS) or f"Known are {', '.join(KINDS)}"
+        raise DocumentError(f"there is no template for the adapter {kind}", code="AOS126", hint=hint)
+    loaded = load_bundle(bundle)
+    if loaded.project is None:
+        raise DocumentError(
+            f"{bundle} has errors", hint=f"See aos lint {bundle}", diagnostics=loaded.diagnostics
+        )
+    way = os.path.relpath(bundle.resolve(), folder.resolve())
+    _write(folder, adapter_files(kind, loaded.project, way))
+    deploy = folder / f"{loaded.project.name}.yaml"
+    if kind == "external":
+        typer.echo(f"Start it by hand as {folder / loaded.project.name}_robot.py says, and then")
+    typer.echo(f"Run it:      aos-up {deploy}\nWithout it:  aos-up {deploy} --model")
 
 
 @new_app.command(epilog="Example: aos new example armadillo")

@@ -11,6 +11,7 @@ import difflib
 import importlib
 import logging
 import os
+import sys
 import threading
 from collections import Counter, deque
 from collections.abc import AsyncIterator, Iterable
@@ -191,6 +192,8 @@ class Host:
 
     async def run(self) -> None:
         """Until it is stopped, or cannot go on."""
+        if self._settings.folder not in sys.path:
+            sys.path.append(self._settings.folder)  # For classes that stand beside the deploy file.
         self._adapter = load_adapter(self._settings.adapter, self)
         await self._adapter.start()
         await self._service.ready()

@@ -1,0 +1,75 @@
+"""The tutorial of docs/adapters, followed line by line; and each template of an adapter, run as it is."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BIN = Path(sys.executable).parent
+PATIENCE_S = 120.0
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+
+
+def run(command: str) -> str:
+    """What a command says; it has to succeed. aos-up listens at a free port."""
+    name, *arguments = shlex.split(command)
+    if name == "aos-up":
+        arguments += ["--listen", "tcp/127.0.0.1:0"]
+    done = subprocess.run(
+        [BIN / name, *arguments], capture_output=True, text=True, check=False, timeout=PATIENCE_S
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def test_the_tutorial_can_be_followed(root: Path) -> None:
+    text = (root / "docs/adapters/tutorial.md").read_text(encoding="utf-8")
+    files = {"python": "fetch_robot.py", "yaml": "fetch.yaml"}
+    commands = 0
+    for language, block in re.findall(r"^```(\w+)\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        if language in files:
+            Path(files[language]).write_text(block, encoding="utf-8")
+            continue
+        said = ""
+        for line in block.splitlines():
+            if line.startswith("$ "):
+                said = run(line[2:])
+                commands += 1
+            else:
+                assert line in said
+    assert commands == 5
+    assert '"response":"taken"' in Path("runs/latest/journal.db").read_bytes().decode(errors="replace")
+
+
+@pytest.mark.parametrize("kind", ["command", "class", "external"])
+def test_a_new_adapter_runs_as_it_is(kind: str, root: Path) -> None:
+    run("aos new project fetch")
+    run(f"aos new adapter {kind} --in fetch")
+    if kind != "external":
+        assert "mission ended: the goal is reached" in run("aos-up fetch.yaml --plain")
+        return
+    arguments = ["fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"]
+    with subprocess.Popen([BIN / "aos-up", *arguments], stdout=subprocess.PIPE, text=True) as up:
+        assert up.stdout is not None
+        while not Path("runs/latest/run.json").exists():
+            assert up.stdout.readline()
+        endpoint = re.search(r'"endpoint": "(\S+)"', Path("runs/latest/run.json").read_text())
+        assert endpoint is not None
+        told = {"AOS_ENDPOINT": endpoint[1], "AOS_ROBOT": "fetch", "AOS_ADAPTER": "robot"}
+        with subprocess.Popen([sys.executable, "fetch_robot.py"], env={**os.environ, **told}) as program:
+            said = up.stdout.read()
+            program.send_signal(signal.SIGTERM)
+        assert up.wait() == 0, said
+    assert "mission ended: the goal is reached" in said
