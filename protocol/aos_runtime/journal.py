@@ -1,8 +1,8 @@
 """An append-only journal: what was appended is on the disk, whatever is killed afterwards.
 
-SQLite in WAL mode with synchronous=FULL: an append returns when the row is on the disk (about half a
-millisecond), so append before telling anybody. Payloads are JSON, so that any SQLite tool reads a journal.
-One process writes, any number read.
+SQLite in WAL mode with synchronous=FULL: an append returns when the row is on the disk (half a millisecond
+on a good disk, five on a poor one), so append before telling anybody. Payloads are JSON, so that any SQLite
+tool reads a journal. One process writes, any number read.
 """
 
 from __future__ import annotations
@@ -54,8 +54,12 @@ class Journal:
         self._clock = clock
 
     @classmethod
-    def open(cls, path: str | Path, *, clock: Clock | None = None) -> Self:
-        """Opens for appending, creating what is not there. StorageError AOS701 or AOS702 with the reason."""
+    def open(cls, path: str | Path, *, clock: Clock | None = None, survives_power_loss: bool = True) -> Self:
+        """Opens for appending, creating what is not there. StorageError AOS701 or AOS702 with the reason.
+
+        Without `survives_power_loss` rows survive the end of any process, and an append takes a twentieth of
+        a millisecond.
+        """
         path = Path(path)
         try:
             connection = sqlite3.connect(path, isolation_level=None)
@@ -64,7 +68,7 @@ class Journal:
         try:
             _check_version(connection, path, may_be_new=True)
             connection.execute("PRAGMA journal_mode = WAL")
-            connection.execute("PRAGMA synchronous = FULL")
+            connection.execute(f"PRAGMA synchronous = {'FULL' if survives_power_loss else 'NORMAL'}")
             connection.executescript(_SCHEMA)
         except sqlite3.Error as error:
             connection.close()

@@ -27,7 +27,8 @@ class Ledger:
     """Kept in a journal, so that it outlives the process."""
 
     def __init__(self, path: Path) -> None:
-        self._journal = Journal.open(path)
+        # After a loss of power no mission goes on, and its ids are never used again.
+        self._journal = Journal.open(path, survives_power_loss=False)
         self._started: set[ActivationId] = set()
         self._ended: dict[ActivationId, SkillResult | Fault] = {}
         self._epochs: dict[str, int] = {}

@@ -36,7 +36,8 @@ class OutcomeLedger:
     @classmethod
     def open(cls, path: Path) -> Self:
         """The ledger in a file, created if it is not there; StorageError if it cannot be read."""
-        return cls(Journal.open(path))
+        # After a loss of power no mission goes on, and its ids are never used again.
+        return cls(Journal.open(path, survives_power_loss=False))
 
     def close(self) -> None:
         self._journal.close()
