@@ -21,6 +21,7 @@ _COMMANDS = {
     "up": ("up",),
     "decisions": ("decisions",),
     "runs": ("runs",),
+    "skill": ("skill", "resume"),
     "documents": ("lint", "inspect"),
     "bundle": ("bundle",),
     "convert": ("convert",),

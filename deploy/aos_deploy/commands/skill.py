@@ -1,0 +1,264 @@
+"""`aos skill` and `aos resume`: what can be called, calling it by hand, stopping it, and going on."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import Awaitable, Callable
+from typing import Annotated, Any
+
+import msgspec
+import typer
+
+from aos_deploy.living_runs import living_run
+from aos_deploy.options import AsJson, Connect, Robot, Run, Runs
+from aos_protocol.documents import LocalSource, Project
+from aos_protocol.errors import AosError, DeployError, SkillError
+from aos_protocol.keys import Serving
+from aos_protocol.messages import (
+    ActivationId,
+    Cancel,
+    Cancelled,
+    MappingQuery,
+    MappingState,
+    MissionState,
+    ProjectQuery,
+    ProjectRevision,
+    ResumeMission,
+    SkillCall,
+    SkillProgress,
+    SkillResult,
+)
+from aos_runtime.client import AosClient
+from aos_runtime.subscription import Subscription
+
+__all__ = ["register"]
+
+_ASK_S = 5.0
+
+skill_app = typer.Typer(no_args_is_help=True, help="See, call and stop the skills of a running system.")
+
+
+def register(app: typer.Typer) -> None:
+    """Adds `aos skill` and `aos resume` to `aos`."""
+    app.add_typer(skill_app, name="skill")
+    app.command(epilog="Example: aos resume")(resume)
+
+
+@skill_app.command("list", epilog="Example: aos skill list --json")
+def list_skills(
+    connect: Connect = "", robot: Robot = "", run: Run = None, runs: Runs = None, as_json: AsJson = False
+) -> None:
+    """List the skills with their paths, and who serves them."""
+
+    async def show(aos: AosClient) -> None:
+        project, state, servers = await _known(aos)
+        rows = [_row(skill.name, skill.mapping.activation.path, state, servers) for skill in project.skills]
+        if as_json:
+            typer.echo(json.dumps(rows, indent=2))
+            return
+        for row in rows:
+            served = ", ".join(row["served_by"]) or row["unavailable"]
+            typer.echo(f"{row['skill']:24} {row['path']:24} {served}")
+
+    _with_system(connect, robot, run, runs, show)
+
+
+@skill_app.command(epilog="Example: aos skill info pick")
+def info(
+    name: Annotated[str, typer.Argument(help="The skill, or its path")],
+    connect: Connect = "",
+    robot: Robot = "",
+    run: Run = None,
+    runs: Runs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Tell what a skill's call takes, and what its mapping reads."""
+
+    async def show(aos: AosClient) -> None:
+        project, state, servers = await _known(aos)
+        skills = {skill.name: skill for skill in project.skills}
+        paths = {skill.mapping.activation.path.strip("/"): skill for skill in project.skills}
+        skill = skills.get(name) or paths.get(name.strip("/"))
+        if skill is None:
+            raise SkillError(f"there is no skill {name}", code="AOS501", hint=f"Known: {', '.join(skills)}")
+        mapping = skill.mapping
+        topics = {v.topic for v in mapping.local_variables if v.source is LocalSource.TOPIC}
+        row = _row(skill.name, mapping.activation.path, state, servers) | {
+            "kind": mapping.activation.kind,
+            "fields": {field.name: field.value.code for field in mapping.activation.fields},
+            "topics": sorted(topics),
+            "responses": [rule.response for rule in mapping.rules],
+        }
+        typer.echo(json.dumps(row, indent=2) if as_json else _lines(row))
+
+    _with_system(connect, robot, run, runs, show)
+
+
+@skill_app.command(epilog="Example: aos skill call /navigate x=1.5 y=0 yaw=0 --anyway")
+def call(
+    path: Annotated[str, typer.Argument(help="The path that an adapter serves")],
+    fields: Annotated[list[str] | None, typer.Argument(help="NAME=VALUE; values are JSON, or texts")] = None,
+    deadline: Annotated[float, typer.Option(min=0.1, help="Seconds that it may take")] = 60.0,
+    anyway: Annotated[bool, typer.Option("--anyway", help="Also while the mission moves the robot")] = False,
+    connect: Connect = "",
+    robot: Robot = "",
+    run: Run = None,
+    runs: Runs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Call a skill by hand, past mapping and mission; Ctrl-C cancels it.
+
+    The belief does not learn of it.
+    """
+
+    async def work(aos: AosClient) -> None:
+        state = await _mission_state(aos)
+        if state is not None and state.phase in ("planning", "acting") and not anyway:
+            hint = "Let it hold or end first, or use --anyway"
+            raise DeployError("the mission moves the robot", code="AOS502", hint=hint)
+        request = SkillCall(ActivationId("by-hand", time.time_ns(), 1), path, _values(fields or []), deadline)
+        async with aos.bus.listen(aos.keys.progress(path), SkillProgress) as progress:
+            telling = asyncio.create_task(_tell(progress, as_json))
+            try:
+                result = await aos.bus.ask(
+                    aos.keys.call(path), request, SkillResult, timeout_s=deadline + _ASK_S
+                )
+            except asyncio.CancelledError:
+                await _stop(aos, path, request.id)
+                raise
+            finally:
+                telling.cancel()
+        typer.echo(json.dumps(result.fields, indent=None if as_json else 2))
+
+    _with_system(connect, robot, run, runs, work)
+
+
+@skill_app.command(epilog="Example: aos skill cancel")
+def cancel(
+    path: Annotated[str, typer.Argument(help="Only what runs there; else whatever moves")] = "",
+    connect: Connect = "",
+    robot: Robot = "",
+    run: Run = None,
+    runs: Runs = None,
+) -> None:
+    """Stop what moves; the mission goes on with that outcome."""
+
+    async def work(aos: AosClient) -> None:
+        paths = [path] if path else sorted({each.path for each in await _servers(aos)})
+        answers = await asyncio.gather(*(_stop(aos, each) for each in paths), return_exceptions=True)
+        stopped = {each for answer in answers if isinstance(answer, Cancelled) for each in answer.ids}
+        typer.echo(f"stopped {', '.join(sorted(stopped))}" if stopped else "nothing was moving")
+        for each in answers:
+            if isinstance(each, AosError) and path:
+                raise each
+
+    _with_system(connect, robot, run, runs, work)
+
+
+def resume(connect: Connect = "", robot: Robot = "", run: Run = None, runs: Runs = None) -> None:
+    """Go on with a mission that holds, after what it holds for was looked after."""
+
+    async def work(aos: AosClient) -> None:
+        before = await aos.mission_state()
+        await aos.bus.ask(aos.keys.resume_mission, ResumeMission(), MissionState, timeout_s=_ASK_S)
+        typer.echo(
+            "the mission goes on" if before.phase == "holding" else f"it does not hold: {before.phase}"
+        )
+
+    _with_system(connect, robot, run, runs, work)
+
+
+# --- what they share ---------------------------------------------------------------------------------
+
+
+def _with_system(
+    connect: str, robot: str, run: Any, runs: Any, work: Callable[[AosClient], Awaitable[None]]
+) -> None:
+    if connect and not robot:
+        raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
+    if not connect:
+        record = living_run(run, runs).read_record()
+        connect, robot = record.endpoint, record.robot
+
+    async def inside() -> None:
+        async with AosClient.connect(connect, robot) as aos:
+            await work(aos)
+
+    asyncio.run(inside())
+
+
+async def _known(aos: AosClient) -> tuple[Project, MappingState, list[Serving]]:
+    bus, keys = aos.bus, aos.keys
+    revision = await bus.ask(keys.project, ProjectQuery(), ProjectRevision, timeout_s=_ASK_S)
+    state = await bus.ask(keys.mapping_state, MappingQuery(), MappingState, timeout_s=_ASK_S)
+    return revision.project, state, await _servers(aos)
+
+
+async def _servers(aos: AosClient) -> list[Serving]:
+    """Everything that is served now."""
+    servers = []
+    async with aos.bus.presence(aos.keys.all_serve) as present:
+        while present.has_items:
+            key, _ = await anext(present)
+            if (serving := aos.keys.serving_of(key)) is not None:
+                servers.append(serving)
+    return servers
+
+
+async def _mission_state(aos: AosClient) -> MissionState | None:
+    try:
+        return await aos.mission_state()
+    except AosError:
+        return None
+
+
+async def _stop(aos: AosClient, path: str, id: ActivationId | None = None) -> Cancelled:
+    return await aos.bus.ask(
+        aos.keys.cancel(path), Cancel("stopped by hand", id), Cancelled, timeout_s=_ASK_S
+    )
+
+
+async def _tell(progress: Subscription[tuple[str, SkillProgress]], as_json: bool) -> None:
+    async for _, each in progress:
+        if as_json:
+            typer.echo(msgspec.json.encode(each), err=True)
+        else:
+            typer.echo(f"{each.state:10} {each.progress:4.0%}  {each.text}", err=True)
+
+
+def _row(skill: str, path: str, state: MappingState, servers: list[Serving]) -> dict[str, Any]:
+    path = "/" + path.strip("/")
+    return {
+        "skill": skill,
+        "path": path,
+        "served_by": [f"{each.adapter} {each.version}" for each in servers if each.path == path],
+        "unavailable": state.unavailable.get(skill, ""),
+    }
+
+
+def _lines(row: dict[str, Any]) -> str:
+    lines = []
+    for name, value in row.items():
+        if isinstance(value, dict):
+            value = ", ".join(f"{field} = {code}" for field, code in value.items())
+        elif isinstance(value, list):
+            value = ", ".join(value)
+        if value:
+            lines.append(f"{name:12} {value}")
+    return "\n".join(lines)
+
+
+def _values(texts: list[str]) -> dict[str, Any]:
+    """Fields from NAME=VALUE; DeployError AOS801 for anything else."""
+    values = {}
+    for text in texts:
+        name, mark, value = text.partition("=")
+        if not mark:
+            raise DeployError(f"{text!r} is no field", hint="Write fields as NAME=VALUE")
+        try:
+            values[name] = json.loads(value)
+        except ValueError:
+            values[name] = value
+    return values

@@ -1,0 +1,135 @@
+"""`aos skill` and `aos resume` beside a mission that holds, and adapters that die in the middle of one."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+BIN = Path(sys.executable).parent
+PATIENCE_S = 120.0
+
+ROBOT = """
+import asyncio, os
+from pathlib import Path
+
+async def look(call):
+    if Path(FOLDER, "dirty").exists():
+        raise RuntimeError("the lens is dirty")
+    if Path(FOLDER, "doomed").exists():
+        Path(FOLDER, "doomed").unlink()
+        os._exit(1)
+    return {"bearing_rad": -1.0}
+
+async def take(call, side):
+    call.progress(0.5, "reaching out")
+    return {"success": side == "Right"}
+"""
+DEPLOY = """\
+aos: 1
+robot: fetch
+bundles: [fetch]
+bus: {listen: tcp/127.0.0.1:0}
+solver: {simulations: 1000}
+skills: {look: {on_failure: hold}}
+bind:
+  /look: {python: robot.py:look}
+  /take: {python: robot.py:take}
+runs: runs
+"""
+
+
+class Running:
+    """A mission, and commands beside it."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.events: list[dict[str, Any]] = []
+
+    def until(self, **wanted: str) -> dict[str, Any]:
+        """The next event that says so."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.events.append(json.loads(line))
+            if wanted.items() <= self.events[-1].items():
+                return self.events[-1]
+        raise AssertionError(f"{wanted} did not come: {self.events[-3:]}")
+
+    def aos(self, *arguments: str) -> str:
+        command = [BIN / "aos", *arguments, "--runs", "runs"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        return done.stdout + done.stderr
+
+
+@pytest.fixture
+def folder(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    subprocess.run([BIN / "aos", "new", "project", "fetch"], check=True, stdout=subprocess.DEVNULL)
+    (tmp_path / "robot.py").write_text(f"FOLDER = {str(tmp_path)!r}\n{ROBOT}")
+    (tmp_path / "fetch.yaml").write_text(DEPLOY)
+    return tmp_path
+
+
+@pytest.fixture
+def mission(folder: Path) -> Iterator[Running]:
+    """It holds, for the lens is dirty."""
+    (folder / "dirty").touch()
+    with started() as running:
+        yield running
+
+
+def started() -> Any:
+    return _Started()
+
+
+class _Started:
+    def __enter__(self) -> Running:
+        command = [BIN / "aos-up", "fetch.yaml", "--json"]
+        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        return Running(self._process)
+
+    def __exit__(self, *_: object) -> None:
+        self._process.send_signal(signal.SIGINT)
+        self._process.communicate(timeout=PATIENCE_S)
+
+
+def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running, folder: Path) -> None:
+    held = mission.until(event="mission", phase="holding")
+    assert "look: failed, AOS510: /look failed: RuntimeError: the lens is dirty" in held["remark"]
+
+    assert re.search(r"^take +/take +python 1$", mission.aos("skill", "list"), re.MULTILINE)
+    told = json.loads(mission.aos("skill", "info", "take", "--json"))
+    assert told["fields"] == {"side": "side"}
+    assert told["served_by"] == ["python 1"]
+    called = mission.aos("skill", "call", "/take", "side=Right")
+    assert '"success": true' in called
+    assert "executing   50%  reaching out" in called
+    assert "the lens is dirty" in mission.aos("skill", "call", "/look")
+    assert "there is no skill tke" in mission.aos("skill", "info", "tke")
+    assert mission.aos("skill", "cancel") == "nothing was moving\n"
+
+    (folder / "dirty").unlink()
+    assert mission.aos("resume") == "the mission goes on\n"
+    mission.until(event="mission", phase="ended", ending="goal")
+    assert mission.process.wait() == 0
+
+
+def test_an_adapter_that_dies_is_started_again_and_the_mission_goes_on(folder: Path) -> None:
+    (folder / "fetch.yaml").write_text(DEPLOY.replace("skills: {look: {on_failure: hold}}\n", ""))
+    (folder / "doomed").touch()
+    with started() as mission:
+        mission.until(event="service", service="python", state="ended")
+        mission.until(event="service", service="python", state="ready")
+        mission.until(event="mission", phase="ended", ending="goal")
+        assert mission.process.wait() == 0
+    outcomes = [event["outcome"]["status"] for event in mission.events if event.get("outcome")]
+    assert outcomes[0] == "unknown"
+    assert set(outcomes[1:]) == {"observed"}
