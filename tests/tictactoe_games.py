@@ -34,7 +34,7 @@ async def game(
     await engine.reset_belief()
     board, moves, step = EMPTY_BOARD, "", 0
     while True:
-        plan = await engine.plan(simulations=SIMULATIONS, seed=seed * 1000 + step)
+        plan = await engine.plan(simulations=SIMULATIONS, seed=seed * 1000 + step, planner="auto")
         action = plan.best.action
         step += 1
         if action == "look":

@@ -1,0 +1,78 @@
+"""What the documents of the simulated worlds decide: the claims of the paper, and what brute force says."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import random
+from pathlib import Path
+
+import pytest
+from models import built_bundle, engine_of
+from tictactoe_games import game
+
+from aos_skills.pybullet.world_file import load_world_file
+
+TO_EASY_TABLE = "navigate(destination=easy_table)"
+
+
+@pytest.mark.parametrize(
+    ("bundle", "first"),
+    [
+        ("armadillo-rough-blind", "pick"),
+        ("armadillo-finer-blind", TO_EASY_TABLE),
+        ("armadillo-rough-enhanced", "pick"),
+        ("armadillo-finer-enhanced", TO_EASY_TABLE),
+    ],
+)
+async def test_the_rough_pick_comes_first_and_the_finer_one_at_the_easy_table(
+    bundle: str, first: str, bundles: Path, cache_dir: Path
+) -> None:
+    async with engine_of(await built_bundle(bundles / bundle, cache_dir)) as engine:
+        values = sorted((await engine.exact()).actions, key=lambda value: -value.q)
+    assert values[0].action == first
+    assert values[0].q > values[1].q + 1
+
+
+async def test_the_blind_robot_serves_and_goes_back_to_the_tables(bundles: Path, cache_dir: Path) -> None:
+    async with engine_of(await built_bundle(bundles / "armadillo-rough-blind", cache_dir)) as engine:
+        await engine.reset_belief()
+        for action, response in (
+            ("pick", "pick_succeeded"),
+            ("navigate(destination=corridor)", "arrived"),
+            ("serve", "delivered"),
+            (TO_EASY_TABLE, "arrived"),
+            ("pick", "pick_succeeded"),
+        ):
+            plan = await engine.plan(simulations=100_000, seed=1, planner="auto")
+            assert plan.best.action == action
+            await engine.update(action, response)
+
+
+async def test_the_turtlebot_takes_the_shortest_of_all_tours(
+    root: Path, bundles: Path, cache_dir: Path
+) -> None:
+    room = load_world_file(root / "deploy/worlds/turtlebot.yaml").room
+    at = {name: (place.x, place.y) for name, place in room.places.items()}
+    start = (room.robot.x, room.robot.y)
+
+    def length(tour: tuple[str, ...]) -> float:
+        way = [start, *(at[name] for name in tour)]
+        return sum(math.dist(one, other) for one, other in itertools.pairwise(way))
+
+    decided = []
+    async with engine_of(await built_bundle(bundles / "turtlebot", cache_dir)) as engine:
+        await engine.reset_belief()
+        for step in range(len(at)):
+            plan = await engine.plan(simulations=100_000, seed=step, planner="auto")
+            decided.append(plan.best.action.removeprefix("navigate(stop=").removesuffix(")"))
+            await engine.update(plan.best.action, "arrived")
+    assert tuple(decided) == min(itertools.permutations(at), key=length)
+
+
+async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path, cache_dir: Path) -> None:
+    chance = random.Random(1)
+    async with engine_of(await built_bundle(bundles / "tictactoe", cache_dir)) as engine:
+        for seed in range(3):
+            ending, moves = await game(engine, "perfect", chance, seed, dry_centre=0.0)
+            assert ending != "X", moves
