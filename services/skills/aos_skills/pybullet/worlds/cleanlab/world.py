@@ -59,7 +59,7 @@ class CleanLab(World):
         self.cups = {name: self._cup(file.stations[name]) for name in filled_stations(file, seed)}
         """Bodies, by the station where each was at first."""
         self.robot = MobileArm(scene, (file.robot.x, file.robot.y, file.robot.yaw))
-        self.camera = Camera(scene, (0.0, -5.2, 4.6), (0.0, 0.0, 0.2), self._close_up)
+        self.camera = Camera(scene, (0.0, -5.4, 4.2), (0.0, 0.9, 0.4), self._close_up)
 
     @property
     def held_cup(self) -> str | None:

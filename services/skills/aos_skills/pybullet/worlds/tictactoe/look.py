@@ -15,6 +15,5 @@ def look(world: TicTacToe, fields: dict[str, Any]) -> dict[str, Any]:
     """Takes nothing; `board` is nine characters, row by row. Empty if there is no board in the picture."""
     if not world.is_robots_turn and not is_over(world.marks):
         world.let_other_draw()
-    world.is_robots_turn = True
     board = board_in(world.picture())
     return {"board": board or "", "success": board is not None}

@@ -86,6 +86,7 @@ class TicTacToe(World):
         cell = self._opponent(self.marks)
         self.board.cross(cell, self._person)
         self.marks = marked(self.marks, cell, "X")
+        self.is_robots_turn = True
         self.scene.wait(PERSON_DRAWS_S)
 
     def picture(self) -> np.ndarray[Any, np.dtype[np.uint8]]:
