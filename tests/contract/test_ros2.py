@@ -127,6 +127,13 @@ async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node:
     assert raised.value.code == "AOS503"
 
 
+async def test_humble_has_no_hashes_and_is_understood(endpoint: str, node: Node) -> None:
+    async with await Node.open(endpoint, RosTypes("humble", [INTERFACES]), name="old") as old:
+        old.serve("/lab/add", ADD, add)
+        assert (await node._server("/lab/add", ADD, DEADLINE_S)).key.endswith("/TypeHashNotSupported")
+        assert await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=DEADLINE_S) == {"sum": 3}
+
+
 async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node, node: Node) -> None:
     latched = Qos(depth=1, is_transient_local=True)
     received: asyncio.Queue[Any] = asyncio.Queue()

@@ -37,12 +37,15 @@ except ImportError as error:  # pragma: no cover - the extra is not installed
         hint=f"Run {pip_install('ros')}",
     ) from error
 
-__all__ = ["DISTRIBUTIONS", "Field", "RosTypes"]
+__all__ = ["DISTRIBUTIONS", "NO_HASH", "Field", "RosTypes"]
 
 DISTRIBUTIONS = tuple(
     store.value.removeprefix("ros2_") for store in Stores if store.value.startswith("ros2_")
 )
 """Releases of ROS 2 whose common messages are known without files."""
+
+NO_HASH = "TypeHashNotSupported"
+_WITHOUT_HASHES = ("dashing", "eloquent", "foxy", "galactic", "humble")
 
 _FILLER = "structure_needs_at_least_one_member"
 """The member that ROS 2 gives to empty messages, one byte on the wire."""
@@ -87,6 +90,7 @@ class RosTypes:
             for name, (constants, fields) in self._store.fielddefs.items()
         }
         self._hashes: dict[str, str] = {}
+        self._has_hashes = distribution not in _WITHOUT_HASHES
         self._files = definitions_in((*interfaces, SHIPPED))
 
     def encoded(self, type_name: str, value: Mapping[str, Any]) -> bytes:
@@ -113,7 +117,13 @@ class RosTypes:
         return self._plain(type_name, message)
 
     def hash(self, type_name: str) -> str:
-        """ROS 2's hash of a type, `RIHS01_` and 64 digits; of a service for `package/srv/Name`."""
+        """ROS 2's hash of a type, `RIHS01_` and 64 digits; of a service for `package/srv/Name`.
+
+        Distributions before Iron have none, and `NO_HASH` in its place.
+        """
+        if not self._has_hashes:
+            self._know(type_name)
+            return NO_HASH
         if type_name not in self._hashes:
             self._know(type_name)
             self._hashes[type_name] = self._store.hash_rihs01(type_name)

@@ -14,7 +14,7 @@ from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
 from aos_skills.ros import action_client
 from aos_skills.ros.action_server import ActionServer
 from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, ActionEnd, Fields, Qos, RunGoal, TopicFound
-from aos_skills.ros.types import RosTypes
+from aos_skills.ros.types import NO_HASH, RosTypes
 from aos_skills.ros2.graph import Graph
 from aos_skills.ros2.wire import Attachment, Endpoint, Kind, gid_of
 
@@ -227,8 +227,7 @@ class Node:
     def _same_definition(self, theirs: Endpoint) -> None:
         """SkillError AOS509 unless a node's type is defined as here."""
         own = self.types.hash(theirs.type_name)
-        # Humble has no hashes and says so in words.
-        if theirs.type_hash.startswith("RIHS01_") and theirs.type_hash != own:
+        if NO_HASH not in (theirs.type_hash, own) and theirs.type_hash != own:
             raise SkillError(
                 f"the node {theirs.node} defines {theirs.type_name} of {theirs.name} differently from here",
                 code="AOS509",
