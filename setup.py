@@ -11,7 +11,7 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-SHARED = ("deploy/*.yaml", "deploy/bundles", "deploy/worlds", "tests/bench")
+SHARED = ("deploy/*.yaml", "deploy/bundles", "deploy/worlds", "deploy/interfaces", "tests/bench")
 
 
 class BuildWithShared(build_py):

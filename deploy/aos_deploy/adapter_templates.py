@@ -10,10 +10,18 @@ from typing import Any
 
 from aos_protocol.codec import PROTOCOL_VERSION
 from aos_protocol.documents import AbstractionMapping, LocalSource, Project
+from aos_skills.ros.documented import documented
 
-__all__ = ["KINDS", "adapter_files"]
+__all__ = ["KINDS", "ROS_KINDS", "adapter_files"]
 
-KINDS = ("model", "python", "command", "external", "class")
+KINDS = ("model", "python", "command", "external", "class", "ros2", "dds", "ros1")
+
+ROS_KINDS = {
+    "ros2": ("tcp/127.0.0.1:7447", "where rmw_zenohd listens"),
+    "dds": ("lo", "the network interface; lo is this machine alone"),
+    "ros1": ("http://127.0.0.1:11311", "ROS_MASTER_URI"),
+}
+"""What the adapter is given of itself, and what that is."""
 
 _FIELD = re.compile(r"\b__input\.([A-Za-z_]\w*)")
 _EXAMPLES: dict[str, Any] = {"bool": True, "int": 0, "float": 0.0, "double": 0.0, "string": "", "str": ""}
@@ -35,7 +43,9 @@ def adapter_files(kind: str, project: Project, bundle: str) -> dict[str, str]:
     }
     made = {f"{name}.yaml": _deploy_file(kind, project, bundle, program, list(mappings))}
     template = {"python": "python", "class": "class"}.get(kind, "program")
-    if kind != "model":
+    if kind in ROS_KINDS:
+        made["interfaces/README.md"] = _interfaces(project)
+    elif kind != "model":
         source = files("aos_deploy") / "templates" / "adapter" / f"{template}.py.template"
         made[program] = Template(source.read_text("utf-8")).substitute(values)
     return made
@@ -57,13 +67,47 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
         lines += ["adapters:", "  robot: external"]
     elif kind == "class":
         lines += ["adapters:", f"  robot: {{class: '{program.removesuffix('.py')}:Robot'}}"]
+    elif kind in ROS_KINDS:
+        value, meaning = ROS_KINDS[kind]
+        lines += [
+            *(
+                ["bus: {listen: tcp/127.0.0.1:7448}    # 7447 is the router of ROS 2"]
+                if kind == "ros2"
+                else []
+            ),
+            f"# Every option: docs/adapters/{kind}.md.",
+            "adapters:",
+            "  robot:",
+            f"    {kind}: {value}    # {meaning}",
+            "    interfaces: [interfaces]    # the robot's own .msg, .srv and .action files",
+        ]
     lines.append("bind:")
-    if kind == "model":
-        lines.append('  "*": model')
-    for path in paths if kind != "model" else ():
+    everything = {"model": "model"} | dict.fromkeys(ROS_KINDS, "robot")
+    if kind in everything:
+        lines.append(f'  "*": {everything[kind]}')
+    for path in paths if kind not in everything else ():
         target = f"{{python: {program}:{_function_name(path)}}}" if kind == "python" else "robot"
         lines.append(f"  {path}: {target}")
     return "\n".join([*lines, "runs: runs", ""])
+
+
+def _interfaces(project: Project) -> str:
+    """Which interface files the documents ask for."""
+    known = documented(project)
+    lines = ["# The robot's own interfaces", ""]
+    lines += ["Copy here, from the robot's workspace, what is not common to all of ROS:", ""]
+    for what, types in (("path", known.paths), ("topic", known.topics)):
+        for name, type_name in types.items():
+            found = (
+                f"`{type_name}.{type_name.split('/')[1]}`" if type_name else "the type that the robot says"
+            )
+            lines.append(f"- the {what} `{name}`: {found}")
+    lines += [
+        "",
+        "Folders are those of packages: `PACKAGE/srv/NAME.srv`. `aos-up` names what is missing.",
+        "",
+    ]
+    return "\n".join(lines)
 
 
 def _function_name(path: str) -> str:

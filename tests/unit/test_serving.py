@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import Deployment, read_deploy_file
 from aos_deploy.serving import serving_program
 from aos_protocol.errors import DeployError
@@ -112,3 +114,24 @@ def test_anything_else_is_an_error_that_shows_how_to_write_it(target: object) ->
         DeployError, match=r"/pick is bound to .*Write the name of one, or \{service: /pick\}"
     ):
         way_to("/pick", target)
+
+
+@pytest.mark.parametrize("kind", ["ros2", "dds", "ros1"])
+def test_a_new_adapter_is_a_deploy_file_and_a_list_of_the_interfaces_it_needs(
+    kind: str, root: Path, tmp_path: Path
+) -> None:
+    bundle = root / "deploy" / "bundles" / "armadillo-finer"
+    command = ["new", "adapter", kind, "--in", str(bundle), "--to", str(tmp_path)]
+    made = CliRunner().invoke(aos_app(), command)
+    assert made.exit_code == 0, made.output
+    (adapter,) = read_deploy_file(tmp_path / "armadillo.yaml").adapters
+    assert (adapter.kind_name, adapter.serves_others) == (kind, True)
+    assert "`/pick`: the type that the robot says" in (tmp_path / "interfaces" / "README.md").read_text()
+
+
+def test_an_example_brings_its_interfaces_along(tmp_path: Path) -> None:
+    made = CliRunner().invoke(
+        aos_app(), ["new", "example", "armadillo-robot", "--in", str(tmp_path / "robot")]
+    )
+    assert made.exit_code == 0, made.output
+    assert (tmp_path / "robot" / "interfaces" / "armadillo_skills" / "srv" / "Navigate.srv").is_file()

@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from aos_deploy.adapter_templates import KINDS, adapter_files
+from aos_deploy.adapter_templates import KINDS, ROS_KINDS, adapter_files
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files, shipped
 from aos_protocol.errors import DocumentError
@@ -97,6 +97,8 @@ def adapter(
     way = os.path.relpath(bundle.resolve(), folder.resolve())
     _write(folder, adapter_files(kind, loaded.project, way))
     deploy = folder / f"{loaded.project.name}.yaml"
+    if kind in ROS_KINDS:
+        typer.echo(f"Read {folder / 'interfaces' / 'README.md'}, and then")
     if kind == "external":
         typer.echo(f"Start it by hand as {folder / loaded.project.name}_robot.py says, and then")
     typer.echo(f"Run it:      aos-up {deploy}\nWithout it:  aos-up {deploy} --model")
@@ -126,6 +128,8 @@ def _copy(deploy: Path, target: Path) -> None:
     """A deploy file and what it names, at the same places beside it, into a directory that is new."""
     named = read_deploy_file(deploy)
     found = [deploy, *named.bundles, *(path for path in (named.world, named.policy) if path is not None)]
+    given = [named.file.serve, *(plan.options for plan in named.adapters)]
+    found += [deploy.parent / place for part in given for place in part.get("interfaces", [])]
     try:
         target.mkdir(parents=True, exist_ok=True)
         if any(target.iterdir()):
@@ -171,6 +175,7 @@ def _write(folder: Path, texts: dict[str, str]) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for file, text in sorted(texts.items()):
+            (folder / file).parent.mkdir(parents=True, exist_ok=True)
             (folder / file).write_text(text, encoding="utf-8")
             typer.echo(f"wrote {folder / file}")
     except OSError as error:
