@@ -50,31 +50,42 @@ def chosen_run(run: Path | None, runs: Path | None) -> RunDirectory:
     """The run that a command means: the one named, else the one that goes on, else the last one.
 
     `runs` is the folder to look in; without one `runs` here comes first, then whatever goes on anywhere.
-    DeployError AOS801 if several go on or the one named is none, BusError AOS605 if there is none.
+    DeployError AOS801 if that is not one alone or the one named is none, BusError AOS605 if there is none.
     """
     if run is not None:
         named = RunDirectory(run)
         named.read_record()
         return named
-    going_on = living_runs()
-    here = [each for each in going_on if each.path.parent == (runs or RUNS).resolve()]
-    candidates = here or (going_on if runs is None else [])
-    if len(candidates) > 1:
-        raise DeployError(
-            f"{len(candidates)} missions run: {', '.join(str(each.path) for each in candidates)}",
-            code="AOS801",
-            hint="Name one with --run",
-        )
-    return candidates[0] if candidates else RunDirectory.latest(runs or RUNS)
+    here, elsewhere = _living(runs)
+    candidates = here or elsewhere
+    has_last = (runs or RUNS).joinpath("latest").exists()
+    if len(candidates) > 1 and (here or not has_last):
+        raise _several(candidates)
+    return candidates[0] if len(candidates) == 1 else RunDirectory.latest(runs or RUNS)
 
 
 def living_run(run: Path | None, runs: Path | None) -> RunDirectory:
-    """The chosen run; BusError AOS605 if it is over."""
+    """The same of those that go on alone; BusError AOS605 if the last one is over."""
+    here, elsewhere = _living(runs)
+    if run is None and len(here or elsewhere) > 1:
+        raise _several(here or elsewhere)
     chosen = chosen_run(run, runs)
     if not chosen.is_running:
         hint = "Start a system with aos-up, or name a running one with --run or --connect"
         raise BusError(f"the last run, {chosen.path.name}, is over", code="AOS605", hint=hint)
     return chosen
+
+
+def _living(runs: Path | None) -> tuple[list[RunDirectory], list[RunDirectory]]:
+    """The runs that go on in a folder, by default in ./runs, and those elsewhere if no folder is named."""
+    going_on = living_runs()
+    here = [run for run in going_on if run.path.parent == (runs or RUNS).resolve()]
+    return here, [run for run in going_on if run not in here] if runs is None else []
+
+
+def _several(runs: list[RunDirectory]) -> DeployError:
+    names = ", ".join(str(run.path) for run in runs)
+    return DeployError(f"{len(runs)} missions run: {names}", code="AOS801", hint="Name one with --run")
 
 
 def _folder() -> Path:

@@ -9,9 +9,11 @@ import sys
 import tomllib
 from pathlib import Path
 
+import msgspec
 import pytest
 from packaging.requirements import Requirement
 
+from aos_deploy.deploy_file import BusPart, DeployFile, MissionPart, SkillPart, SolverPart
 from aos_protocol import __version__, keys, messages
 from aos_protocol.errors import CODES
 from aos_protocol.keys import Keys, Serving
@@ -123,6 +125,20 @@ def test_a_limit_that_has_left_the_sources_is_an_error(root: Path, monkeypatch: 
     for place in ("aos_runtime.bus_config.LEASES", "planning/state_space.hpp:stats", "aos_x.y.Z"):
         with pytest.raises(AttributeError, match="any more"):
             table.value_at(place)
+
+
+@pytest.mark.parametrize("part", [DeployFile, BusPart, MissionPart, SolverPart, SkillPart])
+def test_the_page_of_the_deploy_file_has_every_key_with_its_default(
+    root: Path, part: type[msgspec.Struct]
+) -> None:
+    page = (root / "docs" / "deploy-file.md").read_text(encoding="utf-8")
+    for field in msgspec.structs.fields(part):
+        (row,) = [line for line in page.splitlines() if line.startswith("| ") and f"`{field.name}`" in line][
+            :1
+        ]
+        default = field.default
+        if isinstance(default, str | int | float) and not isinstance(default, bool) and default:
+            assert f"{default:g}" in row if isinstance(default, float) else str(default) in row
 
 
 def test_the_changelog_knows_the_version(root: Path) -> None:

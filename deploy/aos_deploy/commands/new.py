@@ -114,7 +114,7 @@ def example(
     They are copies, to be run and to be changed.
     """
     if name not in deploy_files():
-        hint = did_you_mean(name, deploy_files())
+        hint = did_you_mean(name, deploy_files()) or f"There are {', '.join(deploy_files())}"
         raise DocumentError(f"there is no example {name}", code="AOS101", hint=hint)
     target = folder or Path(name)
     _copy(deploy_files()[name], target)

@@ -1,0 +1,161 @@
+"""A newcomer's walk: docs/tutorial.md, done as it is written, in an empty folder.
+
+    python -m tests.walk        with AOS installed from its wheel; some minutes, most of it for compilers
+
+A comment before a block says what it is: `run`, `file: PATH`, `run in the background`, `run while it looks`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple, Self
+
+__all__ = ["Step", "Walk", "steps_of"]
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "tutorial.md"
+PATIENCE_S = 900.0
+_BLOCK = re.compile(r"<!-- (.*?) -->\n```\w*\n(.*?)```", re.DOTALL)
+_PORT = "bus: {listen: tcp/127.0.0.1:0}\n"
+"""Other systems may run where this one does."""
+
+_TAKES_ITS_TIME = "await asyncio.sleep(10)"
+_WAITS = "while not pathlib.Path({pushed!r}).exists(): await asyncio.sleep(0.05)"
+"""A look of the tutorial's robot lasts until the bundle is pushed, however long that takes here."""
+
+
+class Step(NamedTuple):
+    """One block of the page: what its comment says, and its text."""
+
+    kind: str
+    text: str
+
+
+def steps_of(page: Path = PAGE) -> list[Step]:
+    return [Step(kind, text) for kind, text in _BLOCK.findall(page.read_text(encoding="utf-8"))]
+
+
+class Walk:
+    """Does the steps with the commands of a folder; `said` is what they printed."""
+
+    def __init__(self, commands: Path, folder: Path, cache_dir: Path | None = None) -> None:
+        self._folder = folder
+        self._environment = {**os.environ, "PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"}
+        if cache_dir is not None:
+            self._environment["AOS_CACHE_DIR"] = str(cache_dir)
+        self.said: dict[str, str] = {}
+        self._background: subprocess.Popen[str] | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._background is not None:
+            self._background.kill()
+            self._background.communicate()
+
+    def do(self, step: Step) -> None:
+        """CalledProcessError or TimeoutExpired if a command does not do what the page says."""
+        if step.kind.startswith("file: "):
+            self._write(step.kind.removeprefix("file: "), step.text)
+        elif step.kind == "run in the background":
+            self._start(step.text.strip())
+        else:
+            if self._background is not None:
+                self._until_line("step  1: look  [")
+            for line in step.text.strip().splitlines():
+                self._run(line)
+            if self._background is not None:
+                (self._folder / "pushed").touch()
+                self._finish()
+
+    def _write(self, name: str, text: str) -> None:
+        if name.endswith(".yaml"):
+            text += _PORT
+        if _TAKES_ITS_TIME in text:
+            waits = _WAITS.format(pushed=str(self._folder / "pushed"))
+            text = text.replace(_TAKES_ITS_TIME, waits).replace(
+                "import random", "import pathlib\nimport random"
+            )
+        (self._folder / name).write_text(text, encoding="utf-8")
+
+    def _run(self, line: str) -> None:
+        done = subprocess.run(
+            line.split(),
+            cwd=self._folder,
+            env=self._environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+        )
+        self.said[line] = done.stdout + done.stderr
+        if done.returncode != 0:
+            raise AssertionError(f"{line} ended with {done.returncode}:\n{self.said[line]}")
+
+    def _start(self, line: str) -> None:
+        self._background = subprocess.Popen(
+            line.split(),
+            cwd=self._folder,
+            env=self._environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.said[line] = ""
+
+    def _until_line(self, beginning: str) -> None:
+        for line in self._lines():
+            if line.startswith(beginning):
+                return
+        raise AssertionError(f"it ended before any {beginning!r}:\n{self._last_said}")
+
+    def _finish(self) -> None:
+        assert self._background is not None
+        for _ in self._lines():
+            pass
+        if (status := self._background.wait(PATIENCE_S)) != 0:
+            raise AssertionError(f"the mission ended with {status}:\n{self._last_said}")
+        self._background = None
+
+    def _lines(self) -> Iterator[str]:
+        assert self._background is not None
+        assert self._background.stdout is not None
+        last = next(reversed([line for line in self.said if line.startswith("aos-up")]))
+        for line in self._background.stdout:
+            self.said[last] += line
+            yield line
+
+    @property
+    def _last_said(self) -> str:
+        return next(reversed(self.said.values()))
+
+
+def main() -> int:
+    """The walk with a wheel, told step by step."""
+    from tests.installed import built_wheel, install
+
+    root = PAGE.parents[1]
+    with tempfile.TemporaryDirectory(prefix="aos-walk-") as scratch:
+        place = Path(scratch)
+        (place / "empty").mkdir()
+        (place / "wheel").mkdir()
+        print("walk: building and installing the wheel", flush=True)
+        install(built_wheel(root, place / "wheel"), place / "environment", without=("pybullet", "PIL"))
+        with Walk(place / "environment" / "bin", place / "empty", place / "cache") as walk:
+            for step in steps_of():
+                first = "" if step.kind.startswith("file") else f": {step.text.splitlines()[0]}"
+                print(f"walk: {step.kind}{first}", flush=True)
+                walk.do(step)
+    print("walk: green")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
