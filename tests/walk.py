@@ -120,7 +120,8 @@ class Walk:
         assert self._background is not None
         for _ in self._lines():
             pass
-        if (status := self._background.wait(PATIENCE_S)) != 0:
+        self._background.communicate(timeout=PATIENCE_S)
+        if (status := self._background.returncode) != 0:
             raise AssertionError(f"the mission ended with {status}:\n{self._last_said}")
         self._background = None
 

@@ -132,10 +132,9 @@ def test_the_page_of_the_deploy_file_has_every_key_with_its_default(
     root: Path, part: type[msgspec.Struct]
 ) -> None:
     page = (root / "docs" / "deploy-file.md").read_text(encoding="utf-8")
+    rows = [line for line in page.splitlines() if line.startswith(("| ", "## "))]
     for field in msgspec.structs.fields(part):
-        (row,) = [line for line in page.splitlines() if line.startswith("| ") and f"`{field.name}`" in line][
-            :1
-        ]
+        row = next(line for line in rows if f"`{field.name}`" in line)
         default = field.default
         if isinstance(default, str | int | float) and not isinstance(default, bool) and default:
             assert f"{default:g}" in row if isinstance(default, float) else str(default) in row
