@@ -13,6 +13,7 @@ __all__ = ["until_skills_can_run"]
 
 _ASK_S = 5.0
 _NOBODY_S = 1.0
+MAPPINGS_S = 60.0
 
 
 async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -> None:
@@ -31,13 +32,18 @@ async def until_skills_can_run(supervisor: Supervisor, deployment: Deployment) -
             )
     newest: MappingState | None = None
 
-    def is_complete(state: MappingState) -> bool:
+    def has_revision(state: MappingState) -> bool:
         nonlocal newest
         newest = state
-        return state.refused >= project.revision or (
-            state.revision >= project.revision and not state.unavailable
-        )
+        return max(state.refused, state.revision) >= project.revision
 
+    def is_complete(state: MappingState) -> bool:
+        return has_revision(state) and (state.refused >= project.revision or not state.unavailable)
+
+    # How long mappings take to be generated says nothing of adapters.
+    await state_when(
+        bus, keys.mapping_state, MappingQuery(), MappingState, has_revision, timeout_s=MAPPINGS_S
+    )
     longest_s = max((plan.kind.ready_s for plan in deployment.adapters), default=_NOBODY_S)
     try:
         await state_when(
