@@ -23,7 +23,7 @@ class Installation:
     def __init__(self, environment: Path, folder: Path, cache_dir: Path) -> None:
         self.commands = environment / "bin"
         self.folder = folder
-        own = {"AOS_CACHE_DIR": str(cache_dir), "XDG_RUNTIME_DIR": str(folder.parent)}
+        own = {"AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(folder.parent)}
         self.environment = {**os.environ, **own}
 
     def run(self, *command: str) -> subprocess.CompletedProcess[str]:

@@ -46,6 +46,7 @@ class Walk:
     def __init__(self, commands: Path, folder: Path, cache_dir: Path | None = None) -> None:
         self._folder = folder
         self._environment = {**os.environ, "PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"}
+        self._environment["AOS_RUNNING_DIR"] = str(folder / ".running")
         if cache_dir is not None:
             self._environment["AOS_CACHE_DIR"] = str(cache_dir)
         self.said: dict[str, str] = {}

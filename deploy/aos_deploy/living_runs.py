@@ -1,6 +1,7 @@
 """Which missions run on this machine, whatever folder they were started in, and which one a command means.
 
-A run is noted in the cache directory while it lasts. What is noted there and does not run was killed.
+A run is noted while it lasts, in $AOS_RUNNING_DIR or `running` in the cache directory. What is noted there
+and does not run was killed.
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ def noted(run: RunDirectory) -> Iterator[None]:
 def living_runs() -> list[RunDirectory]:
     """The runs that go on, the oldest first; notes of others are removed."""
     found = []
-    for link in sorted(_folder().iterdir()) if _folder().is_dir() else []:
+    notes = sorted(_folder().iterdir()) if _folder().is_dir() else []
+    for link in (note for note in notes if note.is_symlink()):
         run = RunDirectory(link.resolve())
         if run.is_running:
             found.append(run)
@@ -89,4 +91,5 @@ def _several(runs: list[RunDirectory]) -> DeployError:
 
 
 def _folder() -> Path:
-    return cache_dir() / "running"
+    named = os.environ.get("AOS_RUNNING_DIR")
+    return Path(named).absolute() if named else cache_dir() / "running"

@@ -57,7 +57,7 @@ def test_wrong_usage_has_its_own_exit_code(command: list[str]) -> None:
 
 
 def test_decisions_without_a_run_say_what_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("AOS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("AOS_RUNNING_DIR", str(tmp_path))
     result = run("aos", "decisions", folder=tmp_path)
     assert result.returncode == 3
     assert result.stderr.startswith("aos: AOS605: there is no run in runs. Start one with aos-up, or name")

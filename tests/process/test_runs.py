@@ -1,0 +1,199 @@
+"""Runs of aos-up beside one another: who gets the port, what `latest` is, and who finds a living mission."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from aos_deploy.endpoint import hold_endpoint
+from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_protocol.errors import BusError
+
+BIN = Path(sys.executable).parent
+PATIENCE_S = 120.0
+TIGER = """\
+aos: 1
+robot: tiger
+bundles: [{root}/deploy/bundles/bench/tiger]
+bus: {{listen: "{endpoint}"}}
+mission: {{goal_probability: 1.0, step_limit: 1_000_000}}
+solver: {{simulations: 100, planner: pomcp, ponder_while_acting: false}}
+runs: runs
+"""
+
+
+class Up:
+    """A running aos-up. What it prints is read all the time, since it would wait for a reader."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self._process = process
+        self._said: queue.Queue[str] = queue.Queue()
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            event = json.loads(line)["event"]
+            if event == "decision":
+                self._said.put(event)
+        self._said.put("end")
+
+    def has_decided(self) -> bool:
+        """Whether it came to a decision before its end."""
+        return self._said.get(timeout=PATIENCE_S) == "decision"
+
+    def end(self) -> tuple[int, str]:
+        """Exit code and errors after Ctrl-C."""
+        self._process.send_signal(signal.SIGINT)
+        return self.ended()
+
+    def ended(self) -> tuple[int, str]:
+        """Exit code and errors."""
+        assert self._process.stderr is not None
+        error = self._process.stderr.read()
+        self._reader.join(PATIENCE_S)
+        return self._process.wait(PATIENCE_S), error
+
+
+class Place:
+    """A folder with a deploy file of a mission that does not end, and the commands in it.
+
+    Missions are noted in `running`, so that those of other tests are not seen.
+    """
+
+    def __init__(self, root: Path, folder: Path, endpoint: str, cache_dir: Path, running: Path) -> None:
+        self.folder = folder
+        self.endpoint = endpoint
+        own = {"AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(running), "PYTHONUNBUFFERED": "1"}
+        self.environment = {**os.environ, **own}
+        self.deploy = folder / "tiger.yaml"
+        self.deploy.write_text(TIGER.format(root=root, endpoint=endpoint))
+
+    @property
+    def latest(self) -> Path:
+        return (self.folder / "runs" / "latest").resolve()
+
+    @contextmanager
+    def up(self) -> Iterator[Up]:
+        command = [BIN / "aos-up", self.deploy, "--model", "--json"]
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        with subprocess.Popen(command, text=True, env=self.environment, **pipes) as process:
+            try:
+                yield Up(process)
+            finally:
+                process.kill()
+
+    def run(self, *arguments: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [BIN / "aos", *arguments],
+            cwd=folder or self.folder,
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+        )
+
+
+def free_port() -> int:
+    """Below the ports of outgoing connections."""
+    with hold_endpoint("tcp/127.0.0.1:0") as endpoint:
+        return int(endpoint.rpartition(":")[2])
+
+
+@pytest.fixture(scope="module")
+def place(root: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Place:
+    endpoint, running = f"tcp/127.0.0.1:{free_port()}", tmp_path_factory.mktemp("running")
+    return Place(root, tmp_path_factory.mktemp("place"), endpoint, cache_dir, running)
+
+
+@pytest.fixture(scope="module")
+def mission(place: Place) -> Iterator[Path]:
+    """The run directory of a mission that goes on."""
+    with place.up() as up:
+        assert up.has_decided()
+        yield place.latest
+        assert up.end() == (130, "")
+
+
+def test_a_second_start_is_refused_and_latest_stays(place: Place, mission: Path) -> None:
+    with place.up() as second:
+        code, error = second.ended()
+    assert code == 3
+    assert f"cannot listen at {place.endpoint}: another AOS runs there. `aos runs` lists" in error
+    assert place.latest == mission
+    assert [each.name for each in mission.parent.glob("2*")] == [mission.name]
+
+
+@pytest.mark.parametrize("is_elsewhere", [False, True], ids=["here", "elsewhere"])
+def test_a_living_mission_is_found(place: Place, mission: Path, tmp_path: Path, is_elsewhere: bool) -> None:
+    folder = tmp_path if is_elsewhere else place.folder
+    decided = place.run("decisions", "--no-follow", "--json", folder=folder)
+    assert json.loads(decided.stdout.splitlines()[0])["step"] == 1, decided.stderr
+    assert place.run("bundle", "list", folder=folder).stdout.startswith("tiger  revision 1")
+    (listed,) = json.loads(place.run("runs", "--running", "--json", folder=folder).stdout)
+    assert (Path(listed["directory"]).name, listed["ending"]) == (mission.name, "running")
+
+
+def test_of_two_living_missions_one_has_to_be_named(
+    root: Path, place: Place, mission: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "other").mkdir()
+    running = Path(place.environment["AOS_RUNNING_DIR"])
+    other = Place(root, tmp_path / "other", "tcp/127.0.0.1:0", cache_dir, running)
+    with other.up() as up:
+        assert up.has_decided()
+        anywhere = place.run("bundle", "list", folder=tmp_path)
+        assert anywhere.returncode == 1
+        assert str(mission) in anywhere.stderr
+        assert "Name one with --run" in anywhere.stderr
+        assert place.run("bundle", "list", "--run", str(mission), folder=tmp_path).returncode == 0
+        assert other.run("bundle", "list").returncode == 0  # Its own folder has one.
+        assert up.end() == (130, "")
+
+
+def test_of_two_starts_at_once_one_runs(root: Path, cache_dir: Path, tmp_path: Path) -> None:
+    place = Place(root, tmp_path, f"tcp/127.0.0.1:{free_port()}", cache_dir, tmp_path)
+    with place.up() as one, place.up() as other:
+        decided = {each: each.has_decided() for each in (one, other)}
+        codes = {decided[each]: each.end()[0] if decided[each] else each.ended()[0] for each in decided}
+    assert codes == {True: 130, False: 3}
+
+
+def test_a_mission_that_was_killed_does_not_run(place: Place, tmp_path: Path) -> None:
+    killed = RunDirectory(tmp_path / "20260101T000000Z-tiger")
+    killed.path.mkdir()
+    # The process id is one that is there: in a new container it soon belongs to somebody else.
+    record: dict[str, Any] = {"robot": "tiger", "endpoint": "tcp/127.0.0.1:1", "deploy_file": "x", "seed": 1}
+    killed.write_record(RunRecord(**record, started="2026-01-01T00:00:00+00:00", pid=os.getpid()))
+    assert not killed.is_running
+    (listed,) = json.loads(place.run("runs", "--runs", str(tmp_path), "--json").stdout)[:1]
+    assert listed["ending"] == "killed"
+
+
+def test_an_endpoint_is_held_by_one_start_at_a_time() -> None:
+    with ExitStack() as first:
+        endpoint = first.enter_context(hold_endpoint("tcp/127.0.0.1:0"))
+        with pytest.raises(BusError, match="another AOS runs there"):
+            first.enter_context(hold_endpoint(endpoint))
+    with hold_endpoint(endpoint) as again:
+        assert again == endpoint
+
+
+def test_an_endpoint_where_another_program_listens_is_refused() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        endpoint = f"tcp/127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(BusError, match="Address already in use"), hold_endpoint(endpoint):
+            pytest.fail("it was held")
