@@ -26,6 +26,10 @@ class Findings:
         """From now on what is found in the file shows its line."""
         self._lines[file] = lines
 
+    def lines_of(self, file: str) -> Sequence[str]:
+        """The lines of a file, as far as they are known."""
+        return self._lines.get(file, ())
+
     def error(self, code: str, message: str, span: Span, hint: str = "", mend: Mend | None = None) -> None:
         self.add(Diagnostic(Severity.ERROR, code, message, span, hint, mend=mend))
 
@@ -75,7 +79,7 @@ class Findings:
         return tuple(sorted(unique, key=lambda diagnostic: (diagnostic.span, diagnostic.code)))
 
     def _line(self, span: Span) -> str:
-        lines = self._lines.get(span.file, ())
+        lines = self.lines_of(span.file)
         return lines[span.line - 1].rstrip() if 0 < span.line <= len(lines) else ""
 
     def _excerpt(self, span: Span) -> str:

@@ -2,12 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Collection, Iterable, Iterator
 
 from aos_protocol.documents import Assignment, Snippet
 from aos_runtime.snippets import Cpp, read_cpp, read_cpp_expression
 
-__all__ = ["snippets_of"]
+__all__ = ["absent_skills", "snippets_of"]
+
+_COMPARED = re.compile(r"\s*[!=]=\s*(?:NULL|nullptr)\b")
+_COMPARED_BEFORE = re.compile(r"(?:NULL|nullptr)\s*[!=]=\s*$")
+
+
+def absent_skills(cpp: Cpp, known: Collection[str]) -> frozenset[str]:
+    """The names that extrinsic code compares with NULL, as it does with skills, and that are not `known`."""
+    own = {declaration.name for declaration in cpp.declarations}
+    return frozenset(
+        mention.path[0]
+        for mention in cpp.mentions
+        if len(mention.path) == 1
+        and mention.path[0] not in own
+        and mention.path[0] not in known
+        and (
+            _COMPARED.match(cpp.code, mention.extent.end)
+            or _COMPARED_BEFORE.search(cpp.code, 0, mention.extent.start)
+        )
+    )
 
 
 def snippets_of(assignments: Iterable[Assignment]) -> Iterator[tuple[Snippet, Cpp]]:

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
 from aos_protocol.errors import ModelError
+from aos_solver.building import build as building
 from aos_solver.child import engine, replay
 
 HALL = """project: hall
@@ -77,10 +78,10 @@ def hall(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Ca
     return write
 
 
-def linted(app: typer.Typer, folder: Path) -> dict[str, Any]:
+def linted(app: typer.Typer, folder: Path, exit_code: int = 0) -> dict[str, Any]:
     """The findings by code, each as severity, place and hint; there is one of each code here."""
     result = CliRunner().invoke(app, ["lint", str(folder), "--format", "json"])
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == exit_code, result.output
     found = json.loads(result.stdout)["diagnostics"]
     return {each["code"]: (each["severity"], _place(each["span"]), each["hint"]) for each in found}
 
@@ -112,12 +113,53 @@ def test_a_fault_of_model_code_names_its_document_line(
     assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 5)
 
 
-def test_a_fault_that_the_actions_lead_to_is_a_warning_of_lint(
+STEP = "state__.place = state.place + 1;\n"
+REACHED = [
+    (STEP + "if (state.place == 2) throw 1;", "AOS215"),
+    (STEP + "int i = 0; while (i >= 0) { i = state.place; state__.place = i; }", "AOS211"),
+    (STEP + "std::vector<int> cells(2); cells.at(state.place + 1) = 1;", "AOS215"),
+]
+
+
+@pytest.mark.parametrize(("code", "error_code"), REACHED, ids=["exception", "loop", "index"])
+def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
+    app: typer.Typer, hall: Callable[..., Path], code: str, error_code: str
+) -> None:
+    severity, place, _ = linted(app, hall(code), exit_code=1)[error_code]
+    assert (severity, place) == ("error", "walk.sd:5")
+
+
+def test_steps_that_take_long_and_end_are_a_warning(
+    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "REACH_MARGIN_S", -1.4)
+    slow = "int s = 0; for (int i = 0; i < 200000000; i++) s += (i ^ state.place) % 7;\n"
+    severity, place, hint = linted(app, hall(slow + "state__.place = state.place + 1 + s % 2;"))["AOS211"]
+    assert (severity, place) == ("warning", "walk.sd:4")
+    assert hint.startswith("Make steps cheaper")
+
+
+RECURSIVE = """auto sum = []<int N>(auto self, std::integral_constant<int, N>) -> int {
+    if constexpr (N == 0) return 0;
+    else return N + self(self, std::integral_constant<int, N - 1>{}) %s;
+};
+state__.place = sum(sum, std::integral_constant<int, %d>{});"""
+
+
+def test_templates_that_recurse_deeply_are_refused_at_their_line(
     app: typer.Typer, hall: Callable[..., Path]
 ) -> None:
-    folder = hall("state__.place = state.place + 1;\nif (state.place == 2) throw 1;")
-    severity, place, _ = linted(app, folder)["AOS215"]
-    assert (severity, place) == ("warning", "walk.sd:5")
+    assert linted(app, hall(RECURSIVE % ("", 800)), exit_code=1)["AOS201"][1] == "walk.sd:6"
+
+
+def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
+    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(building, "MODEL_CPU_S", 1.0)
+    monkeypatch.setattr(building, "ENGINE_SHARE", 0.0)
+    many = "auto sum = []<int... I>(std::integer_sequence<int, I...>) { return (0 + ... + I); };\n"
+    folder = hall(many + "state__.place = sum(std::make_integer_sequence<int, 20000>{});")
+    assert linted(app, folder, exit_code=1)["AOS202"][:2] == ("error", "walk.sd:4")
 
 
 def test_a_model_whose_goal_and_doors_can_be_reached_is_clean(
@@ -137,10 +179,11 @@ def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_exten
     }
 
 
-def test_where_the_search_does_not_see_all_it_remarks_only(
+def test_where_the_search_does_not_see_all_it_remarks_a_missing_goal_only(
     app: typer.Typer, hall: Callable[..., Path]
 ) -> None:
-    found = linted(app, hall("state__.place = state.place + 1;", goal="-1"))
+    found = linted(app, hall("state__.place = state.place + 1;", goal="-1", door="-1"))
+    assert found.keys() == {"AOS132"}
     severity, place, hint = found["AOS132"]
     assert (severity, place) == ("remark", "hall.ef:10")
     assert hint.startswith("Looked at 1")

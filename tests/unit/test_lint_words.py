@@ -202,3 +202,28 @@ def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one
     one = ENVIRONMENT.replace("horizon: 4", "horizon: 4\none_state_model: true")
     for environment in (ENVIRONMENT, one):
         assert [each.code for each in found(environment=environment, skill=skill)] == ["AOS123"]
+
+
+EXTRINSIC = "\nextrinsic_code:\nif (pour != NULL && AOS.Bernoulli(0.5)) state_.second.x = 1;\n"
+
+
+def test_a_skill_that_was_left_out_counts_as_never_chosen() -> None:
+    (only,) = found(environment=ENVIRONMENT + EXTRINSIC)
+    assert (only.code, only.severity, only.message) == (
+        "AOS110",
+        Severity.WARNING,
+        "there is no skill `pour`",
+    )
+    assert only.hint == "It counts as one that is never chosen"
+    misspelt = EXTRINSIC.replace("pour", "wlak")
+    assert found(environment=ENVIRONMENT + misspelt)[0].hint == "Did you mean `walk`?"
+
+
+def test_parameters_of_a_skill_that_was_left_out_are_an_error() -> None:
+    looking = EXTRINSIC.replace("AOS.Bernoulli(0.5)", "pour->cups > 1")
+    assert [each.severity for each in found(environment=ENVIRONMENT + looking)] == [
+        Severity.WARNING,
+        Severity.ERROR,
+    ]
+    pointer = "\nextrinsic_code:\nCell* cell = NULL;\nif (cell == NULL) state_.second.x = 1;\n"
+    assert found(environment=ENVIRONMENT + pointer) == ()

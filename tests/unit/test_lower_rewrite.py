@@ -15,6 +15,12 @@ NAMES = Rewriting(
 )
 
 
+def test_a_draw_over_a_local_vector_gives_one_of_its_values() -> None:
+    code = "vector<int> values{1, 5}; n = AOS.SampleDiscrete(values, {0.5, 0.5});"
+    text, _ = rewrite(read_cpp(code), Rewriting(frozenset(), {}, containers=frozenset({"values"})), ())
+    assert text == "vector<int> values{1, 5}; n = values.at(AOS.SampleDiscrete(-1, {0.5, 0.5}));"
+
+
 def rewritten(code: str) -> str:
     return piece_of(code).text
 

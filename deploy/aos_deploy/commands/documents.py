@@ -93,8 +93,7 @@ def _model_findings(path: Path, project: Project) -> tuple[Diagnostic, ...]:
     import asyncio  # These would make the other commands start slower.
 
     from aos_deploy.program import cache_dir
-    from aos_solver.emission.lower import lower
-    from aos_solver.hot_plug import build_project
+    from aos_solver.hot_plug import build_project, lowered
     from aos_solver.reachability import reachability_findings
 
     async def findings() -> tuple[Diagnostic, ...]:
@@ -110,7 +109,7 @@ def _model_findings(path: Path, project: Project) -> tuple[Diagnostic, ...]:
         if not error.diagnostics:
             return (Diagnostic(Severity.ERROR, error.code, error.message, Span(path.name), error.hint),)
         return with_excerpts(error.diagnostics, read_bundle_files(path)[0])
-    _, warnings = lower(project)
+    _, warnings = lowered(project)
     return with_excerpts((*warnings, *reached), read_bundle_files(path)[0])
 
 

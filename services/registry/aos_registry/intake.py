@@ -15,7 +15,7 @@ from aos_registry.catalogue import Catalogue
 from aos_registry.documents.document import DocumentKind
 from aos_registry.load import LoadedBundle, load_files, with_excerpts
 from aos_registry.merge import changed_skills, merge, pushed_project
-from aos_registry.reading import read_documents
+from aos_registry.reading import KnownFiles, read_documents
 from aos_runtime.clock import Clock
 
 __all__ = ["Intake", "ModelCheckPort"]
@@ -48,23 +48,24 @@ class Intake:
 
     async def push(self, files: Mapping[str, bytes], source: str) -> tuple[BundleReport, bool]:
         """What became of the files, and whether there is a new revision. AosError if it cannot be stored."""
-        project = pushed_project(files)
+        known: KnownFiles = {}
+        project = pushed_project(files, known)
         current = self._catalogue.current(project)
-        merged = merge(current.files if current else {}, files)
-        loaded = load_files(merged.files, name=source or "bundle")
+        merged = merge(current.files if current else {}, files, known)
+        loaded = load_files(merged.files, name=source or "bundle", known=known)
         number = current.number if current else 0
-        unknown = () if current else self._unknown_project(project, files)
+        unknown = () if current else self._unknown_project(project, files, known)
         diagnostics = (*unknown, *merged.diagnostics, *loaded.diagnostics)
         if loaded.project is None or has_errors(diagnostics):
             return BundleReport(project, False, number, diagnostics, source=source), False
         if current is not None and current.digest == loaded.digest and project in self.revisions:
             return BundleReport(project, True, number, diagnostics, source=source), False
+        if too_large := _too_large_for_the_bus(loaded.project):
+            return BundleReport(project, False, number, (*diagnostics, too_large), source=source), False
         findings = with_excerpts(await self._check_model(loaded.project), merged.files)
         diagnostics += findings
         if has_errors(findings):
             return BundleReport(project, False, number, diagnostics, source=source), False
-        if too_large := _too_large_for_the_bus(loaded.project):
-            return BundleReport(project, False, number, (*diagnostics, too_large), source=source), False
         before = self.revisions.get(project)
         added, changed = changed_skills(before.project if before else None, loaded.project)
         number = self._stored(project, loaded, merged.files)
@@ -123,9 +124,11 @@ class Intake:
         self.revisions[project] = ProjectRevision(number, loaded.digest, loaded.project)
         return number
 
-    def _unknown_project(self, project: str, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
+    def _unknown_project(
+        self, project: str, files: Mapping[str, bytes], known: KnownFiles
+    ) -> tuple[Diagnostic, ...]:
         """The error for documents that extend a project which is not there; a misspelt name, most likely."""
-        documents = read_documents(files, Findings()).values()
+        documents = read_documents(files, Findings(), known).values()
         if not project or not self.revisions or any(d.kind is DocumentKind.ENVIRONMENT for d in documents):
             return ()
         hint = did_you_mean(project, self.revisions) or f"It holds {quoted(sorted(self.revisions))}"

@@ -18,7 +18,13 @@ from aos_registry.archive import is_archive_name, read_archive
 from aos_registry.assembly import assemble
 from aos_registry.check import check
 from aos_registry.documents.source import open_source
-from aos_registry.reading import MAX_BUNDLE_BYTES, MAX_BUNDLE_FILES, is_document_name, read_documents
+from aos_registry.reading import (
+    MAX_BUNDLE_BYTES,
+    MAX_BUNDLE_FILES,
+    KnownFiles,
+    is_document_name,
+    read_documents,
+)
 
 __all__ = ["LoadedBundle", "bundle_digest", "load_bundle", "load_files", "read_bundle_files", "with_excerpts"]
 
@@ -48,14 +54,21 @@ def load_bundle(path: Path) -> LoadedBundle:
 
 
 def load_files(
-    files: Mapping[str, bytes], *, name: str = "bundle", remarks: Iterable[Diagnostic] = ()
+    files: Mapping[str, bytes],
+    *,
+    name: str = "bundle",
+    remarks: Iterable[Diagnostic] = (),
+    known: KnownFiles | None = None,
 ) -> LoadedBundle:
-    """The bundle of these files, by plain file names. `name` is the place of what has no file."""
+    """The bundle of these files, by plain file names. `name` is the place of what has no file.
+
+    Files that are in `known` are not read again.
+    """
     remarks = tuple(remarks)
     if has_errors(remarks):
         return LoadedBundle(None, remarks, "", {})
     findings = Findings()
-    documents = read_documents(files, findings) if files else {}
+    documents = read_documents(files, findings, known) if files else {}
     has_unread_files = findings.has_errors and any(
         is_document_name(file) and file not in documents for file in files
     )

@@ -11,7 +11,7 @@ from aos_protocol.documents import Project
 from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document, DocumentKind
 from aos_registry.documents.version import is_higher
-from aos_registry.reading import is_document_name, read_documents
+from aos_registry.reading import KnownFiles, is_document_name, read_documents
 
 __all__ = ["MergedFiles", "changed_skills", "merge", "pushed_project"]
 
@@ -23,21 +23,25 @@ class MergedFiles(msgspec.Struct, frozen=True):
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
-def pushed_project(files: Mapping[str, bytes]) -> str:
+def pushed_project(files: Mapping[str, bytes], known: KnownFiles | None = None) -> str:
     """The project that files belong to: the environment's, else the first named; empty where none is."""
-    documents = [document for document in read_documents(files, Findings()).values() if document.project]
+    documents = [
+        document for document in read_documents(files, Findings(), known).values() if document.project
+    ]
     leading = [d for d in documents if d.kind is DocumentKind.ENVIRONMENT] or documents
     return leading[0].project if leading else ""
 
 
-def merge(current: Mapping[str, bytes], new: Mapping[str, bytes]) -> MergedFiles:
+def merge(
+    current: Mapping[str, bytes], new: Mapping[str, bytes], known: KnownFiles | None = None
+) -> MergedFiles:
     """`new` over `current`. A file that is new under the name of another document is refused.
 
     Files that are no documents are left out; documents that cannot be read are kept, so that checking the
     result reports them.
     """
-    current_documents = read_documents(current, Findings()) if current else {}
-    new_documents = read_documents(new, Findings()) if new else {}
+    current_documents = read_documents(current, Findings(), known) if current else {}
+    new_documents = read_documents(new, Findings(), known) if new else {}
     identities = {document.identity for document in new_documents.values() if _has_name(document)}
     kept = {
         name: data

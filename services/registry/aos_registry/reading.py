@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import PurePath
 
-from aos_protocol.diagnostics import Span
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.findings import Findings
 from aos_registry.documents.document import Document
 from aos_registry.documents.json_document import read_json
@@ -13,7 +15,7 @@ from aos_registry.documents.sdl_document import read_sdl
 from aos_registry.documents.sdl_sections import GRAMMARS
 from aos_registry.documents.source import open_source
 
-__all__ = ["MAX_BUNDLE_BYTES", "MAX_BUNDLE_FILES", "is_document_name", "read_documents"]
+__all__ = ["MAX_BUNDLE_BYTES", "MAX_BUNDLE_FILES", "KnownFiles", "is_document_name", "read_documents"]
 
 MAX_BUNDLE_FILES = 1000
 MAX_BUNDLE_BYTES = 8 * 1024 * 1024
@@ -25,8 +27,26 @@ def is_document_name(name: str) -> bool:
     return not PurePath(name).name.startswith(".") and (suffix == ".json" or suffix in GRAMMARS)
 
 
-def read_documents(files: Mapping[str, bytes], findings: Findings) -> dict[str, Document]:
-    """The documents of the files that are one, by file name and in order of it."""
+class ReadFile(msgspec.Struct, frozen=True):
+    """What reading one file gave: its lines where it is text, its document where it is one."""
+
+    document: Document | None
+    diagnostics: tuple[Diagnostic, ...]
+    lines: tuple[str, ...]
+
+
+KnownFiles = dict[tuple[str, bytes], ReadFile]
+"""Files that were read before, by name and content: one push looks at the same files several times."""
+
+
+def read_documents(
+    files: Mapping[str, bytes], findings: Findings, known: KnownFiles | None = None
+) -> dict[str, Document]:
+    """The documents of the files that are one, by file name and in order of it.
+
+    What is in `known` is not read again, and what is read is put there.
+    """
+    known = {} if known is None else known
     total = sum(map(len, files.values()))
     if len(files) > MAX_BUNDLE_FILES or total > MAX_BUNDLE_BYTES:
         limits = f"{MAX_BUNDLE_FILES} files and {MAX_BUNDLE_BYTES} bytes"
@@ -35,10 +55,21 @@ def read_documents(files: Mapping[str, bytes], findings: Findings) -> dict[str, 
         return {}
     documents = {}
     for name in sorted(files):
-        document = _read(name, files[name], findings)
-        if document is not None:
-            documents[name] = document
+        read = known.get((name, files[name]))
+        if read is None:
+            read = known[name, files[name]] = _read_file(name, files[name])
+        findings.add_source(name, read.lines)
+        for diagnostic in read.diagnostics:
+            findings.add(diagnostic)
+        if read.document is not None:
+            documents[name] = read.document
     return documents
+
+
+def _read_file(name: str, data: bytes) -> ReadFile:
+    findings = Findings()
+    document = _read(name, data, findings)
+    return ReadFile(document, findings.diagnostics, tuple(findings.lines_of(name)))
 
 
 def _read(name: str, data: bytes, findings: Findings) -> Document | None:

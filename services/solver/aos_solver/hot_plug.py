@@ -26,8 +26,9 @@ from aos_solver.building.build import BuildKind, BuiltModel, build
 from aos_solver.child.engine import Engine
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
+from aos_solver.emission.program import Program
 
-__all__ = ["ModelShelf", "RunningModel", "build_project", "emitted_model"]
+__all__ = ["ModelShelf", "RunningModel", "build_project", "emitted_model", "lowered"]
 
 log = logging.getLogger(__name__)
 
@@ -61,12 +62,18 @@ async def build_project(
 
 
 @lru_cache(maxsize=8)
+def lowered(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
+    """What `lower` makes of a project, remembered: whoever checks documents builds them as well."""
+    return lower(project)
+
+
+@lru_cache(maxsize=8)
 def emitted_model(project: Project) -> EmittedModel:
     """The C++ of a project; ModelError as from `build_project`.
 
     It is remembered: documents are checked before they are used, and a change may be taken back.
     """
-    program, diagnostics = lower(project)
+    program, diagnostics = lowered(project)
     if program is None or has_errors(diagnostics):
         raise ModelError(
             f"the documents of {project.name} have mistakes",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
 from aos_protocol.errors import ModelError
@@ -9,19 +11,20 @@ from aos_protocol.findings import Findings
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Reach
 from aos_solver.child.engine import Engine
+from aos_solver.child.engine_child import OverdueError
 
 __all__ = ["reachability_findings"]
 
 _NAMED_ACTIONS = 3
-_TIME_S = 2.0
+_TIME_S = 1.5
 
 
 async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Diagnostic, ...]:
     """Looks at the states that the actions can lead to from the initial belief, for a few seconds at most.
 
-    What is missing is a warning where all states were looked at, and a remark with the search's extent where
-    there are more; nothing is said where the initial belief cannot be enumerated. A fault of model code on
-    the way is a warning at its place.
+    What is missing is a warning where all states were looked at. Where there are more, a missing goal is a
+    remark with the search's extent, and nothing is said of preconditions. Nothing is said where the initial
+    belief cannot be enumerated. A fault of model code on the way is an error at its place.
     """
     try:
         engine = await Engine.start(built, seed=1)
@@ -30,26 +33,33 @@ async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Di
         finally:
             await engine.close()
     except ModelError as error:
-        return tuple(_as_warning(diagnostic) for diagnostic in error.diagnostics)
+        if not error.diagnostics:
+            raise
+        is_fault = not isinstance(error, OverdueError)
+        return tuple(_reached(diagnostic, is_fault) for diagnostic in error.diagnostics)
     if reach.states == 0:
         return ()
     findings = Findings()
-    tell = findings.remark if reach.limit else findings.warning
+    is_whole = not reach.limit
+    tell = findings.warning if is_whole else findings.remark
     goal = _goal_span(project.environment)
-    if goal is not None and not reach.has_goal:
+    if goal is not None and not reach.has_goal and (is_whole or reach.depth > 0):
         tell("AOS132", "no action leads to a goal", goal, _extent(reach))
-    for skill in project.skills:
+    for skill in project.skills if is_whole else ():
         actions = [action for action in reach.actions if action.skill == skill.name]
         unmet = [action.name for action in actions if not action.is_met]
         if unmet and skill.model.precondition:
             message = f"the precondition of {_named(unmet, len(actions), skill.name)} is never met"
-            tell("AOS131", message, skill.model.precondition[0].span, _extent(reach))
+            findings.warning("AOS131", message, skill.model.precondition[0].span, _extent(reach))
     return findings.diagnostics
 
 
-def _as_warning(diagnostic: Diagnostic) -> Diagnostic:
+def _reached(diagnostic: Diagnostic, is_fault: bool) -> Diagnostic:
+    """A fault is an error. What only takes too long to look at everything is a warning."""
+    severity = Severity.ERROR if is_fault else Severity.WARNING
+    hint = diagnostic.hint if is_fault else "Make steps cheaper: a search makes many thousand of them"
     message = f"in a state that can be reached: {diagnostic.message}"
-    return Diagnostic(Severity.WARNING, diagnostic.code, message, diagnostic.span, diagnostic.hint)
+    return msgspec.structs.replace(diagnostic, severity=severity, message=message, hint=hint)
 
 
 def _goal_span(environment: Environment) -> Span | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import msgspec
 
-from aos_protocol.diagnostics import Mend, Span
+from aos_protocol.diagnostics import Mend, Severity, Span
 from aos_protocol.documents import Assignment, Environment, SkillModel
 from aos_protocol.findings import Findings
 from aos_protocol.spelling import quoted
@@ -15,6 +15,7 @@ from aos_registry.check.blocks import Block, environment_blocks, skill_blocks
 from aos_registry.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_registry.check.weights import check_weights
 from aos_runtime.cpp_keywords import COMPILER_NAMES, SPECIAL_NAMES
+from aos_runtime.document_code import absent_skills
 from aos_runtime.snippets import (
     Access,
     Call,
@@ -122,7 +123,16 @@ class _BlockCheck:
         self._enum_sizes = {name: len(enum.values) for name, enum in scope.enums.items()}
         self._enum_sizes |= around.enum_sizes
         self._declared = around.declared
+        self._told_absent: set[str] = set()
+        self._absent = self._absent_skills()
         self._locals = {declaration.name: declaration.type for declaration in self._cpp.declarations}
+
+    def _absent_skills(self) -> frozenset[str]:
+        """Skills that extrinsic code looks for, and that may have been left out."""
+        if not self._block.role.sees_chosen_action:
+            return frozenset()
+        known = {*self._scope.skills, *self._block.names, *self._declared, *STATE_COPIES, *_LITERAL_NAMES}
+        return absent_skills(self._cpp, known | {"NULL"})
 
     def run(self) -> None:
         for fault in self._cpp.faults:
@@ -200,8 +210,22 @@ class _BlockCheck:
             self._check_named_path(mention, root)
         elif self._block.role.sees_chosen_action and root in self._scope.skills and len(mention.path) > 1:
             self._check_action_path(mention, root)
+        elif root in self._absent:
+            self._check_absent_skill(mention, root)
         elif root not in self._declared:
             self._check_special_name(mention, root)
+
+    def _check_absent_skill(self, mention: Mention, root: str) -> None:
+        """A skill that is not there is never chosen; its parameters nobody knows."""
+        span, skills = self._span(mention.root), self._scope.skills
+        if len(mention.path) > 1:
+            message = f"there is no skill `{root}` that has parameters"
+            hint = "If it was left out, leave out what looks at its parameters too"
+            self._unknown(root, skills, message, span, hint)
+        elif root not in self._told_absent:
+            self._told_absent.add(root)
+            message, hint = f"there is no skill `{root}`", "It counts as one that is never chosen"
+            self._findings.unknown(root, skills, message, span, hint, severity=Severity.WARNING)
 
     def _check_special_name(self, mention: Mention, root: str) -> None:
         """A name that starts as those of the language, or is set like one of them and lacks underscores."""

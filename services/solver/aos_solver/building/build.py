@@ -19,11 +19,12 @@ from typing import Any, Literal
 
 import msgspec
 
+from aos_protocol.diagnostics import Diagnostic, Severity
 from aos_protocol.errors import ModelError
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.compiler_messages import read_messages, without_line_directives
-from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, run_compiler
+from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, ran_out, run_compiler
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
 
 __all__ = ["ANY_SIZE", "SOURCES", "BuildKind", "BuiltModel", "build", "build_engine"]
@@ -49,6 +50,19 @@ _OPTIONS: dict[BuildKind, tuple[str, ...]] = {
     "unoptimized": ("-O0", "-DAOS_QUICK"),
 }
 
+MODEL_CPU_S = 4.0
+ENGINE_SHARE = 1 / 8
+LINES_PER_CPU_S = 250
+"""How much processor time a quick build of a model may take: so much, or a share of what the engine took
+where that is more, and a second more for so many lines. Usual models need half a second, the engine 25 s."""
+
+_LIMITS = ("-ftemplate-depth=100",)
+"""What models' templates need is a third of it; document code that recurses without end is told at once."""
+
+_COMPILE_TIME_CODE = re.compile(r"\b(?:template|constexpr|consteval|\w*(?:_constant|_sequence))\b|\]\s*<")
+
+_SECONDS = "seconds"
+"""The file in an engine's entry that says how long this machine compiled it."""
 _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
 _ENGINE_OBJECT = "engine.o"
@@ -134,10 +148,12 @@ async def build_engine(
             commands.append(compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"]))
         # Our own sources are known to end: only a busy machine takes long for them.
         deadline_s = 5 * compiler.deadline_s
+        started_s = time.monotonic()
         runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
         for output, status in await _together(runs):
             if status != 0:
                 raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
+        (staging / _SECONDS).write_text(f"{time.monotonic() - started_s:.1f}")
 
     return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make)
 
@@ -195,12 +211,22 @@ class _Build:
             state_bytes=state_bytes,
         )
 
+    @property
+    def _cpu_s(self) -> int | None:
+        """Processor time for a model that somebody waits for; more for long ones, and on slow machines."""
+        if self._options == _OPTIONS["thorough"]:
+            return None
+        engine_s = _engine_seconds(self._cache.find(_engine_name(self._compiler, STATE_BYTES[0])))
+        return int(
+            max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self._emitted.cpp.count("\n") / LINES_PER_CPU_S
+        )
+
     async def _compile(self, staging: Path) -> None:
         (staging / MODEL_FILE).write_text(self._emitted.cpp)
         (staging / _SOURCE).write_text(without_line_directives(self._emitted.cpp))
-        options = [*self._options, *self._precompiled]
+        options = [*self._options, *self._precompiled, *_LIMITS]
         compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
-        output, status = await self._run(compilation, staging)
+        output, status = await self._run(compilation, staging, cpu_s=self._cpu_s)
         if status != 0:
             raise self._failure(output, status)
         (staging / _SOURCE).unlink()
@@ -239,7 +265,7 @@ class _Build:
             raise internal_error(self._emitted.project, output, status, self._kept_source())
         model.unlink()
 
-    async def _run(self, command: list[str], staging: Path) -> tuple[str, int]:
+    async def _run(self, command: list[str], staging: Path, *, cpu_s: int | None = None) -> tuple[str, int]:
         return await run_compiler(
             self._compiler,
             command,
@@ -248,6 +274,7 @@ class _Build:
             self._emitted.project,
             LIMIT_HINT,
             niceness=self._niceness,
+            cpu_s=cpu_s,
         )
 
     def _failure(self, output: str, status: int) -> ModelError:
@@ -259,16 +286,31 @@ class _Build:
                 hint="Mend the places named",
                 diagnostics=report.diagnostics,
             )
-        if status < 0 or status > 128 or "memory exhausted" in output or "out of memory" in output:
-            message = f"the compiler ran out of time or memory on {project}"
-            return ModelError(message, code="AOS202", hint=LIMIT_HINT)
+        if ran_out(output, status):
+            return self._limit_error()
         return internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
+
+    def _limit_error(self) -> ModelError:
+        """At the first document code that may compute while it is compiled, if there is any."""
+        message = f"the compiler ran out of time or memory on {self._emitted.project}"
+        suspects = (piece for piece in self._emitted.pieces if _COMPILE_TIME_CODE.search(piece.text))
+        spans = tuple(piece.locate(1, 1) for piece in suspects)
+        found = tuple(Diagnostic(Severity.ERROR, "AOS202", message, span, LIMIT_HINT) for span in spans[:1])
+        return ModelError(message, code="AOS202", hint=LIMIT_HINT, diagnostics=found)
 
     def _kept_source(self) -> Path:
         """The emitted file at a place where it can be looked at."""
         kept = self._cache.directory / f"failed-{self._emitted.digest[:16]}.cpp"
         kept.write_text(self._emitted.cpp)
         return kept
+
+
+def _engine_seconds(entry: Path | None) -> float:
+    """How long this machine took to compile the engine; 0 where nobody has looked."""
+    try:
+        return float((entry / _SECONDS).read_text()) if entry is not None else 0.0
+    except (OSError, ValueError):
+        return 0.0
 
 
 def _circumstances(compiler: Compiler) -> str:

@@ -9,7 +9,7 @@ from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.building.compiler import Compiler
 
-__all__ = ["LIMIT_HINT", "internal_error", "run_compiler"]
+__all__ = ["LIMIT_HINT", "internal_error", "ran_out", "run_compiler"]
 
 LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 """What to do about a compiler that runs out of time or memory over a model."""
@@ -17,6 +17,13 @@ LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 _OUR_LIMIT_HINT = "The machine is too busy or too small for it; try again when less runs"
 """The same over our own sources."""
 
+_OUT_OF = (
+    "memory exhausted",
+    "out of memory",
+    "Killed signal",
+    "CPU time limit exceeded",
+    "File size limit exceeded",
+)
 _ADDRESS_SPACE_BYTES = 4 << 30
 _FILE_BYTES = 512 << 20
 _OUTPUT_LIMIT_BYTES = 4 << 20
@@ -31,16 +38,18 @@ async def run_compiler(
     hint: str = _OUR_LIMIT_HINT,
     *,
     niceness: int = 0,
+    cpu_s: int | None = None,
 ) -> tuple[str, int]:
     """What the command says in `directory`, and its status.
 
     ModelError AOS202 with the `hint`, which names `what` is compiled, if it takes longer than `deadline_s`.
+    `cpu_s` limits each of its processes in seconds of processor time; see `ran_out`.
     """
     memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
     # The deadline is of the wall clock; this is for what outlives even the guard's end. Zig has threads.
     limits = Limits(
         address_space_bytes=memory,
-        cpu_s=int(deadline_s * 4) + 1,
+        cpu_s=cpu_s or int(deadline_s * 4) + 1,
         file_bytes=_FILE_BYTES,
         niceness=niceness,
     )
@@ -60,6 +69,11 @@ async def run_compiler(
         raise ModelError(message, code="AOS202", hint=hint) from error
     finally:
         await child.stop()
+
+
+def ran_out(output: str, status: int) -> bool:
+    """Whether a compiler ended by a limit to its time, its memory or its files."""
+    return status < 0 or status > 128 or any(words in output for words in _OUT_OF)
 
 
 def internal_error(what: str, output: str, status: int, source: Path) -> ModelError:

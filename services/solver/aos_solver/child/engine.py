@@ -39,7 +39,13 @@ from aos_solver.child.answers import (
     WorldSteps,
     WrittenListing,
 )
-from aos_solver.child.engine_child import EngineChild, EngineStart, ImpossiblePolicy, KilledError
+from aos_solver.child.engine_child import (
+    EngineChild,
+    EngineStart,
+    ImpossiblePolicy,
+    KilledError,
+    OverdueError,
+)
 from aos_solver.child.local_values import UnusableLocals, local_values_line
 from aos_solver.child.observed_numbers import numbers_by_name, numbers_field
 from aos_solver.child.replay import at_its_statement
@@ -64,6 +70,7 @@ ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
 """For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
 LISTING_DEADLINE_S = 600.0
+REACH_MARGIN_S = 2.5
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000
 
@@ -182,8 +189,13 @@ class Engine:
         return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
     async def reach(self, time_s: float) -> Reach:
-        """Which states the actions can lead to from the current belief, looked at for so long at most."""
-        return await self._ask(f"reach\t{time_s}", Reach, deadline_s=time_s + ANSWER_DEADLINE_S)
+        """Which states the actions can lead to from the current belief, looked at for so long at most.
+
+        OverdueError where the last of many steps takes more than `REACH_MARGIN_S` beyond that.
+        """
+        return await self._ask(
+            f"reach\t{time_s}", Reach, deadline_s=time_s + REACH_MARGIN_S, locates_overdue=False
+        )
 
     async def list_states(self, max_states: int = 0) -> Listed:
         """What one more decision leads to, from the current belief on with `max_states`, else where the last
@@ -339,7 +351,14 @@ class Engine:
         self._changes += 1
         return answer
 
-    async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
+    async def _ask(
+        self,
+        command: str,
+        kind: type[A],
+        *,
+        deadline_s: float = ANSWER_DEADLINE_S,
+        locates_overdue: bool = True,
+    ) -> A:
         async with self._asking:
             if self._child is None or not self._child.is_running:
                 await self._restart_child()
@@ -351,6 +370,8 @@ class Engine:
                 await self._restart_child()
                 return await self._child.ask(command, kind, deadline_s)
             except AosError as error:
+                if isinstance(error, OverdueError) and not locates_overdue:
+                    raise
                 raise await self._located(error, command) from None
 
     async def _located(self, fault: AosError, command: str) -> AosError:

@@ -22,7 +22,7 @@ from aos_solver.child.blame_page import new_blame_page, running_piece
 from aos_solver.child.printed import pass_on
 from aos_solver.child.shared_memory import SharedMemory
 
-__all__ = ["EngineChild", "EngineStart", "ImpossiblePolicy", "KilledError"]
+__all__ = ["EngineChild", "EngineStart", "ImpossiblePolicy", "KilledError", "OverdueError"]
 
 ImpossiblePolicy = Literal["hold", "widen", "reset"]
 
@@ -57,6 +57,10 @@ class EngineStart(msgspec.Struct, frozen=True):
 
 class KilledError(ModelError):
     """The child was ended by SIGKILL: from outside, not by model code, so asking again is right."""
+
+
+class OverdueError(EndlessCodeError):
+    """No answer in time: what ran may come to an end later."""
 
 
 class EngineChild:
@@ -177,7 +181,10 @@ class EngineChild:
         if status == -signal.SIGKILL:
             return KilledError("the engine was killed", code="AOS213")
         if status is None:
-            return self.fault(kind.code, message, piece)
+            fault = self.fault(kind.code, message, piece)
+            if kind is not EndlessCodeError:
+                return fault
+            return OverdueError(fault.message, hint=fault.hint, diagnostics=fault.diagnostics)
         if status == HANG_STATUS and piece:
             return self.fault(EndlessCodeError.code, "this code does not come to an end", piece)
         told = _status_text(status)

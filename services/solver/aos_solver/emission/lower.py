@@ -13,7 +13,8 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
 from aos_protocol.findings import Findings
 from aos_protocol.local_types import LocalType, local_type, reported_variables
-from aos_runtime.document_code import snippets_of
+from aos_runtime.cpp_flow import STATES
+from aos_runtime.document_code import absent_skills, snippets_of
 from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import read_cpp_expression
 from aos_solver.emission.cpp_library import headers_for
@@ -116,6 +117,7 @@ class _Lowering:
             draws_defaults=any(True for _ in drawing_defaults(environment)),
             initial_belief=initial_belief,
             extrinsic_changes=extrinsic_changes,
+            absent_skills=_absent_skills(project),
             state_heuristic=state_heuristic,
             print_state=print_state,
             special_states=special_states,
@@ -187,6 +189,17 @@ class _Lowering:
             keeps_state_=copies.keeps_state_,
         )
         return msgspec.structs.replace(lowered, locals=_locals(mapping, lowered))
+
+
+def _absent_skills(project: Project) -> tuple[str, ...]:
+    """The skills that the extrinsic changes look for, and that the project does not have (yet)."""
+    read = list(snippets_of(project.environment.extrinsic_changes))
+    known = {"NULL", "nullptr", *STATES, *(skill.name for skill in project.skills)}
+    known |= {declaration.name for _, cpp in read for declaration in cpp.declarations}
+    for assignment in project.environment.extrinsic_changes:
+        known |= {loop.item for loop in (*assignment.over_previous, *assignment.over_next)}
+        known |= {assignment.temporary.name} if assignment.temporary is not None else set()
+    return tuple(sorted({name for _, cpp in read for name in absent_skills(cpp, known)}))
 
 
 def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:

@@ -44,6 +44,8 @@ class Phase(msgspec.Struct, frozen=True):
     previous_copy: str = "state"
 
 
+_CONTAINER = re.compile(r"(?:const\s+)?(?:std\s*::\s*)?(?:vector|array)\s*<.*>\s*&?$", re.DOTALL)
+
 BELIEF = Phase("the initial belief", changes=frozenset({"state"}))
 EXTRINSIC = Phase("extrinsic changes", "state_", frozenset({"state_"}))
 DYNAMIC = Phase("a dynamic model", "state__", frozenset({"state__"}))
@@ -156,7 +158,8 @@ class SectionLowering:
         if not any(a.temporary for a in assignments) and all(cpp.is_empty for _, cpp in read):
             return None
         enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
-        rewriting = msgspec.structs.replace(self.outside, enums=enums)
+        containers = _local_containers(cpp for _, cpp in read)
+        rewriting = msgspec.structs.replace(self.outside, enums=enums, containers=containers)
         statements = [part for a in assignments for part in self._assignment(phase, a, rewriting)]
         names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)
         return Section(tuple(statements), names | _looped_copies(phase, assignments))
@@ -201,6 +204,12 @@ def _looped_copies(phase: Phase, assignments: tuple[Assignment, ...]) -> frozens
     copies = {phase.previous_copy for assignment in assignments if assignment.over_previous}
     copies |= {phase.next_copy for assignment in assignments if assignment.over_next}
     return frozenset(copies)
+
+
+def _local_containers(snippets: Iterable[Cpp]) -> frozenset[str]:
+    """The vectors and arrays that a section's code declares."""
+    declarations = (declaration for cpp in snippets for declaration in cpp.declarations)
+    return frozenset(each.name for each in declarations if _CONTAINER.match(each.type))
 
 
 def _local_enums(snippets: Iterable[Cpp]) -> dict[str, EnumValues]:

@@ -284,6 +284,7 @@ class Program(msgspec.Struct, frozen=True):
     draws_defaults: bool
     initial_belief: Section | None
     extrinsic_changes: Section | None
+    absent_skills: tuple[str, ...]
     state_heuristic: Section | None
     print_state: Section | None
     special_states: tuple[SpecialState, ...]

@@ -26,12 +26,13 @@ class Rewriting(msgspec.Struct, frozen=True):
     """What names mean in a section.
 
     `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
-    constants that every section sees.
+    constants that every section sees, `containers` the lists of values that the section's code declares.
     """
 
     object_types: frozenset[str]
     enums: Mapping[str, EnumValues]
     values: frozenset[str] = frozenset()
+    containers: frozenset[str] = frozenset()
 
 
 def rewrite(cpp: Cpp, rewriting: Rewriting, sensing: Collection[int]) -> tuple[str, tuple[Edit, ...]]:
@@ -41,6 +42,7 @@ def rewrite(cpp: Cpp, rewriting: Rewriting, sensing: Collection[int]) -> tuple[s
     - `AOSUtils::` becomes `AOSUtils.`
     - `state.<Type>Objects`, a view made on demand, gets its `()`
     - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
+    - over a local vector `values` it becomes `values.at(AOS.SampleDiscrete(-1, {...}))`
     - such a draw is told apart: `AOS.sensing().Bernoulli(p)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
@@ -108,6 +110,12 @@ def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Exte
         return
     first = call.arguments[0]
     enum = code[first.start : first.end].strip()
+    if enum in rewriting.containers:
+        # Where there are fewer values than weights, `at` tells it.
+        yield first, "-1"
+        yield call.extent.start, f"{enum}.at("
+        yield call.extent.end, ")"
+        return
     if enum not in rewriting.enums:
         return
     values = rewriting.enums[enum]

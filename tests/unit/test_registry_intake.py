@@ -1,0 +1,70 @@
+"""What a push costs: each file is read once, and what is cheap to refuse is refused first."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.documents import Project
+from aos_registry import intake as intake_module
+from aos_registry import reading
+from aos_registry.catalogue import Catalogue
+from aos_registry.intake import Intake
+from aos_registry.load import read_bundle_files
+from aos_runtime.clock import SystemClock
+
+
+@pytest.fixture
+def files(root: Path) -> dict[str, bytes]:
+    return read_bundle_files(root / "tests/data/bundles/fetch")[0]
+
+
+@pytest.fixture
+def catalogue(tmp_path: Path) -> Catalogue:
+    return Catalogue.open(tmp_path / "catalogue.db")
+
+
+async def test_a_push_reads_each_file_once(
+    files: dict[str, bytes], catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: Counter[str] = Counter()
+    plain = reading._read
+
+    def counted(name: str, *rest: object) -> object:
+        read[name] += 1
+        return plain(name, *rest)  # type: ignore[arg-type]
+
+    async def no_solver(_: Project) -> tuple[Diagnostic, ...]:
+        return ()
+
+    monkeypatch.setattr(reading, "_read", counted)
+    intake = Intake(catalogue, SystemClock(), no_solver)
+    report, is_new = await intake.push(files, "test")
+    assert report.is_accepted
+    assert is_new
+    assert set(read.values()) == {1}
+    name = next(name for name in files if name.endswith(".sd"))
+    read.clear()
+    report, _ = await intake.push({name: files[name] + b"\n"}, "test")
+    assert report.is_accepted
+    assert read == Counter(dict.fromkeys(files, 1)) + Counter([name])  # As it was, and as it is now.
+
+
+async def test_a_project_that_is_too_large_is_refused_before_it_is_compiled(
+    files: dict[str, bytes], catalogue: Catalogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    too_large = Diagnostic(Severity.ERROR, "AOS120", "too large", Span("doors"))
+    monkeypatch.setattr(intake_module, "_too_large_for_the_bus", lambda _: too_large)
+    asked: list[Project] = []
+
+    async def compile_it(project: Project) -> tuple[Diagnostic, ...]:
+        asked.append(project)
+        return ()
+
+    report, is_new = await Intake(catalogue, SystemClock(), compile_it).push(files, "test")
+    assert not is_new
+    assert [each.code for each in report.diagnostics if each.is_error] == ["AOS120"]
+    assert asked == []
