@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
 
 import pytest
 import pytest_asyncio
 from lsprotocol import types
+from pygls.exceptions import JsonRpcException
 from pygls.lsp.client import LanguageClient
+
+from aos_deploy.language_server.highlighting import TOKEN_KINDS
 
 AOS = Path(sys.executable).parent / "aos"
 DEADLINE_S = 20.0
@@ -152,6 +155,138 @@ async def test_words_are_explained_and_completed_and_sections_listed(editor: Edi
     assert symbols is not None
     assert [symbol.name for symbol in symbols] == ["lamp", "3", "bool is_lit", "reward_code"]
     assert [child.name for child in symbols[2].children or ()] == ["code"]
+
+
+def at(path: Path, text: str, word: str, *, nth: int = 0) -> types.TextDocumentPositionParams:
+    """The position in the middle of a word of a text."""
+    offset = -1
+    for _ in range(nth + 1):
+        offset = text.index(word, offset + 1)
+    line, column = text.count("\n", 0, offset), offset - (text.rfind("\n", 0, offset) + 1) + 1
+    document = types.TextDocumentIdentifier(path.as_uri())
+    return types.TextDocumentPositionParams(document, types.Position(line, column))
+
+
+def place(location: types.Location) -> tuple[str, int, int]:
+    start = location.range.start
+    return location.uri.rpartition("/")[2], start.line, start.character
+
+
+async def test_names_lead_to_their_declaration_and_to_all_their_uses(editor: Editor, bundle: Path) -> None:
+    skill, environment = bundle / "press.sd", bundle / "lamp.ef"
+    editor.open(skill)
+    asked = at(skill, SKILL, "is_lit")
+    found = await editor.text_document_definition_async(
+        types.DefinitionParams(asked.text_document, asked.position)
+    )
+    assert isinstance(found, types.Location)
+    assert place(found) == ("lamp.ef", 3, len("state_variable: bool "))
+    everywhere = await editor.text_document_references_async(
+        types.ReferenceParams(types.ReferenceContext(True), asked.text_document, asked.position)
+    )
+    assert everywhere is not None
+    assert [place(each)[:2] for each in everywhere] == [
+        ("lamp.ef", 3),
+        ("lamp.ef", 5),
+        ("lamp.ef", 8),
+        ("press.sd", 3),
+        ("press.sd", 4),
+    ]
+    response = at(skill, SKILL, "lit :")
+    found = await editor.text_document_definition_async(
+        types.DefinitionParams(response.text_document, response.position)
+    )
+    assert isinstance(found, types.Location)
+    assert place(found) == ("press.am", 2, len("response: "))
+    assert environment.read_text() == ENVIRONMENT
+
+
+async def test_a_state_variable_is_renamed_in_all_files(editor: Editor, bundle: Path) -> None:
+    skill = bundle / "press.sd"
+    editor.open(skill)
+    asked = at(skill, SKILL, "is_lit", nth=1)
+    edit = await editor.text_document_rename_async(
+        types.RenameParams(asked.text_document, asked.position, "is_on")
+    )
+    assert edit is not None
+    assert edit.changes is not None
+    for uri, changes in edit.changes.items():
+        path = bundle / uri.rpartition("/")[2]
+        lines = path.read_text().split("\n")
+        for change in sorted(changes, key=lambda each: -each.range.start.character):
+            start, end = change.range.start, change.range.end
+            line = lines[start.line]
+            lines[start.line] = line[: start.character] + change.new_text + line[end.character :]
+        path.write_text("\n".join(lines))
+    assert (bundle / "lamp.ef").read_text() == ENVIRONMENT.replace("is_lit", "is_on")
+    assert skill.read_text() == SKILL.replace("is_lit", "is_on")
+    assert (bundle / "press.am").read_text() == MAPPING
+
+
+async def test_a_name_that_is_taken_is_refused_with_the_reason(editor: Editor, bundle: Path) -> None:
+    skill = bundle / "press.sd"
+    editor.open(skill)
+    asked = at(skill, SKILL, "is_lit")
+    for name, reason in (("is_lit", "has a is_lit already"), ("while", "cannot be a name")):
+        with pytest.raises(JsonRpcException, match=reason):
+            await editor.text_document_rename_async(
+                types.RenameParams(asked.text_document, asked.position, name)
+            )
+
+
+async def test_words_of_both_languages_have_their_colours(editor: Editor, bundle: Path) -> None:
+    mapping, skill = bundle / "press.am", bundle / "press.sd"
+    for path, text, expected in (
+        (
+            skill,
+            SKILL,
+            {
+                ("project", "keyword"),
+                ("is_lit", "variable"),
+                ("AOS", "macro"),
+                ("Bernoulli", "function"),
+                ("0.9", "number"),
+                ("__reward", "macro"),
+                ("lit", "enumMember"),
+            },
+        ),
+        (mapping, MAPPING, {("response_rule", "keyword"), ("True", "keyword"), ("success", "variable")}),
+    ):
+        editor.open(path)
+        document = types.TextDocumentIdentifier(path.as_uri())
+        tokens = await editor.text_document_semantic_tokens_full_async(types.SemanticTokensParams(document))
+        assert tokens is not None
+        assert expected <= words_of(tokens.data, text.split("\n"))
+
+
+def words_of(data: Sequence[int], lines: list[str]) -> set[tuple[str, str]]:
+    """The words of packed tokens with their kinds."""
+    words, line, start = set(), 0, 0
+    for index in range(0, len(data), 5):
+        down, right, length, kind = data[index : index + 4]
+        line, start = line + down, right if down else start + right
+        words.add((lines[line][start : start + length], TOKEN_KINDS[kind]))
+    return words
+
+
+async def test_a_hint_that_knows_the_mend_is_a_quick_fix(editor: Editor, bundle: Path) -> None:
+    skill = bundle / "press.sd"
+    broken = SKILL.replace("state__.is_lit =", "state__.is_let =")
+    skill.write_text(broken)
+    editor.open(skill)
+    (found,) = await editor.findings("press.sd")
+    document = types.TextDocumentIdentifier(skill.as_uri())
+    context = types.CodeActionContext([found])
+    actions = await editor.text_document_code_action_async(
+        types.CodeActionParams(document, found.range, context)
+    )
+    assert actions is not None
+    (action,) = actions
+    assert isinstance(action, types.CodeAction)
+    assert action.title == "Write `is_lit`"
+    assert action.edit is not None
+    assert action.edit.changes is not None
+    assert [*action.edit.changes[skill.as_uri()]] == [types.TextEdit(found.range, "is_lit")]
 
 
 async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: Path, tmp_path: Path) -> None:

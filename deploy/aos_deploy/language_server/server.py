@@ -6,13 +6,25 @@ import asyncio
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import msgspec
 from lsprotocol import types
+from pygls.exceptions import JsonRpcInvalidParams
 from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path, to_fs_path
 from pygls.workspace import PositionCodec, ServerTextPosition
 
-from aos_deploy.language_server.checking import check_folder, end_column
+from aos_deploy.language_server.checking import check_folder, end_column, lines_of
 from aos_deploy.language_server.documents import Entry, meaning_at, outline, proposals_at
+from aos_deploy.language_server.highlighting import TOKEN_KINDS, tokens_of
+from aos_deploy.language_server.navigation import (
+    Lines,
+    definition,
+    encoded,
+    quick_fixes,
+    references,
+    renamed,
+)
+from aos_deploy.language_server.symbols import Bundle, Occurrence, UnrenamableError, files_of, read_bundle
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity
 
@@ -38,6 +50,15 @@ _KINDS = {
 }
 
 
+class _Name(msgspec.Struct, frozen=True):
+    """A name in a document."""
+
+    at: Occurrence
+    folder: Path
+    bundle: Bundle
+    lines: Lines
+
+
 class BundleServer(LanguageServer):
     """Keeps the findings of every folder with an open document current in the editor."""
 
@@ -45,6 +66,7 @@ class BundleServer(LanguageServer):
         super().__init__("aos", __version__)
         self._pending: dict[Path, asyncio.TimerHandle] = {}
         self._told: dict[Path, set[str]] = {}
+        self._found: dict[str, list[Diagnostic]] = {}
 
     def check_soon(self, uri: str) -> None:
         """Checks the document's bundle once nothing has changed in it for a moment."""
@@ -67,6 +89,36 @@ class BundleServer(LanguageServer):
         """Between columns in characters and in the editor's units."""
         return self.workspace.position_codec
 
+    def found_in(self, uri: str) -> list[Diagnostic]:
+        """The latest findings about a document."""
+        path = _path(uri)
+        return self._found.get(from_fs_path(str(path)) or "", []) if path is not None else []
+
+    def bundle_of(self, uri: str) -> tuple[Path, Bundle, Lines] | None:
+        """The bundle that a document is in, with its folder and the lines of its files."""
+        path = _path(uri)
+        if path is None:
+            return None
+        folder, open_texts = path.parent, dict(self._open_texts(path.parent))
+
+        def lines(file: str) -> list[str]:
+            text = open_texts.get(file)
+            return lines_of(file, text.encode() if text is not None else (folder / file).read_bytes())
+
+        return folder, read_bundle(folder, open_texts), lines
+
+    def name_at(
+        self, params: types.DefinitionParams | types.ReferenceParams | types.RenameParams
+    ) -> _Name | None:
+        """The name at a position of a document, and the bundle it is in."""
+        uri = params.text_document.uri
+        if (bundle_of := self.bundle_of(uri)) is None:
+            return None
+        name, _, lines = self.text_of(uri)
+        at = self.codec.position_from_client_units(lines, params.position)
+        found = bundle_of[1].at(name, at.line + 1, at.character)
+        return None if found is None else _Name(found, *bundle_of)
+
     def _check(self, folder: Path) -> None:
         self._pending.pop(folder, None)
         open_texts = dict(self._open_texts(folder))
@@ -77,6 +129,7 @@ class BundleServer(LanguageServer):
             items = [_diagnostic(each, lines, self.codec) for each in found]
             uri = from_fs_path(str(folder / name))
             if uri is not None:
+                self._found[uri] = found
                 self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, items))
         self._told[folder] = told
 
@@ -138,7 +191,53 @@ def language_server() -> BundleServer:
         name, text, lines = server.text_of(params.text_document.uri)
         return [_symbol(entry, lines, server.codec) for entry in outline(name, text)]
 
+    _add_navigation(server)
     return server
+
+
+def _add_navigation(server: BundleServer) -> None:
+    """What crosses the files of a bundle, colours, and quick fixes."""
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    def go_to_definition(params: types.DefinitionParams) -> types.Location | None:
+        name = server.name_at(params)
+        if name is None:
+            return None
+        return definition(name.bundle, name.at, name.folder, name.lines, server.codec)
+
+    @server.feature(types.TEXT_DOCUMENT_REFERENCES)
+    def find_references(params: types.ReferenceParams) -> list[types.Location]:
+        name = server.name_at(params)
+        if name is None:
+            return []
+        declares = params.context.include_declaration
+        return references(name.bundle, name.at, name.folder, name.lines, server.codec, declares=declares)
+
+    @server.feature(types.TEXT_DOCUMENT_RENAME)
+    def rename(params: types.RenameParams) -> types.WorkspaceEdit:
+        name = server.name_at(params)
+        if name is None:
+            raise JsonRpcInvalidParams("no name of the bundle stands here")
+        try:
+            return renamed(name.bundle, name.at, params.new_name, name.folder, name.lines, server.codec)
+        except UnrenamableError as error:
+            raise JsonRpcInvalidParams(str(error)) from None
+
+    @server.feature(
+        types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, types.SemanticTokensLegend(list(TOKEN_KINDS), [])
+    )
+    def colours(params: types.SemanticTokensParams) -> types.SemanticTokens:
+        uri = params.text_document.uri
+        name, text, lines = server.text_of(uri)
+        bundle_of = server.bundle_of(uri)
+        occurrences = files_of(bundle_of[1].occurrences).get(name, []) if bundle_of is not None else []
+        return encoded(tokens_of(name, text, occurrences), lines, server.codec)
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([types.CodeActionKind.QuickFix]))
+    def fix(params: types.CodeActionParams) -> list[types.CodeAction]:
+        uri = params.text_document.uri
+        _, _, lines = server.text_of(uri)
+        return quick_fixes(server.found_in(uri), params.range, uri, lines, server.codec)
 
 
 def _path(uri: str) -> Path | None:
