@@ -19,7 +19,9 @@ from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
 from aos_protocol.findings import Findings
-from aos_registry.archive import is_archive_name, read_archive
+from aos_registry.archive import is_archive_name
+from aos_registry.load import read_bundle_files
+from aos_registry.reading import skills_of_files
 
 __all__ = [
     "BusPart",
@@ -30,7 +32,6 @@ __all__ = [
     "SolverPart",
     "check_endpoint",
     "read_deploy_file",
-    "skill_of_file",
 ]
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
@@ -99,7 +100,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     """The file as it is written; what is not required has the defaults given here.
 
     `project` is the project that the bundles' documents name, by default the robot's name. `leave_out` names
-    skills whose documents (`<skill>.*`) are kept back at the start. `watch` is the folder whose sub-folders
+    skills whose documents are kept back at the start. `watch` is the folder whose sub-folders
     the registry takes as bundles, by default `drop` in the run directory. `skills` says what follows when a
     skill fails. `adapters` gives adapters a name and options. `bind` says which adapter serves which
     activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `serve`
@@ -207,7 +208,9 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
         if not (folder / name).is_dir() and not _is_archive(folder / name):
             findings.error("AOS101", f"there is no bundle folder {folder / name}", where)
     bundles = tuple((folder / name).resolve() for name in file.bundles)
-    skills = {skill_of_file(name) for bundle in bundles for name in _documents_in(bundle)}
+    is_there = [bundle for bundle in bundles if bundle.is_dir() or _is_archive(bundle)]
+    named = is_there if file.leave_out else []
+    skills = {skill for bundle in named for skill in skills_of_files(read_bundle_files(bundle)[0]).values()}
     for skill, where in _texts(node, "leave_out"):
         if skill not in skills:
             message = f"no bundle has a skill {skill}"
@@ -217,18 +220,6 @@ def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) 
 
 def _is_archive(path: Path) -> bool:
     return is_archive_name(path.name) and path.is_file()
-
-
-def _documents_in(bundle: Path) -> list[str]:
-    """The file names in a bundle's folder or archive; none where there is neither."""
-    if _is_archive(bundle):
-        return list(read_archive(bundle)[0])
-    return [document.name for document in bundle.iterdir()] if bundle.is_dir() else []
-
-
-def skill_of_file(name: str) -> str:
-    """The skill a document of a bundle is about, by its file name."""
-    return name.partition(".")[0]
 
 
 def _texts(node: YamlMap, key: str) -> Iterator[tuple[str, Span]]:

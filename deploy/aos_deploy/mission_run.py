@@ -11,7 +11,7 @@ from typing import Protocol
 
 import msgspec
 
-from aos_deploy.deploy_file import Deployment, skill_of_file
+from aos_deploy.deploy_file import Deployment
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
@@ -31,6 +31,7 @@ from aos_protocol.messages import (
     StartMission,
 )
 from aos_registry.load import read_bundle_files
+from aos_registry.reading import skills_of_files
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
@@ -264,4 +265,5 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
     if has_errors(remarks):
         found = tuple(each for each in remarks if each.is_error)
         raise DocumentError(f"the bundle {bundle} cannot be read", code=found[0].code, diagnostics=found)
-    return {name: data for name, data in files.items() if skill_of_file(name) not in leave_out}
+    skills = skills_of_files(files) if leave_out else {}
+    return {name: data for name, data in files.items() if skills.get(name) not in leave_out}

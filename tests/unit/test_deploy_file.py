@@ -121,6 +121,7 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ),
         ("leave_out: look", "4:12 AOS106 leave_out is not a list"),
         ("leave_out: [drive, loook]", "4:20 AOS110 no bundle has a skill loook. Did you mean `look`?"),
+        ("leave_out: [zzz]", "4:13 AOS110 no bundle has a skill zzz. Known are drive, look"),
         ("bind: {/drive: 3}", "4:16 AOS106 bind./drive is not an adapter's name, and no mapping"),
         (
             "bind: {/drive: pybulet}",

@@ -9,13 +9,20 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.findings import Findings
-from aos_registry.documents.document import Document
+from aos_registry.documents.document import Document, DocumentKind
 from aos_registry.documents.json_document import read_json
 from aos_registry.documents.sdl_document import read_sdl
 from aos_registry.documents.sdl_sections import GRAMMARS
 from aos_registry.documents.source import open_source
 
-__all__ = ["MAX_BUNDLE_BYTES", "MAX_BUNDLE_FILES", "KnownFiles", "is_document_name", "read_documents"]
+__all__ = [
+    "MAX_BUNDLE_BYTES",
+    "MAX_BUNDLE_FILES",
+    "KnownFiles",
+    "is_document_name",
+    "read_documents",
+    "skills_of_files",
+]
 
 MAX_BUNDLE_FILES = 1000
 MAX_BUNDLE_BYTES = 8 * 1024 * 1024
@@ -64,6 +71,15 @@ def read_documents(
         if read.document is not None:
             documents[name] = read.document
     return documents
+
+
+def skills_of_files(files: Mapping[str, bytes]) -> dict[str, str]:
+    """The skill that each skill document and each mapping is about, by file name."""
+    skills = {name: PurePath(name).stem for name in files if PurePath(name).suffix.lower() in (".sd", ".am")}
+    written = {name: data for name, data in files.items() if PurePath(name).suffix.lower() == ".json"}
+    kinds = (DocumentKind.SKILL, DocumentKind.MAPPING)
+    documents = read_documents(written, Findings()) if written else {}
+    return skills | {name: each.name for name, each in documents.items() if each.kind in kinds}
 
 
 def _read_file(name: str, data: bytes) -> ReadFile:
