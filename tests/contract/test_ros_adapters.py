@@ -105,7 +105,7 @@ class Lab:
             folder=str(INTERFACES.parent),
             project="lab",
             adapter=adapter,
-            options=options | {"interfaces": ["interfaces"]},
+            options=options,
             **settings,
         )
         path = self.folder / "robot.json"
@@ -140,21 +140,16 @@ def master(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield uri
 
 
-@pytest_asyncio.fixture(params=KINDS)
-async def lab(
-    request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
-) -> AsyncIterator[Lab]:
-    """A robot that adds and counts, and the adapter to it."""
+async def robot_of(kind: str, request: pytest.FixtureRequest, endpoint: str) -> tuple[Any, dict[str, Any]]:
+    """A robot that adds and counts, and the options of an adapter to it."""
     types = RosTypes("jazzy", [INTERFACES])
-    options: dict[str, Any] = {}
     robot: Any
-    if request.param == "ros2":
+    if kind == "ros2":
         from aos_skills.ros2.node import Node
 
         # The robot's router is that of AOS here: they do not get into each other's way.
-        robot = await Node.open(endpoint, types, name="robot")
-        options = {"router": endpoint}
-    elif request.param == "ros1":
+        robot, options = await Node.open(endpoint, types, name="robot"), {"router": endpoint}
+    elif kind == "ros1":
         from aos_skills.ros1.node import Ros1Node
 
         options = {"master": request.getfixturevalue("master")}
@@ -164,15 +159,24 @@ async def lab(
             pytest.skip("needs the extra `dds`")
         from aos_skills.dds.node import DdsNode
 
-        options = {"domain": random.SystemRandom().randint(1, 100)}
-        robot = DdsNode(types, domain=options["domain"])
-    lab = Lab(bus, keys, robot, tmp_path)
+        domain = random.SystemRandom().randint(1, 100)
+        robot, options = DdsNode(types, domain=domain), {"domain": domain}
     robot.serve("/lab/add", "example_interfaces/srv/AddTwoInts", add)
     robot.serve_action("/lab/count", FIBONACCI, count_up)
+    return robot, options
+
+
+@pytest_asyncio.fixture(params=KINDS)
+async def lab(
+    request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+) -> AsyncIterator[Lab]:
+    """The robot, and the adapter to it."""
+    robot, options = await robot_of(request.param, request, endpoint)
+    lab = Lab(bus, keys, robot, tmp_path)
     await lab.start(
         endpoint,
         KINDS[request.param][0],
-        options,
+        options | {"interfaces": ["interfaces"]},
         bind={
             "/sum": Binding(target="/lab/add", result={"total": "sum"}),
             "/count": Binding(target={"action": "/lab/count", "type": FIBONACCI}),
@@ -267,3 +271,24 @@ async def test_a_robot_that_leaves_is_withdrawn(lab: Lab) -> None:
                 if not is_alive:
                     break
                 await lab.robot.close()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("path", ["/lab/add", "/lab/count"])
+async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_add(
+    kind: str, path: str, request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+) -> None:
+    robot, options = await robot_of(kind, request, endpoint)
+    lab = Lab(bus, keys, robot, tmp_path)
+    try:
+        await lab.start(endpoint, KINDS[kind][0], options, bind={path: Binding()})
+        assert lab.child is not None
+        assert await asyncio.wait_for(lab.child.wait(), DEADLINE_S) != 0
+    finally:
+        await robot.close()
+        if lab.child is not None:
+            await lab.child.stop(10.0)
+    log = (tmp_path / "robot.log").read_text()
+    file = "srv/AddTwoInts.srv" if path == "/lab/add" else "action/Fibonacci.action"
+    assert "AOS806" in log
+    assert f"Add the file example_interfaces/{file}" in log

@@ -159,6 +159,11 @@ class Host:
             if path in self._serving:
                 self._service.bus.withdraw(self._serving.pop(path))
 
+    def fail(self, error: AosError) -> None:
+        """Ends the process with an error: what the adapter needs is not there, and will not come."""
+        if not self._failed.done():
+            self._failed.set_exception(error)
+
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
         """Sends a message on a topic. From any thread, in order."""
         with self._sending:

@@ -189,6 +189,11 @@ class DdsNode:
     def _on_change(self) -> None:
         self._has_changed.set()
 
+    async def check(self, name: str, type_name: str) -> None:
+        if self.kind_of(name) == "action":
+            name, type_name = f"{name}/_action/send_goal", f"{type_name}_SendGoal" if type_name else ""
+        await self.service_type(name, type_name, 0.0)
+
     async def changed(self) -> None:
         self._has_changed.clear()
         await self._has_changed.wait()

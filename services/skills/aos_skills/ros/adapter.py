@@ -117,6 +117,15 @@ class RosAdapter:
             kind = self.node.kind_of(way.name)
             is_there = bool(kind) and way.kind in ("", kind)
             if is_there and path not in self._serving:
+                try:
+                    await self.node.check(way.name, way.type_name)
+                except DeployError as error:
+                    # It can never be called: whoever starts the system has to add a file.
+                    self.host.fail(error)
+                    return
+                except SkillError as error:
+                    _log.error("%s is not served: %s", path, error)
+                    continue
                 self._serving.add(path)
                 await self.host.serve(path)
             elif not is_there and path in self._serving:

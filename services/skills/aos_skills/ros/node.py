@@ -121,6 +121,14 @@ class RosNode(Protocol):
         """What some node serves under a name now: "service", "action", or "" for nothing."""
         ...
 
+    async def check(self, name: str, type_name: str) -> None:
+        """Looks whether what is served under a name can be called.
+
+        DeployError AOS806 if its type is not known, SkillError AOS509 if it is another than given or defined
+        differently, AOS505 if nobody serves it any more.
+        """
+        ...
+
     async def changed(self) -> None:
         """Returns at the next change of who serves and publishes what."""
         ...

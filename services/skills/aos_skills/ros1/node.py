@@ -170,6 +170,11 @@ class Ros1Node:
             return "service"
         return "action" if name in self._names["actions"] else ""
 
+    async def check(self, name: str, type_name: str) -> None:
+        kind = self.kind_of(name)
+        found = await self._type(f"{kind or 'service'}s", name, type_name, 0.0)
+        await self._process.ask("check", kind=kind, type=found)
+
     async def changed(self) -> None:
         self._has_changed.clear()
         await self._has_changed.wait()

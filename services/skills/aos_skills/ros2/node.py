@@ -190,6 +190,11 @@ class Node:
             return "service"
         return "action" if self._serves(f"{name}/_action/send_goal") else ""
 
+    async def check(self, name: str, type_name: str) -> None:
+        if self.kind_of(name) == "action":
+            name, type_name = f"{name}/_action/send_goal", f"{type_name}_SendGoal" if type_name else ""
+        await self._server(name, type_name, 0.0)
+
     async def changed(self) -> None:
         await self.graph.changed()
 

@@ -63,6 +63,12 @@ class Robot:
 
     # --- as a client ---------------------------------------------------------------------------------
 
+    def do_check(self, number: int, kind: str, type: str) -> Any:
+        if kind == "action":
+            ActionClasses(self._types, type)
+        else:
+            self._types.service(type)
+
     def do_call(self, number: int, name: str, type: str, fields: Any) -> Any:
         cls = self._types.service(type)
         request = self._types.filled(cls._request_class(), fields)

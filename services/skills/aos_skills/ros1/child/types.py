@@ -37,9 +37,15 @@ class ActionClasses:
     """What actionlib wants of an action: an object of a class with these three messages."""
 
     def __init__(self, types: Types, name: str) -> None:
-        self.action_goal = types.message(name + "ActionGoal")()
-        self.action_result = types.message(name + "ActionResult")()
-        self.action_feedback = types.message(name + "ActionFeedback")()
+        try:
+            self.action_goal = types.message(name + "ActionGoal")()
+            self.action_result = types.message(name + "ActionResult")()
+            self.action_feedback = types.message(name + "ActionFeedback")()
+        except Unknown as error:
+            # The messages of an action come from its file.
+            if error.args[0].startswith(name.replace("/", "/msg/")):
+                raise Unknown(name.replace("/", "/action/"))
+            raise
 
 
 class Types:
