@@ -154,7 +154,7 @@ async def test_a_repeated_activation_moves_nothing_and_an_older_epoch_is_refused
 
 async def test_a_stopped_world_leaves_the_animated_picture_of_its_mission(robot: Robot) -> None:
     await robot.start()
-    assert (await robot.call("/sense")).fields == {}
+    await robot.call("/sense")
     assert robot.child is not None
     await robot.child.stop(PATIENCE_S)
     assert (robot.run_dir / "mission.gif").stat().st_size > 0
