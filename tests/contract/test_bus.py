@@ -296,12 +296,13 @@ async def test_streams_end_when_the_bus_closes(endpoint: str, keys: Keys) -> Non
 async def test_rubbish_on_a_stream_is_left_out(endpoint: str, other: Bus, keys: Keys) -> None:
     key = keys.topic("rubbish")
     good = TopicMessage(1, {})
+    rubbish = (b"", b"\xff\x00", b"\x91" * 100_000, msgspec.msgpack.encode({"version": "9.0"}))
     rogue = await asyncio.to_thread(zenoh.open, client_config(endpoint))
     try:
         async with other.listen(key, TopicMessage) as messages:
-            for payload in (b"", b"\xff\x00", b"\x91" * 100_000, msgspec.msgpack.encode({"version": "9.0"})):
-                rogue.put(key, payload)
-            rogue.put(key, encode(good, sender="rogue", stamp_ns=0))
+            for payload in (*rubbish, encode(good, sender="rogue", stamp_ns=0)):
+                # A put that does not wait is dropped where the machine is busy.
+                rogue.put(key, payload, congestion_control=zenoh.CongestionControl.BLOCK)
             assert await anext(messages) == (key, good)
     finally:
         await asyncio.to_thread(rogue.close)
