@@ -236,7 +236,7 @@ async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -
             await running
         assert raised.value.code == "AOS507"
     with pytest.raises(AosError) as raised:
-        await lab.call("/count", {"order": 1000}, 2, limit_s=0.3)
+        await lab.call("/count", {"order": 1000}, 2, limit_s=1.5)
     assert raised.value.code == "AOS503"
     assert (await lab.call("/count", {"order": 1}, 3)).fields == {"sequence": [0]}
 
@@ -292,3 +292,32 @@ async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_
     file = "srv/AddTwoInts.srv" if path == "/lab/add" else "action/Fibonacci.action"
     assert "AOS806" in log
     assert f"Add the file example_interfaces/{file}" in log
+
+
+async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
+    request: pytest.FixtureRequest, bus: Bus, keys: Keys, endpoint: str, tmp_path: Path
+) -> None:
+    robot, options = await robot_of("ros2", request, endpoint)
+    lab = Lab(bus, keys, robot, tmp_path)
+    asked = asyncio.Event()
+
+    async def never(_: dict[str, Any]) -> dict[str, Any]:
+        asked.set()
+        await asyncio.Event().wait()
+        return {}
+
+    robot.serve("/lab/mute/_action/send_goal", f"{FIBONACCI}_SendGoal", never)
+    options["interfaces"] = ["interfaces"]
+    try:
+        await lab.start(endpoint, KINDS["ros2"][0], options, bind={"/lab/mute": Binding()})
+        await lab.until_served("/lab/mute")
+        running = asyncio.create_task(lab.call("/lab/mute", {"order": 1}, 1))
+        await asyncio.wait_for(asked.wait(), DEADLINE_S)
+        await bus.ask(keys.cancel("/lab/mute"), Cancel("enough"), Cancelled, timeout_s=DEADLINE_S)
+        with pytest.raises(AosError, match="was to be cancelled, and its node does not answer") as raised:
+            await running
+        assert raised.value.code == "AOS504"
+    finally:
+        if lab.child is not None:
+            await lab.child.stop(10.0)
+        await robot.close()

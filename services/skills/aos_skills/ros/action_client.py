@@ -158,13 +158,13 @@ async def _ended(
 async def _cancel(node: ServiceNode, action: str, goal_id: Fields, result: asyncio.Task[Fields]) -> None:
     """Asks for the goal's end and waits for it; SkillError AOS504 if it does not come."""
     try:
-        await node.call(
-            f"{action}/_action/cancel_goal",
-            {"goal_info": {"goal_id": goal_id}},
-            type_name="action_msgs/srv/CancelGoal",
-            timeout_s=CANCEL_S,
-        )
         async with asyncio.timeout(CANCEL_S):
+            await node.call(
+                f"{action}/_action/cancel_goal",
+                {"goal_info": {"goal_id": goal_id}},
+                type_name="action_msgs/srv/CancelGoal",
+                timeout_s=CANCEL_S,
+            )
             await asyncio.wait([result])
     except (TimeoutError, SkillError) as error:
         result.cancel()

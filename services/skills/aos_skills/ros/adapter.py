@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from aos_protocol.errors import AosError, DeployError, SkillError
 from aos_runtime.adapters import Call, Host
+from aos_skills.ros.action_client import CANCEL_S
 from aos_skills.ros.connect import connect
 from aos_skills.ros.documented import documented
 from aos_skills.ros.node import Fields, RosNode
@@ -22,6 +23,7 @@ __all__ = ["DdsAdapter", "Ros1Adapter", "Ros2Adapter", "RosAdapter", "Way", "way
 
 MAX_PROGRESS_TEXT = 120
 
+_MARGIN_S = 0.1
 _LONGER_S = 10.0
 """Deadlines are the host's; those of the questions to the robot only have to be later."""
 
@@ -195,8 +197,17 @@ class RosAdapter:
             end = await asyncio.shield(running)
         except asyncio.CancelledError:
             cancelled.set()
-            await running
-            raise
+            await asyncio.wait([running], timeout=CANCEL_S + _MARGIN_S)
+            if running.done():
+                running.result()
+                raise
+            # It has not even been accepted yet, or the node does not answer at all.
+            running.cancel()
+            raise SkillError(
+                f"the action {way.name} was to be cancelled, and its node does not answer",
+                code="AOS504",
+                hint="The robot may still move: look at it, and at the node's log",
+            ) from None
         if end.status == "succeeded":
             return end.result
         code = "AOS507" if end.status == "canceled" else "AOS510"
