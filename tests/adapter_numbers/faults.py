@@ -63,8 +63,8 @@ FAULTS = {
     "replies twice": Fault(("observed",)),
     "replies for another id": Fault(("unknown",)),
     "raises": Fault(("failed",)),
-    "dies at once": Fault(("unknown",), dies=True),
-    "dies in the middle": Fault(("unknown",), dies=True),
+    "dies at once": Fault(("unknown", "timed_out"), dies=True),
+    "dies in the middle": Fault(("unknown", "timed_out"), dies=True),
     "unknown response": Fault(("observed", "failed"), "max_duration: 0.3\n"),
     "floods its topic": Fault(("observed",), LISTENING),
 }
