@@ -10,6 +10,8 @@ import typer
 from typer.testing import CliRunner, Result
 
 from aos_deploy.cli import aos_app
+from aos_deploy.deploy_file import read_deploy_file
+from aos_deploy.shipped import deploy_files
 from aos_registry.convert import without_origins
 from aos_registry.load import load_bundle
 
@@ -76,3 +78,17 @@ def test_a_new_skill_belongs_to_the_bundles_project(aos: typer.Typer) -> None:
     project = load_bundle(Path("fetch")).project
     assert project is not None
     assert [each.name for each in project.skills] == ["look", "take", "wipe"]
+
+
+@pytest.mark.parametrize("name", deploy_files())
+def test_every_example_is_whole_where_it_is_written(name: str, aos: typer.Typer) -> None:
+    written = run(aos, f"new example {name}")
+    assert written.exit_code == 0, written.output
+    here = Path(name).resolve()
+    deployment = read_deploy_file(Path(name, f"{name}.yaml"))
+    assert all(bundle.is_relative_to(here) for bundle in deployment.bundles)
+    assert deployment.world is None or deployment.world.resolve().is_relative_to(here)
+
+
+def test_an_unknown_example_is_told_with_the_nearest(aos: typer.Typer) -> None:
+    assert "Did you mean `armadillo`?" in str(getattr(run(aos, "new example armadilo").exception, "hint", ""))
