@@ -36,6 +36,10 @@ available_parameters_code:
 for (int at = 0; at < 3; at++) __possibleParameters.push_back(std::make_tuple(at));
 dynamic_model:
 """
+_PASSED_ON = (
+    "srv: act\n",
+    "srv: act\nparameter: at\ncode:\nat\nlocal_variable: at\naction_parameter: at\n",
+)
 
 
 def many_variables(count: int) -> dict[str, str]:
@@ -64,7 +68,7 @@ def _bundle(environment: list[str], dynamic_model: list[str]) -> dict[str, str]:
     return {
         "large.ef": _ENVIRONMENT + "\n".join(environment) + "\n",
         "act.sd": _SKILL + "\n".join(dynamic_model) + "\n",
-        "act.am": mapping_text("one", "two", project="large"),
+        "act.am": mapping_text("one", "two", project="large").replace(*_PASSED_ON),
     }
 
 

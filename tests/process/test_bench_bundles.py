@@ -79,4 +79,5 @@ def test_the_rocksample_bundles_are_as_their_script_writes_them(bundles: Path) -
 def test_the_benchmark_bundles_have_no_mistakes(problem: str, bundles: Path) -> None:
     loaded = load_bundle(bundles / "bench" / problem)
     assert loaded.project is not None
-    assert not loaded.diagnostics
+    # Tasks that go on for ever have no goal.
+    assert {each.code for each in loaded.diagnostics} <= {"AOS139"}

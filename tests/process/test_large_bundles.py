@@ -21,7 +21,8 @@ def marginal(belief: BeliefSummary, name: str) -> dict[str, float]:
 
 @pytest.mark.parametrize("files", [many_variables(VARIABLES), long_array(ELEMENTS)], ids=["many", "long"])
 def test_nothing_is_wrong_with_a_large_bundle(files: dict[str, str]) -> None:
-    assert load_files({name: text.encode() for name, text in files.items()}).diagnostics == ()
+    found = load_files({name: text.encode() for name, text in files.items()}).diagnostics
+    assert {each.code for each in found} <= {"AOS139"}  # There is no goal.
 
 
 async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path) -> None:

@@ -33,6 +33,8 @@ WARNINGS = {
     "sampling-rate": [
         "plps_domain.move_to_point glue.json:17:53 AOS118",
         "plps_domain.move_to_point glue.json:21:53 AOS118",
+        "plps_domain.move_to_point.json:10:22 AOS140",
+        "plps_domain.move_to_point.json:14:22 AOS140",
         "plps_domain.move_to_point.json:22:124 AOS127",
         "plps_domain.observe_can glue.json:17:53 AOS118",
         "plps_domain.observe_can glue.json:21:53 AOS118",
@@ -62,7 +64,12 @@ WARNINGS = {
         "turtleBotVisitLocations.environment.json:157:52 AOS127",
     ],
     "wildfire": [
-        f"{skill} glue.json:34:{column} AOS110" for skill in ("cut_out", "put_out") for column in (57, 70, 83)
+        *(f"cut_out glue.json:34:{column} AOS110" for column in (57, 70, 83)),
+        *(f"cut_out.json:{line}:22 AOS140" for line in (10, 14)),
+        "environment.json:4:18 AOS139",
+        *(f"environment.json:{line}:29 AOS141" for line in (29, 34, 39)),
+        *(f"put_out glue.json:34:{column} AOS110" for column in (57, 70, 83)),
+        *(f"put_out.json:{line}:22 AOS140" for line in (10, 14)),
     ],
 }
 

@@ -35,7 +35,6 @@ ACCEPTED = [
     Rule("room.json", '"Horizon": 5,', '"Horizon": 5.0,'),
     Rule("room.json", '"Discount": 0.9', '"Discount": 1'),
     Rule("room.json", '"Reward": 5.0', '"Reward": 5'),
-    Rule("room.json", '"Reward": 5.0', '"Reward": -0.25e1, "IsFailureState": true'),
     Rule("room.json", '"Reward": 5.0', '"Reward": -0.25e1, "IsFailureState": false'),
     Rule("go.json", "-2\n", "-2.5\n"),
     Rule("go.json", ', "Version": 1', ""),

@@ -17,6 +17,8 @@ state_variable: float charge
 state_variable: bool is_here
 state_variable: int count
 action_parameter: Spot base
+reward_code:
+if (state.count > 3) { __reward = 1; __isGoalState = true; }
 """
 SKILL = """project: rover
 parameter: Spot to
@@ -34,6 +36,11 @@ response_rule: True
 {assignment}
 module_activation: skill
 path: /drive
+parameter: goal
+code:
+to
+local_variable: to
+action_parameter: to
 local_variable: reached
 {type}
 from_ros_service_response: true
@@ -71,13 +78,13 @@ def test_what_model_code_uses_or_what_tells_a_state_variable_is_not_unused() -> 
 
 def test_a_local_variable_that_tells_a_state_variable_by_its_name_is_remarked() -> None:
     (remark,) = bundle().diagnostics
-    assert (remark.severity, remark.code, str(remark.span)) == (Severity.REMARK, "AOS134", "drive.am:12:17")
+    assert (remark.severity, remark.code, str(remark.span)) == (Severity.REMARK, "AOS134", "drive.am:17:17")
     assert "the state variable charge" in remark.message
 
 
 def test_a_local_variable_that_nothing_uses_is_told_still() -> None:
     assert findings(told="true") == [
-        "drive.am:7:17: AOS133 no rule and no field uses the local variable reached"
+        "drive.am:12:17: AOS133 no rule and no field uses the local variable reached"
     ]
 
 
