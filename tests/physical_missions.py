@@ -17,7 +17,7 @@ from typing import Any
 
 ROOT = Path(__file__).parent.parent
 BIN = Path(sys.executable).parent
-PATIENCE_S = 600.0
+PATIENCE_S = 1800.0
 NOT_SHOWN = {"step", "path", "time_s", "drawn_faults", "base", "robot", "believed", "cans"}
 
 

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from aos_skills.pybullet.parts.place import Place
 from aos_skills.pybullet.parts.route import FloorMap
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.turtlebot import KIND
@@ -66,6 +67,16 @@ def test_a_crate_in_the_way_is_gone_around(make: Make) -> None:
     assert world.visits == ["l1"]
 
 
+def test_whoever_reads_the_lidar_meanwhile_does_not_make_it_see_what_is_not_there(make: Make) -> None:
+    crates = {"l2": Crate(-1.5, 1.0), "l4": Crate(0.5, 1.1)}
+    noisy = FaultModel(place_noise_m=0.01, yaw_noise_rad=0.01)
+    world = make(crates=crates, faults=noisy, robot=Place(-0.5, 1.6, 3.1))
+    world.scene.watchers.append(lambda: world.sensors() and None)
+    assert go(world, 1.6, 1.5)
+    assert world.visits == ["l5"]
+    assert world.way_m < 2.4
+
+
 def test_a_lost_report_says_failed_where_the_robot_arrived(make: Make) -> None:
     world = make(faults=FaultModel(lost_report=1.0))
     assert not go(world, -1.65, -1.5)
@@ -74,7 +85,7 @@ def test_a_lost_report_says_failed_where_the_robot_arrived(make: Make) -> None:
 
 def test_the_lidar_measures_the_walls(make: Make) -> None:
     world = make(obstacles=[])
-    ranges = world.robot.lidar.ranges_m()
+    ranges = world.robot.ranges_m()
     x, y, yaw = world.robot.true_place
     assert yaw == pytest.approx(math.pi / 2, abs=0.01)
     lidar_y = y - 0.032

@@ -14,7 +14,6 @@ __all__ = ["Lidar"]
 RAYS = 120
 MIN_RANGE_M = 0.12
 MAX_RANGE_M = 3.5
-EVERY_S = 0.2
 
 
 class Lidar:
@@ -24,19 +23,11 @@ class Lidar:
         self._scene = scene
         self._body = body
         self._link = link
-        self._next_s = 0.0
-        self._ranges = np.full(RAYS, MAX_RANGE_M)
         self.angles: npt.NDArray[np.float64] = np.arange(RAYS) * 2 * math.pi / RAYS
         """Of the rays, in radians from straight ahead to the left."""
 
-    def ranges_m(self) -> npt.NDArray[np.float64]:
-        """The newest turn's ranges, one a ray; MAX_RANGE_M where a ray meets nothing."""
-        if self._scene.time_s >= self._next_s:
-            self._next_s = self._scene.time_s + EVERY_S
-            self._ranges = self._turn()
-        return self._ranges
-
-    def _turn(self) -> npt.NDArray[np.float64]:
+    def turn(self) -> npt.NDArray[np.float64]:
+        """The ranges of one turn, in metres, one a ray; MAX_RANGE_M where a ray meets nothing."""
         client = self._scene.client
         at, turned = client.getLinkState(self._body, self._link, computeForwardKinematics=True)[:2]
         yaw = client.getEulerFromQuaternion(turned)[2]

@@ -22,6 +22,7 @@ LOCALISE_EVERY_S = 0.2
 TRUST = 0.2
 """How much of the way to a new localisation the estimate moves."""
 LIDAR_BEHIND_M = 0.032
+SCAN_EVERY_S = 0.2
 
 
 class TurtleBot3:
@@ -53,6 +54,9 @@ class TurtleBot3:
         client.changeDynamics(self.body, links["caster_link"], lateralFriction=0.0)
         self.drive = DifferentialDrive(scene, self.body, wheels, WHEEL_RADIUS_M, SEPARATION_M, place)
         self.lidar = Lidar(scene, self.body, links["base_scan"])
+        self._next_scan_s = 0.0
+        self._scanned_from = place
+        self._ranges = self.lidar.turn()
         scene.watchers.append(self._localise)
         scene.wait(0.2)
 
@@ -72,10 +76,21 @@ class TurtleBot3:
     def stop(self) -> None:
         self.drive.stop()
 
+    def ranges_m(self) -> npt.NDArray[np.float64]:
+        """Of the newest turn of the lidar, which turns five times a second."""
+        if self._scene.time_s >= self._next_scan_s:
+            self._next_scan_s = self._scene.time_s + SCAN_EVERY_S
+            self._scanned_from = self.place
+            self._ranges = self.lidar.turn()
+        return self._ranges
+
     def seen(self) -> npt.NDArray[np.float64]:
-        """The points that the lidar's rays ended on, one a row, x and y in metres."""
-        x, y, yaw = self.place
-        ranges = self.lidar.ranges_m()
+        """The points that the rays of that turn ended on, one a row, x and y in metres.
+
+        From where the robot was then: while it turns, a fifth of a second makes half a metre at the far end.
+        """
+        ranges = self.ranges_m()
+        x, y, yaw = self._scanned_from
         hit = ranges < MAX_RANGE_M - 0.01
         angles, ranges = self.lidar.angles[hit] + yaw, ranges[hit]
         at = np.array([x - LIDAR_BEHIND_M * math.cos(yaw), y - LIDAR_BEHIND_M * math.sin(yaw)])

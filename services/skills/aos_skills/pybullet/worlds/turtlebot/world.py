@@ -67,7 +67,7 @@ class Turtlebot(World):
 
     def sensors(self) -> dict[str, dict[str, Any]]:
         x, y, yaw = self.robot.place
-        ranges = np.round(self.robot.lidar.ranges_m(), 3).tolist()
+        ranges = np.round(self.robot.ranges_m(), 3).tolist()
         return {"/pose": {"x": x, "y": y, "yaw": yaw}, "/scan": {"ranges": ranges}}
 
     def truth(self) -> dict[str, Any]:
