@@ -92,7 +92,7 @@ class Participant:
         self._classes = _Classes(types)
         self._topics: dict[str, Topic] = {}
         self._entities: list[Any] = []
-        self._listeners: list[Listener] = []
+        self._listeners: dict[int, Listener] = {}
         self._is_closed = False
         self.endpoints: dict[Any, Endpoint] = {}
         self.changed: Callable[[], None] = lambda: None
@@ -155,6 +155,7 @@ class Participant:
             if reader in self._entities:
                 self._entities.remove(reader)
                 reader.__del__()
+                del self._listeners[id(reader)]
 
         return Reader(lambda: reader.get_subscription_matched_status().current_count, close)
 
@@ -181,7 +182,7 @@ class Participant:
         listener.set_on_data_available(on_data_available)
         made.append(make(listener))
         self._entities.append(made[0])
-        self._listeners.append(listener)
+        self._listeners[id(made[0])] = listener
         on_loop()
         return made[0]
 
