@@ -6,7 +6,7 @@ import sys
 from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
-from aos_deploy.views.observations import observation_text
+from aos_deploy.views.observations import observation_text, value_text
 from aos_protocol.diagnostics import render
 from aos_protocol.messages import BeliefSummary, BundleReport, DecisionRecord, MissionState
 
@@ -70,7 +70,7 @@ def decision_line(record: DecisionRecord) -> str:
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
-        values = ", ".join(f"{action.action} {action.q:+.2f}" for action in others)
+        values = ", ".join(f"{action.action} {value_text(action.q, 2)}" for action in others)
         return f"{head}  [{values}]  {effort_text(record)}"
     outcome = record.outcome
     is_observed = outcome.status == "observed"

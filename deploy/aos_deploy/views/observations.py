@@ -1,11 +1,12 @@
-"""An observation for people: the response, and the numbers that were reported beside it."""
+"""Observations and values for people."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["observation_text"]
+__all__ = ["observation_text", "value_text"]
 
 
 def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
@@ -17,3 +18,8 @@ def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
 def _numbers(value: Any) -> str:
     values = value if isinstance(value, list | tuple) else [value]
     return " ".join("-" if each is None else f"{each:.4g}" for each in values)
+
+
+def value_text(value: float, digits: int) -> str:
+    """An action's value; a dash where a policy never chooses the action and knows nothing of it."""
+    return f"{value:+.{digits}f}" if math.isfinite(value) else "-"

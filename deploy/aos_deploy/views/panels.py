@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
-from aos_deploy.views.observations import observation_text
+from aos_deploy.views.observations import observation_text, value_text
 from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord
 
 __all__ = ["belief_bars", "belief_lines", "brief_action", "step_table", "value_table"]
@@ -41,7 +41,7 @@ def step_table(records: Iterable[DecisionRecord], width: int) -> Table:
         table.add_row(
             str(record.step),
             action,
-            "" if chosen is None else f"{chosen.q:+.2f}",
+            "" if chosen is None else value_text(chosen.q, 2),
             observation,
             "" if record.outcome is None else f"{record.surprise:.2f}",
             f"{record.belief.goal_probability:.3f}",
@@ -60,7 +60,7 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
     names = _fitting([value.action for value in shown], width - 30)
     for value, name in zip(shown, names, strict=True):
         style = "bold" if value.action == record.action else ""
-        numbers = (f"{value.q:+.2f}", f"{value.stderr:.2f}", f"{value.n:,}")
+        numbers = (value_text(value.q, 2), f"{value.stderr:.2f}", f"{value.n:,}")
         table.add_row(Text(name, style), *numbers, style=style)
     if len(shown) < len(best):
         table.add_row(Text(f"and {len(best) - len(shown)} more", style="dim"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from rich.bar import Bar
@@ -9,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.terminal import console
-from aos_deploy.views.observations import observation_text
+from aos_deploy.views.observations import observation_text, value_text
 from aos_protocol.messages import ActionValue
 from aos_solver.simulation import SimulatedRun
 
@@ -24,8 +25,8 @@ NUMBERS_WIDTH = 38
 
 def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
     """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations."""
-    tried = [value.q for value in values if value.n or not simulations]
-    lowest, highest = min(tried), max(tried)
+    tried = [value.q for value in values if (value.n or not simulations) and math.isfinite(value.q)]
+    lowest, highest = min(tried, default=0.0), max(tried, default=0.0)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
     out = console()
     # Bars give way first: actions often differ in their last letters only.
@@ -38,7 +39,7 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
         table.add_column("visits", justify="right")
     table.add_column("")
     for value in values:
-        row = [value.action, f"{value.q:+.3f}"]
+        row = [value.action, value_text(value.q, 3)]
         if simulations:
             row += [f"{value.stderr:.3f}", f"{value.n:,}"]
         size = max(highest - lowest, 1e-9)
