@@ -11,11 +11,11 @@ import msgspec
 import numpy as np
 import pytest
 
-from aos_skills.pybullet.parts.place import Place
 from aos_skills.pybullet.parts.route import FloorMap
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.turtlebot import KIND
 from aos_skills.pybullet.worlds.turtlebot.file import Crate, FaultModel, TurtlebotFile
+from aos_skills.pybullet.worlds.turtlebot.navigate import UNMAPPED_M
 from aos_skills.pybullet.worlds.turtlebot.world import Turtlebot
 
 pytestmark = pytest.mark.physics
@@ -67,14 +67,15 @@ def test_a_crate_in_the_way_is_gone_around(make: Make) -> None:
     assert world.visits == ["l1"]
 
 
-def test_whoever_reads_the_lidar_meanwhile_does_not_make_it_see_what_is_not_there(make: Make) -> None:
-    crates = {"l2": Crate(-1.5, 1.0), "l4": Crate(0.5, 1.1)}
-    noisy = FaultModel(place_noise_m=0.01, yaw_noise_rad=0.01)
-    world = make(crates=crates, faults=noisy, robot=Place(-0.5, 1.6, 3.1))
-    world.scene.watchers.append(lambda: world.sensors() and None)
-    assert go(world, 1.6, 1.5)
-    assert world.visits == ["l5"]
-    assert world.way_m < 2.4
+def test_while_it_turns_it_sees_nothing_but_what_is_on_the_map(make: Make) -> None:
+    """Whoever else reads the lidar, too."""
+    world = make()
+    world.robot.drive.command(0.0, 2.0)
+    world.scene.wait(1.0)
+    for _ in range(20):
+        world.sensors()
+        world.scene.wait(0.05)
+        assert world.floor_map.distance(world.robot.seen()).max() < UNMAPPED_M
 
 
 def test_a_lost_report_says_failed_where_the_robot_arrived(make: Make) -> None:
