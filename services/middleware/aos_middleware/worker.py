@@ -13,6 +13,7 @@ import faulthandler
 import io
 import os
 import sys
+import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -59,13 +60,17 @@ class LoadedMapping:
         self._last_given: dict[str, Any] = {}
         self._assigned: dict[str, Any] = {}
         self._of_skill: dict[str, Any] = {}
+        self._watched_until_s = 0.0
         namespace: dict[str, Any] = {
             "__name__": load.file_name.removesuffix(".py"),
             "__builtins__": _builtins(load.allowed_imports),
         }
-        with warnings.catch_warnings(), self._watched(load.load_s):
-            warnings.simplefilter("ignore", SyntaxWarning)
-            exec(compile(load.python, load.file_name, "exec", dont_inherit=True), namespace)
+        try:
+            with warnings.catch_warnings(), self._watched(load.load_s):
+                warnings.simplefilter("ignore", SyntaxWarning)
+                exec(compile(load.python, load.file_name, "exec", dont_inherit=True), namespace)
+        finally:
+            self._unwatch()
         self._namespace = namespace
 
     def answer(self, question: Question) -> Answer:
@@ -76,6 +81,8 @@ class LoadedMapping:
             # Also SystemExit: it ends an evaluation, not the worker.
             unset = tuple(name for name, value in self._last_given.items() if value is None)
             return raised(error, self._load.file_name, self._lines, unset, self._texts())
+        finally:
+            self._unwatch()
 
     def _answer(self, question: Question) -> Answer:
         match question:
@@ -150,12 +157,22 @@ class LoadedMapping:
 
     @contextmanager
     def _watched(self, deadline_s: float) -> Iterator[None]:
-        """Ends the process, with a traceback on the error output, if the block takes longer."""
-        faulthandler.dump_traceback_later(deadline_s, exit=True, file=self._error_output)
-        try:
-            yield
-        finally:
-            faulthandler.cancel_dump_traceback_later()
+        """Ends the process, with a traceback on the error output, if the block takes longer.
+
+        A watch costs a thread, up to half a millisecond. One that still has the whole deadline to go is left
+        as it is: the process is ended after the deadline, and half of it more at the latest.
+        """
+        now_s = time.monotonic()
+        if self._watched_until_s < now_s + deadline_s:
+            limit_s = 1.5 * deadline_s
+            faulthandler.dump_traceback_later(limit_s, exit=True, file=self._error_output)
+            self._watched_until_s = now_s + limit_s
+        yield
+
+    def _unwatch(self) -> None:
+        """Between questions nothing runs."""
+        faulthandler.cancel_dump_traceback_later()
+        self._watched_until_s = 0.0
 
 
 def raised(
