@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 
 from aos_deploy.program import cache_dir
-from aos_protocol.diagnostics import render
+from aos_protocol.diagnostics import Severity, render
 from aos_protocol.errors import DocumentError, ModelError
 from aos_registry.load import load_bundle, read_bundle_files, with_excerpts
 from aos_solver.building.build import BuildKind
@@ -30,7 +30,8 @@ async def engine_of_bundle(bundle: Path, seed: int, *, kind: BuildKind = "quick"
         raise DocumentError(
             f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
         )
-    for diagnostic in loaded.diagnostics:
+    # Remarks are for `aos lint`: here they would be told with every run.
+    for diagnostic in (each for each in loaded.diagnostics if each.severity is not Severity.REMARK):
         typer.echo(render(diagnostic), err=True)
     try:
         built = await build_project(

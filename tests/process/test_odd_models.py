@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from models import built_text, engine_of
 
-from aos_protocol.errors import ModelError
+from aos_protocol.errors import DocumentError
 
 MAPPING = """project: odd
 
@@ -98,7 +98,7 @@ async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache
 
 
 async def test_a_model_without_an_action_is_refused(cache_dir: Path) -> None:
-    with pytest.raises(ModelError) as error:
+    with pytest.raises(DocumentError) as error:
         async with engine_of(await built_text(NOTHING, cache_dir)):
             pass
     assert error.value.code == "AOS119"
