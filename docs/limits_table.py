@@ -88,13 +88,13 @@ LIMITS: dict[str, tuple[Row, ...]] = {
     "Planning": (
         Row("states that searches number", "planning/state_space.hpp:states", "", "POMCP without them"),
         Row("outcomes of these states", "planning/state_space.hpp:outcomes", "", "POMCP without them"),
-        Row("states of an exact belief", "belief/belief.hpp:most_weighted_states", "", "particles"),
+        Row("states of an exact belief", "belief/belief.hpp:max_weighted_states", "", "particles"),
         Row("particles of a sampled belief", "belief/history.hpp:particle_count", "", "drawn anew"),
         Row(
             "memory of the search trees",
-            "planning/pomcp.hpp:most_search_bytes", "bytes", "trees grow no more",
+            "planning/pomcp.hpp:max_search_bytes", "bytes", "trees grow no more",
         ),
-        Row("threads of a search", "planning/budget.hpp:most_search_threads", "", "refused", "`threads`"),
+        Row("threads of a search", "planning/budget.hpp:max_search_threads", "", "refused", "`threads`"),
         Row("states of `aos solve`", "aos_solver.offline.enumeration.MAX_STATES", "", "AOS220", "`--states`"),
         Row(
             "states of a problem file",

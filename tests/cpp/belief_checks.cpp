@@ -132,10 +132,10 @@ struct Beams {
   static char letter(double noisy) { return static_cast<char>('a' + std::max(0, static_cast<int>(std::floor(noisy)))); }
 
   static double probability(int distance, char seen) {
-    const int reading = seen - 'a';
+    const int likelihood = seen - 'a';
     const auto within = [](double deviations) { return std::erf(deviations / std::sqrt(2.0)); };
-    const double upper = reading == 0 ? 1 : within((distance - reading) / 2.5);
-    return upper - within(std::max(distance - reading - 1, 0) / 2.5);
+    const double upper = likelihood == 0 ? 1 : within((distance - likelihood) / 2.5);
+    return upper - within(std::max(distance - likelihood - 1, 0) / 2.5);
   }
 };
 

@@ -197,16 +197,16 @@ async def test_threads_decide_as_one_thread_does(chance: Engine) -> None:
     assert together.best.q == pytest.approx(alone.best.q, abs=0.03)
 
 
-async def test_thinking_while_acting_leaves_a_warm_start_and_stops_when_it_is_asked(
+async def test_pondering_while_acting_leaves_a_warm_start_and_stops_when_it_is_asked(
     tiger: BuiltModel,
 ) -> None:
     async with engine_of(tiger) as engine:
         await engine.plan(simulations=100, seed=1)
         await engine.update("listen", "tiger_left")
         idle = await engine.plan(simulations=100, seed=2)
-        await engine.think(idle.index, seed=3, time_s=0.2)
-        predicted = await engine.predict(idle.index)  # What is asked now ends the thinking...
-        await engine.think(idle.index, seed=3, time_s=60)
+        await engine.ponder(idle.index, seed=3, time_s=0.2)
+        predicted = await engine.predict(idle.index)  # What is asked now ends the pondering...
+        await engine.ponder(idle.index, seed=3, time_s=60)
         await engine.update(idle.best.action, predicted.predicted[0].response)  # ...and so does this.
         warm = await engine.plan(simulations=100, seed=4)
     assert warm.known_simulations > idle.known_simulations

@@ -154,10 +154,10 @@ async def test_a_belief_that_no_observation_leads_to_is_reckoned_with(tag: Built
     assert -20 < plan.best.q < 10
 
 
-async def test_thinking_while_acting_goes_on_with_what_the_action_leads_to(tag: BuiltModel) -> None:
+async def test_pondering_while_acting_goes_on_with_what_the_action_leads_to(tag: BuiltModel) -> None:
     async with engine_of(tag) as engine:
         plan = await _decide(engine, simulations=1)
-        await engine.think(plan.index, seed=1, time_s=0.2)
+        await engine.ponder(plan.index, seed=1, time_s=0.2)
         warm = await _decide(engine, simulations=1)
     assert warm.known_simulations > plan.simulations
 

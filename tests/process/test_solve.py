@@ -91,7 +91,7 @@ def random_model(seed: int) -> ExplicitModel:
             np.arange(rows + 1) * 2, np.tile([0, 1], rows), random.dirichlet([1, 1], rows).ravel()
         ),
         sensings=np.arange(2 * rows),
-        readings=Ragged(
+        likelihoods=Ragged(
             np.arange(2 * rows + 1) * observations,
             np.tile(np.arange(observations), 2 * rows),
             random.dirichlet(np.ones(observations), 2 * rows).ravel(),
@@ -104,7 +104,7 @@ def value_on_a_grid(model: ExplicitModel, points: int = 801) -> float:
     """The value of the start by value iteration over beliefs in two states, linear between the points."""
     actions, observations = len(model.actions), len(model.observations)
     transitions = model.outcomes.probabilities.reshape(2, actions, 2)
-    sensing = model.readings.probabilities.reshape(2, actions, 2, observations)
+    sensing = model.likelihoods.probabilities.reshape(2, actions, 2, observations)
     grid = np.linspace(0, 1, points)
     beliefs = np.stack([1 - grid, grid], axis=1)
     joint = transitions[..., None] * sensing
@@ -333,7 +333,7 @@ async def test_bounds_that_contradict_each_other_are_an_error_and_never_a_result
     always = Ragged(np.array([0, 1], np.int64), np.zeros(1, np.int64), np.ones(1))
     no_number = ExplicitModel(
         name="no number", discount=0.9, states=("here",), actions=("wait",), observations=("none",),
-        rewards=np.full((1, 1), np.nan), outcomes=always, sensings=np.zeros(1, np.int64), readings=always,
+        rewards=np.full((1, 1), np.nan), outcomes=always, sensings=np.zeros(1, np.int64), likelihoods=always,
         starts=(StartBelief(1.0, np.zeros(1, np.int64), np.ones(1)),),
     )  # fmt: skip
     with pytest.raises(ModelError, match="AOS216"):

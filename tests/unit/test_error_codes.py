@@ -53,7 +53,7 @@ async def test_a_problem_that_is_over_at_the_start_is_not_solved(tmp_path: Path)
     nothing = Ragged(np.zeros(2, np.int64), np.zeros(0, np.int64), np.zeros(0))
     over = ExplicitModel(
         name="over", discount=0.9, states=("end",), actions=("wait",), observations=("none",),
-        rewards=np.zeros((1, 1)), outcomes=nothing, sensings=np.zeros(0, np.int64), readings=nothing,
+        rewards=np.zeros((1, 1)), outcomes=nothing, sensings=np.zeros(0, np.int64), likelihoods=nothing,
         starts=(),
     )  # fmt: skip
     with pytest.raises(PlanningError, match="over at the start") as caught:

@@ -29,7 +29,7 @@ def joint(model: ExplicitModel) -> Floats:
         state, action = divmod(row, size.actions)
         begin = model.outcomes.first[row]
         for offset, (after, probability) in enumerate(zip(*model.outcomes.row(row), strict=True)):
-            for seen, chance in zip(*model.readings.row(model.sensings[begin + offset]), strict=True):
+            for seen, chance in zip(*model.likelihoods.row(model.sensings[begin + offset]), strict=True):
                 dense[state, action, after, seen] += probability * chance
     return dense
 
@@ -106,7 +106,7 @@ def test_an_observation_of_the_step_itself_splits_the_state_that_follows() -> No
         rewards=np.array([[1.0], [2.0]]),
         outcomes=ragged,
         sensings=np.array([0, 1]),
-        readings=Ragged(np.array([0, 1, 2]), np.array([0, 1]), np.array([1.0, 1.0])),
+        likelihoods=Ragged(np.array([0, 1, 2]), np.array([0, 1]), np.array([1.0, 1.0])),
         starts=(),
     )
     split = with_sensing_by_state(model)

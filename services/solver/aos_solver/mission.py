@@ -125,7 +125,7 @@ class Mission:
             steps_taken += 1
             decision = self._decide(steps_taken, plan, belief)
             self._move_to("acting", steps_taken, belief, remark=decision.action)
-            await self._search.think(self._model.engine, steps_taken, plan.index)
+            await self._search.ponder(self._model.engine, steps_taken, plan.index)
             outcome = await self._act(decision)
             belief = await self._observe(decision, outcome)
             self._failures.take(decision, outcome)

@@ -46,7 +46,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             barred=barred,
         )
 
-    async def think(self, engine: Engine, step: int, index: int) -> None:
+    async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Look ahead below the action of decision `step` while it is carried out, if that is wanted."""
         if self.time_s is not None and self.ponders_while_acting:
-            await engine.think(index, seed=self.seed_of(step), time_s=self.time_s, threads=self.threads)
+            await engine.ponder(index, seed=self.seed_of(step), time_s=self.time_s, threads=self.threads)

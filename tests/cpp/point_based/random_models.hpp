@@ -67,12 +67,12 @@ class Generator {
       model.actions = actions;
       model.observations = observations;
       model.outcomes.first.push_back(0);
-      model.readings.first.push_back(0);
+      model.likelihoods.first.push_back(0);
     }
     std::uint32_t add_sensing(const Weights& weights) {
-      for (const auto& [observation, probability] : weights) model.readings.elements.push_back({observation, probability});
-      model.readings.first.push_back(model.readings.elements.size());
-      return static_cast<std::uint32_t>(model.readings.first.size() - 2);
+      for (const auto& [observation, probability] : weights) model.likelihoods.elements.push_back({observation, probability});
+      model.likelihoods.first.push_back(model.likelihoods.elements.size());
+      return static_cast<std::uint32_t>(model.likelihoods.first.size() - 2);
     }
     template <class SensingOf>
     void add_row(double reward, const Weights& next, SensingOf&& sensing_of) {
@@ -193,7 +193,7 @@ class Generator {
   FlatModel ties() {
     const FlatModel from = chance(0.5) ? corridor() : tables(2 + below(10), chance(0.5));
     Draft draft{from.states, 2 * from.actions + 1, from.observations};
-    draft.model.readings = from.readings;
+    draft.model.likelihoods = from.likelihoods;
     const std::uint32_t silent = draft.add_sensing({{0, 1}});
     for (std::size_t state = 0; state < from.states; ++state) {
       draft.add_row(0, {{static_cast<std::uint32_t>(state), 1}}, [&](std::uint32_t) { return silent; });
@@ -214,7 +214,7 @@ class Generator {
     const bool is_random = chance(0.5);
     const bool is_known = chance(0.5);
     Draft draft{from.states * phases, from.actions, from.observations};
-    draft.model.readings = from.readings;
+    draft.model.likelihoods = from.likelihoods;
     const auto number = [&](std::size_t state, std::size_t phase) { return static_cast<std::uint32_t>(state * phases + phase); };
     for (std::size_t state = 0; state < from.states; ++state) {
       for (std::size_t phase = 0; phase < phases; ++phase) {

@@ -76,10 +76,10 @@ class Reference {
     for (const auto& [state, probability] : belief) {
       const std::size_t row = model_.row(state, action);
       for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-        const auto* last = model_.readings.end(outcome->sensing);
-        for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
-          const Real weight = probability * outcome->probability * reading->probability;
-          if (weight > 0) by_observation[reading->observation][outcome->next] += weight;
+        const auto* last = model_.likelihoods.end(outcome->sensing);
+        for (const auto* likelihood = model_.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
+          const Real weight = probability * outcome->probability * likelihood->probability;
+          if (weight > 0) by_observation[likelihood->observation][outcome->next] += weight;
         }
       }
     }

@@ -23,9 +23,9 @@ std::uint32_t normal(NumberReports& reports, double mean, double deviation, std:
   return reports.add(skill, response);
 }
 
-// The readings of each report by itself.
-point_based::Rows<point_based::Reading> each(const NumberReports& reports) {
-  point_based::Rows<point_based::Reading> rows;
+// The likelihoods of each report by itself.
+point_based::Rows<point_based::Likelihood> each(const NumberReports& reports) {
+  point_based::Rows<point_based::Likelihood> rows;
   rows.first.push_back(0);
   for (std::uint32_t report = 0; report < reports.reports().size(); ++report) {
     rows.elements.push_back({report, 1.0});
@@ -34,9 +34,9 @@ point_based::Rows<point_based::Reading> each(const NumberReports& reports) {
   return rows;
 }
 
-double sum_of(const point_based::Rows<point_based::Reading>& rows, std::size_t row) {
+double sum_of(const point_based::Rows<point_based::Likelihood>& rows, std::size_t row) {
   return std::accumulate(rows.begin(row), rows.end(row), 0.0,
-                         [](double sum, const auto& reading) { return sum + reading.probability; });
+                         [](double sum, const auto& likelihood) { return sum + likelihood.probability; });
 }
 
 TEST("Equal reports have one number, whatever the order of their numbers") {
@@ -118,10 +118,10 @@ point_based::FlatModel doors(NumberReports& reports) {
   model.actions = 3;
   model.discount = 0.95;
   model.horizon = 20;
-  model.outcomes.first = model.readings.first = {0};
+  model.outcomes.first = model.likelihoods.first = {0};
   for (std::uint32_t side = 0; side < 2; ++side) {
-    model.readings.elements.push_back({normal(reports, side == 0 ? -1 : 1, 1.0), 1.0});
-    model.readings.first.push_back(side + 1);
+    model.likelihoods.elements.push_back({normal(reports, side == 0 ? -1 : 1, 1.0), 1.0});
+    model.likelihoods.first.push_back(side + 1);
     model.outcomes.elements.push_back({side, side, 1.0});
     for (int action = 0; action < 3; ++action) model.outcomes.first.push_back(side + 1);
     model.rewards.insert(model.rewards.end(), {-1.0, side == 0 ? -100.0 : 10.0, side == 1 ? -100.0 : 10.0});
@@ -136,7 +136,7 @@ double value_over_cells(std::size_t max) {
   NumberCells cells;
   EXPECT_EQUAL(cells.choose(reports, max), "");
   EXPECT(cells.most() <= max);
-  model.readings = cells.by_cells(model.readings);
+  model.likelihoods = cells.by_cells(model.likelihoods);
   model.observations = cells.observations();
   point_based::OnlineSarsop search{model};
   search.move_to(model.starts.front().belief);

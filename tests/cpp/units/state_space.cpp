@@ -51,7 +51,7 @@ TEST("A row has the expected reward and the probabilities of the states after it
   EXPECT_EQUAL(space[outcome->next].variables[0], 1);
 }
 
-TEST("Outcomes in the same next state share their readings, which sum to 1") {
+TEST("Outcomes in the same next state share their likelihoods, which sum to 1") {
   const Problem tiger = units::tiger();
   const Belief belief = initial_belief(tiger);
   Space space;
@@ -61,10 +61,10 @@ TEST("Outcomes in the same next state share their readings, which sum to 1") {
     double total = 0;
     for (const auto* outcome = rows.outcomes.begin(row); outcome != rows.outcomes.end(row); ++outcome) {
       total += outcome->probability;
-      double readings = 0;
-      const auto* reading = rows.readings.begin(outcome->sensing);
-      for (; reading != rows.readings.end(outcome->sensing); ++reading) readings += reading->probability;
-      EXPECT_NEAR(readings, 1.0, 1e-12);
+      double likelihoods = 0;
+      const auto* likelihood = rows.likelihoods.begin(outcome->sensing);
+      for (; likelihood != rows.likelihoods.end(outcome->sensing); ++likelihood) likelihoods += likelihood->probability;
+      EXPECT_NEAR(likelihoods, 1.0, 1e-12);
     }
     EXPECT_NEAR(total, 1.0, 1e-12);
   }

@@ -243,7 +243,7 @@ class Claims {
     model.actions = flat_.actions();
     model.discount = flat_.discount();
     model.outcomes.first.push_back(0);
-    model.readings.first.push_back(0);
+    model.likelihoods.first.push_back(0);
     std::map<int, std::uint32_t> observations;
     for (std::size_t state = 0; state < flat_.states(); ++state) {
       for (std::size_t action = 0; action < flat_.actions(); ++action) {
@@ -262,11 +262,11 @@ class Claims {
         for (const auto& [next, seen] : by_next) {
           double total = 0;
           for (const auto& entry : seen) total += entry.second;
-          const auto sensing = static_cast<std::uint32_t>(model.readings.first.size() - 1);
+          const auto sensing = static_cast<std::uint32_t>(model.likelihoods.first.size() - 1);
           for (const auto& [observation, probability] : seen) {
-            model.readings.elements.push_back({observation, probability / total});
+            model.likelihoods.elements.push_back({observation, probability / total});
           }
-          model.readings.first.push_back(model.readings.elements.size());
+          model.likelihoods.first.push_back(model.likelihoods.elements.size());
           model.outcomes.elements.push_back({next, sensing, total});
         }
         model.outcomes.first.push_back(model.outcomes.elements.size());

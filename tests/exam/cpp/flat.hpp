@@ -86,7 +86,7 @@ class Flat {
     return result;
   }
   // The observation that stands for this one.
-  int sight(std::size_t action, int observation) const {
+  int observation_branch(std::size_t action, int observation) const {
     const auto found = sights_.find({action, observation});
     return found != sights_.end() ? found->second : observation;
   }
@@ -134,7 +134,7 @@ class Flat {
       for (std::size_t state = 0; state < states(); ++state) {
         std::map<std::pair<int, std::uint32_t>, double> merged;
         auto& row = branches_[state * actions() + action];
-        for (const Branch& branch : row) merged[{sight(action, branch.observation), branch.next}] += branch.probability;
+        for (const Branch& branch : row) merged[{observation_branch(action, branch.observation), branch.next}] += branch.probability;
         row.clear();
         for (const auto& [key, probability] : merged) row.push_back({key.first, key.second, probability});
       }

@@ -168,9 +168,9 @@ class Regret {
       const int seen = drawn_from(problem_.sensings[outcome.sensing], seen_drawn).observation;
       hidden = outcome.next;
       if (!problem_.is_running(hidden)) break;
-      const int sight = flat_.sight(a, seen);
+      const int observation_branch = flat_.observation_branch(a, seen);
       const auto found = std::find_if(all_reached.begin(), all_reached.end(),
-                                      [&](const Reached& reached) { return reached.observation == sight; });
+                                      [&](const Reached& reached) { return reached.observation == observation_branch; });
       exact = found->belief;
       value = values[static_cast<std::size_t>(found - all_reached.begin())];
       if (planner == nullptr) continue;

@@ -1,6 +1,10 @@
 // Model of the project armadillo: 7 state variables, 5 skills.
-// Emitted by aos 0.1.0 from the documents of digest a85fb3b45586301f. Change the documents, not this file;
-// `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
+// Emitted by aos 0.1.0 from the documents of digest a85fb3b45586301f. Change the documents, not
+// this file; `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
+// Names that begin with `aos_` are this file's own.
+//
+// A document's `AOS.SampleDiscrete(Enum, weights)` is `Enum(AOS.SampleDiscrete(-1, weights))` here: the first
+// argument is the number before the first that can be drawn, and the values of an enum count from 0.
 
 #include "aos/model/model_support.hpp"
 
@@ -21,7 +25,7 @@ struct Destination {
   double yaw = 0.0;
 
   template <class Self, class Visit>
-  static void __fields(Self& self, Visit&& visit) {
+  static void aos_fields(Self& self, Visit&& visit) {
     visit("place", self.place);
     visit("x", self.x);
     visit("y", self.y);
@@ -47,13 +51,13 @@ struct State {
   bool arm_outstretched{};
   bool drink_served{};
   bool person_injured{};
-  aos::Ending __ending{};
+  aos::Ending aos_ending{};
   inline static const Destination& easy_table = constants.easy_table;
   inline static const Destination& hard_table = constants.hard_table;
   inline static const Destination& corridor = constants.corridor;
 
   template <class Self, class Visit>
-  static void __fields(Self& self, Visit&& visit) {
+  static void aos_fields(Self& self, Visit&& visit) {
     visit("easy_can_at", self.easy_can_at);
     visit("hard_can_at", self.hard_can_at);
     visit("robot_at", self.robot_at);
@@ -62,7 +66,7 @@ struct State {
     visit("drink_served", self.drink_served);
     visit("person_injured", self.person_injured);
   }
-  static std::span<const aos::Member> __members();
+  static std::span<const aos::Member> aos_members();
   bool operator==(const State&) const = default;
 };
 inline constexpr std::array<aos::Member, 7> members{
@@ -74,7 +78,7 @@ inline constexpr std::array<aos::Member, 7> members{
     aos::member_at<bool>("drink_served", offsetof(State, drink_served)),
     aos::member_at<bool>("person_injured", offsetof(State, person_injured)),
 };
-inline std::span<const aos::Member> State::__members() { return members; }
+inline std::span<const aos::Member> State::aos_members() { return members; }
 
 // All variables, open to the code that gives them their first values.
 struct Draft : State, Constants {
@@ -89,43 +93,43 @@ inline void default_values(Draft& state) {
     aos::blame::at(5);
 #line 16 "armadillo.ef"
 state.easy_can_at = EasyTable;
-#line 93 "model.cpp"
+#line 97 "model.cpp"
   }
   {
     aos::blame::at(6);
 #line 20 "armadillo.ef"
 state.hard_can_at = HardTable;
-#line 99 "model.cpp"
+#line 103 "model.cpp"
   }
   {
     aos::blame::at(7);
 #line 24 "armadillo.ef"
 state.robot_at = Unknown;
-#line 105 "model.cpp"
+#line 109 "model.cpp"
   }
   {
     aos::blame::at(8);
 #line 28 "armadillo.ef"
 state.holding_can = false;
-#line 111 "model.cpp"
+#line 115 "model.cpp"
   }
   {
     aos::blame::at(9);
 #line 32 "armadillo.ef"
 state.arm_outstretched = false;
-#line 117 "model.cpp"
+#line 121 "model.cpp"
   }
   {
     aos::blame::at(10);
 #line 36 "armadillo.ef"
 state.drink_served = false;
-#line 123 "model.cpp"
+#line 127 "model.cpp"
   }
   {
     aos::blame::at(11);
 #line 40 "armadillo.ef"
 state.person_injured = false;
-#line 129 "model.cpp"
+#line 133 "model.cpp"
   }
   {
     aos::blame::at(12);
@@ -134,7 +138,7 @@ state.easy_table.place = EasyTable;
 state.easy_table.x = 0.0;
 state.easy_table.y = 2.0;
 state.easy_table.yaw = 1.5708;
-#line 138 "model.cpp"
+#line 142 "model.cpp"
   }
   {
     aos::blame::at(13);
@@ -143,7 +147,7 @@ state.hard_table.place = HardTable;
 state.hard_table.x = 0.0;
 state.hard_table.y = -2.0;
 state.hard_table.yaw = -1.5708;
-#line 147 "model.cpp"
+#line 151 "model.cpp"
   }
   {
     aos::blame::at(14);
@@ -152,13 +156,13 @@ state.corridor.place = Corridor;
 state.corridor.x = 4.0;
 state.corridor.y = 0.0;
 state.corridor.yaw = 0.0;
-#line 156 "model.cpp"
+#line 160 "model.cpp"
   }
   aos::blame::at(0);
 }
 
 // From navigate.sd.
-struct skill__navigate : aos::SkillDefaults {
+struct aos_skill_navigate : aos::SkillDefaults {
   enum Response : int { arrived = 1, failed };
   static constexpr std::array<const char*, 2> response_names{"arrived", "failed"};
   static constexpr double violation_penalty = -10.0;
@@ -167,102 +171,102 @@ struct skill__navigate : aos::SkillDefaults {
     Destination destination;
 
     template <class Self, class Visit>
-    static void __fields(Self& self, Visit&& visit) {
+    static void aos_fields(Self& self, Visit&& visit) {
       visit("destination", self.destination);
     }
   };
 
-  static void make_groundings(const Draft& __draft, aos::Groundings __groundings) {
+  static void make_groundings(const Draft& aos_draft, aos::Groundings aos_groundings) {
     for (const auto& destination : std::initializer_list<aos::NamedValue<Destination>>{
-             {"corridor", __draft.corridor},
-             {"easy_table", __draft.easy_table},
-             {"hard_table", __draft.hard_table},
+             {"corridor", aos_draft.corridor},
+             {"easy_table", aos_draft.easy_table},
+             {"hard_table", aos_draft.hard_table},
          }) {
-      __groundings.add({{"destination", destination.name}}, new Parameters{destination.value});
+      aos_groundings.add({{"destination", destination.name}}, new Parameters{destination.value});
     }
   }
 
-  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
+  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& aos_parameters,
                            auto& AOS) {
     aos::blame::at(19);
 #line 5 "navigate.sd"
 __meetPrecondition = state.robot_at != Unknown;
-#line 191 "model.cpp"
+#line 195 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
-                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
-                         const Parameters& __parameters, auto& AOS) {
-    const auto& destination = __parameters.destination;
-    auto& __reward = __effect.reward;
-    auto& __moduleResponse = __effect.response;
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
+                         const Parameters& aos_parameters, auto& AOS) {
+    const auto& destination = aos_parameters.destination;
+    auto& __reward = aos_effect.reward;
+    auto& __moduleResponse = aos_effect.response;
     aos::blame::at(20);
 #line 9 "navigate.sd"
 bool is_there = AOS.Bernoulli(1.0);
 if (is_there) state__.robot_at = destination.place;
 __moduleResponse = is_there ? arrived : failed;
 __reward = -5;
-#line 206 "model.cpp"
+#line 210 "model.cpp"
   }
 };
 
 // From observe_arm_outstretched.sd.
-struct skill__observe_arm_outstretched : aos::SkillDefaults {
+struct aos_skill_observe_arm_outstretched : aos::SkillDefaults {
   enum Response : int { outstretched = 1, not_outstretched };
   static constexpr std::array<const char*, 2> response_names{"outstretched", "not_outstretched"};
 
   static void next_state(const State& state, const State& state_, State& state__,
-                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
-                         const Parameters& __parameters, auto& AOS) {
-    auto& __reward = __effect.reward;
-    auto& __moduleResponse = __effect.response;
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
+                         const Parameters& aos_parameters, auto& AOS) {
+    auto& __reward = aos_effect.reward;
+    auto& __moduleResponse = aos_effect.response;
     aos::blame::at(21);
 #line 4 "observe_arm_outstretched.sd"
 __moduleResponse = state.arm_outstretched ? outstretched : not_outstretched;
 __reward = -1;
-#line 224 "model.cpp"
+#line 228 "model.cpp"
   }
 };
 
 // From observe_holding.sd.
-struct skill__observe_holding : aos::SkillDefaults {
+struct aos_skill_observe_holding : aos::SkillDefaults {
   enum Response : int { holding = 1, not_holding };
   static constexpr std::array<const char*, 2> response_names{"holding", "not_holding"};
 
   static void next_state(const State& state, const State& state_, State& state__,
-                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
-                         const Parameters& __parameters, auto& AOS) {
-    auto& __reward = __effect.reward;
-    auto& __moduleResponse = __effect.response;
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
+                         const Parameters& aos_parameters, auto& AOS) {
+    auto& __reward = aos_effect.reward;
+    auto& __moduleResponse = aos_effect.response;
     aos::blame::at(22);
 #line 4 "observe_holding.sd"
 // In 2 of 11 runs the fingers report nothing although they hold the can; never the other way round.
 __moduleResponse = state.holding_can && AOS.sensing().Bernoulli(0.818) ? holding : not_holding;
 __reward = -1;
-#line 243 "model.cpp"
+#line 247 "model.cpp"
   }
 };
 
 // From pick.sd.
-struct skill__pick : aos::SkillDefaults {
+struct aos_skill_pick : aos::SkillDefaults {
   enum Response : int { pick_succeeded = 1, pick_failed };
   static constexpr std::array<const char*, 2> response_names{"pick_succeeded", "pick_failed"};
   static constexpr double violation_penalty = -10.0;
 
-  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
+  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& aos_parameters,
                            auto& AOS) {
     aos::blame::at(23);
 #line 4 "pick.sd"
 bool can_in_reach = state.easy_can_at == state.robot_at || state.hard_can_at == state.robot_at;
 __meetPrecondition = can_in_reach && !state.holding_can;
-#line 259 "model.cpp"
+#line 263 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
-                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
-                         const Parameters& __parameters, auto& AOS) {
-    auto& __reward = __effect.reward;
-    auto& __moduleResponse = __effect.response;
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
+                         const Parameters& aos_parameters, auto& AOS) {
+    auto& __reward = aos_effect.reward;
+    auto& __moduleResponse = aos_effect.response;
     aos::blame::at(24);
 #line 9 "pick.sd"
 enum Ending { Grasped, GraspedArmOut, NotGrasped, Dropped };
@@ -282,29 +286,29 @@ state__.arm_outstretched = ending == GraspedArmOut;
 // The skill notices an arm that stays out, and neither a missed nor a dropped can.
 __moduleResponse = ending == GraspedArmOut ? pick_failed : pick_succeeded;
 __reward = -2;
-#line 286 "model.cpp"
+#line 290 "model.cpp"
   }
 };
 
 // From serve.sd.
-struct skill__serve : aos::SkillDefaults {
+struct aos_skill_serve : aos::SkillDefaults {
   enum Response : int { delivered = 1, not_delivered };
   static constexpr std::array<const char*, 2> response_names{"delivered", "not_delivered"};
   static constexpr double violation_penalty = -12.0;
 
-  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& __parameters,
+  static void precondition(const State& state, bool& __meetPrecondition, const Parameters& aos_parameters,
                            auto& AOS) {
     aos::blame::at(25);
 #line 4 "serve.sd"
 __meetPrecondition = state.holding_can && !state.arm_outstretched && state.robot_at == Corridor;
-#line 301 "model.cpp"
+#line 305 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
-                         bool __meetPrecondition, const int __moduleExecutionTime, auto& __effect,
-                         const Parameters& __parameters, auto& AOS) {
-    auto& __reward = __effect.reward;
-    auto& __moduleResponse = __effect.response;
+                         bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
+                         const Parameters& aos_parameters, auto& AOS) {
+    auto& __reward = aos_effect.reward;
+    auto& __moduleResponse = aos_effect.response;
     aos::blame::at(26);
 #line 8 "serve.sd"
 state__.person_injured = state.arm_outstretched;
@@ -313,7 +317,7 @@ state__.drink_served = __meetPrecondition && !state__.person_injured;
 // All 21 runs reported a delivery, whether or not there was a can in the hand.
 __moduleResponse = AOS.sensing().Bernoulli(1.0) ? delivered : not_delivered;
 __reward = state__.person_injured ? -20 : -8;
-#line 317 "model.cpp"
+#line 321 "model.cpp"
   }
 };
 
@@ -322,10 +326,10 @@ struct Environment : aos::EnvironmentDefaults {
     aos::blame::at(15);
 #line 64 "armadillo.ef"
 state.robot_at = state.hard_table.place;
-#line 326 "model.cpp"
+#line 330 "model.cpp"
   }
 
-  static void special_state__1(const State& state, double& __reward, bool& __isGoalState,
+  static void aos_special_state_1(const State& state, double& __reward, bool& __isGoalState,
                                bool& __isFailureState, bool& __stopEvaluatingState, auto& AOS) {
     aos::blame::at(16);
 #line 67 "armadillo.ef"
@@ -333,10 +337,10 @@ if (state.drink_served) {
     __reward = 30;
     __isGoalState = true;
 }
-#line 337 "model.cpp"
+#line 341 "model.cpp"
   }
 
-  static void special_state__2(const State& state, double& __reward, bool& __isGoalState,
+  static void aos_special_state_2(const State& state, double& __reward, bool& __isGoalState,
                                bool& __isFailureState, bool& __stopEvaluatingState, auto& AOS) {
     aos::blame::at(17);
 #line 73 "armadillo.ef"
@@ -344,10 +348,10 @@ if (state.person_injured) {
     __reward = -10;
     __isFailureState = true;
 }
-#line 348 "model.cpp"
+#line 352 "model.cpp"
   }
 
-  static void special_state__3(const State& state, double& __reward, bool& __isGoalState,
+  static void aos_special_state_3(const State& state, double& __reward, bool& __isGoalState,
                                bool& __isFailureState, bool& __stopEvaluatingState, auto& AOS) {
     aos::blame::at(18);
 #line 79 "armadillo.ef"
@@ -355,20 +359,20 @@ if (state.person_injured) {
 if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
     __isFailureState = true;
 }
-#line 359 "model.cpp"
+#line 363 "model.cpp"
   }
 
   static constexpr bool has_special_states = true;
   static double special_states(State& next, auto& random) {
     double reward = 0;
     reward += aos::special_state(next, 0u, [&](auto&... result) {
-      special_state__1(next, result..., random);
+      aos_special_state_1(next, result..., random);
     });
     reward += aos::special_state<aos::Said::failures>(next, 0u, [&](auto&... result) {
-      special_state__2(next, result..., random);
+      aos_special_state_2(next, result..., random);
     });
     reward += aos::special_state<aos::Said::failures>(next, 0u, [&](auto&... result) {
-      special_state__3(next, result..., random);
+      aos_special_state_3(next, result..., random);
     });
     return reward;
   }
@@ -381,15 +385,15 @@ inline std::vector<aos::GroundedAction> actions;
 decltype(auto) with_skill(int skill, auto&& use) {
   switch (skill) {
     case 0:
-      return use(std::type_identity<skill__navigate>{});
+      return use(std::type_identity<aos_skill_navigate>{});
     case 1:
-      return use(std::type_identity<skill__observe_arm_outstretched>{});
+      return use(std::type_identity<aos_skill_observe_arm_outstretched>{});
     case 2:
-      return use(std::type_identity<skill__observe_holding>{});
+      return use(std::type_identity<aos_skill_observe_holding>{});
     case 3:
-      return use(std::type_identity<skill__pick>{});
+      return use(std::type_identity<aos_skill_pick>{});
     default:
-      return use(std::type_identity<skill__serve>{});
+      return use(std::type_identity<aos_skill_serve>{});
   }
 }
 
@@ -408,11 +412,11 @@ struct Model {
   static constexpr int horizon = 10;
   static constexpr double discount = 0.99;
   static constexpr std::array<aos::SkillFacts, 5> skills{
-      aos::facts_of<skill__navigate>("navigate"),
-      aos::facts_of<skill__observe_arm_outstretched>("observe_arm_outstretched"),
-      aos::facts_of<skill__observe_holding>("observe_holding"),
-      aos::facts_of<skill__pick>("pick"),
-      aos::facts_of<skill__serve>("serve"),
+      aos::facts_of<aos_skill_navigate>("navigate"),
+      aos::facts_of<aos_skill_observe_arm_outstretched>("observe_arm_outstretched"),
+      aos::facts_of<aos_skill_observe_holding>("observe_holding"),
+      aos::facts_of<aos_skill_pick>("pick"),
+      aos::facts_of<aos_skill_serve>("serve"),
   };
   // What no reward, observation or ending depends on.
   static constexpr std::array<aos::ByteRange, 0> irrelevant{
@@ -428,11 +432,11 @@ struct Model {
     constants = draft;
     start = draft;
     actions.clear();
-    skill__navigate::make_groundings(draft, {actions, 0, "navigate"});
-    skill__observe_arm_outstretched::make_groundings(draft, {actions, 1, "observe_arm_outstretched"});
-    skill__observe_holding::make_groundings(draft, {actions, 2, "observe_holding"});
-    skill__pick::make_groundings(draft, {actions, 3, "pick"});
-    skill__serve::make_groundings(draft, {actions, 4, "serve"});
+    aos_skill_navigate::make_groundings(draft, {actions, 0, "navigate"});
+    aos_skill_observe_arm_outstretched::make_groundings(draft, {actions, 1, "observe_arm_outstretched"});
+    aos_skill_observe_holding::make_groundings(draft, {actions, 2, "observe_holding"});
+    aos_skill_pick::make_groundings(draft, {actions, 3, "pick"});
+    aos_skill_serve::make_groundings(draft, {actions, 4, "serve"});
     if (actions.empty()) throw aos::ModelFault{"AOS119", "no skill has a grounded action"};
   }
 
@@ -465,7 +469,13 @@ struct Model {
     const auto weigh = [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       take(aos::rollout_weight<Skill>(state, parameters, random));
     };
-    aos::with_each_grounding<skill__navigate, skill__observe_arm_outstretched, skill__observe_holding, skill__pick, skill__serve>(actions, weigh);
+    aos::with_each_grounding<
+        aos_skill_navigate,
+        aos_skill_observe_arm_outstretched,
+        aos_skill_observe_holding,
+        aos_skill_pick,
+        aos_skill_serve>(
+        actions, weigh);
   }
   static void correct(const State& before, State& next, int action, auto& random) {
     with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
@@ -479,19 +489,19 @@ struct Model {
     return value;
   }
 
-  static aos::Ending ending(const State& state) { return state.__ending; }
+  static aos::Ending ending(const State& state) { return state.aos_ending; }
   static std::string state_text(const State& state) {
     return aos::leaves_text(state);
   }
   static std::uint64_t hash(const State& state) {
-    const auto ended = static_cast<std::uint64_t>(state.__ending);
+    const auto ended = static_cast<std::uint64_t>(state.aos_ending);
     return aos::mixed(aos::hashed(0, state), ended);
   }
   // What differs between states.
   static std::string save_state(const State& state) {
     aos::StateWriter text;
     text.write(state);
-    text.write(state.__ending);
+    text.write(state.aos_ending);
     return text.text();
   }
   // What does not.
@@ -500,7 +510,7 @@ struct Model {
   static void load_state(State& state, std::string_view saved, const aos::SavedConstants& constants) {
     aos::StateReader text{saved};
     constants.read_all(members, &state, text);
-    text.read(state.__ending);
+    text.read(state.aos_ending);
     text.finish();
   }
 };

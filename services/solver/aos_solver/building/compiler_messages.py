@@ -93,7 +93,7 @@ def _document_place(place: tuple[str, int, int], source_name: str, emitted: Emit
 
 def _plain(text: str) -> tuple[str, str]:
     """The message in the documents' terms, and the compiler's suggestion as a hint."""
-    text = re.sub(r"\bmodel::(?:skill__\w+::)?", "", text)
+    text = re.sub(r"\bmodel::(?:aos_skill_\w+::)?", "", text)
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
     text = text.replace("was not declared in this scope", "was not declared")

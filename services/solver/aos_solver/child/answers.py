@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 
 from aos_protocol.messages import ActionValue, BeliefSummary, PredictedObservation
+from aos_solver.child.command_line import command_line
 
 __all__ = [
     "BeliefUpdate",
@@ -186,15 +187,18 @@ class ExportedBelief(msgspec.Struct, frozen=True):
     def is_exact(self) -> bool:
         return self.error_bound == 0
 
-    def fields(self) -> list[str]:
-        """What an engine that takes it over is told."""
-        fields = [repr(self.error_bound), str(int(self.is_drawn))]
-        fields += self.history, str(len(self.constants))
-        for name, value in self.constants.items():
-            fields += name, value
-        for weight, state in self.particles:
-            fields += repr(weight), state
-        return fields
+    @property
+    def command(self) -> str:
+        """What an engine is told that takes it over."""
+        items = [item for pair in (*self.constants.items(), *self.particles) for item in pair]
+        return command_line(
+            "import_belief",
+            items,
+            error_bound=self.error_bound,
+            is_drawn=self.is_drawn,
+            history=self.history,
+            constants=len(self.constants),
+        )
 
 
 class WorldStart(msgspec.Struct, frozen=True):

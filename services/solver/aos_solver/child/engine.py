@@ -39,6 +39,7 @@ from aos_solver.child.answers import (
     WorldSteps,
     WrittenListing,
 )
+from aos_solver.child.command_line import command_line
 from aos_solver.child.engine_child import (
     EngineChild,
     EngineStart,
@@ -168,24 +169,35 @@ class Engine:
         several threads.
         """
         deadline_s = PLANNING_DEADLINE_S if time_s is None else time_s + ANSWER_DEADLINE_S
-        command = f"plan\t{simulations or 0}\t{time_s or 0}\t{seed}\t{horizon or 0}\t{planner}\t{threads}"
-        command = "\t".join((command, *map(str, barred)))
+        command = command_line(
+            "plan",
+            barred,
+            simulations=simulations or 0,
+            seconds=time_s or 0,
+            seed=seed,
+            horizon=horizon or 0,
+            planner=planner,
+            threads=threads,
+        )
         return await self._ask(command, Plan, deadline_s=deadline_s)
 
-    async def think(self, index: int, *, seed: int, time_s: float, threads: int = 1) -> None:
+    async def ponder(self, index: int, *, seed: int, time_s: float, threads: int = 1) -> None:
         """Begins to search below an action that is carried out now, so that the next plan starts with it.
 
         Returns at once. It goes on for `time_s`, or until something else is asked.
         """
-        await self._ask(f"think\t0\t{time_s}\t{seed}\t{index}\t{threads}", _Done)
+        budget = {"simulations": 0, "seconds": time_s, "threads": threads}
+        await self._ask(command_line("ponder", action=index, seed=seed, **budget), _Done)
 
     async def count_processor_time(self, counts: bool) -> None:
         """Whether this child's budgets in seconds are of processor time, for measurements."""
-        await self._ask(f"count_processor_time\t{int(counts)}", _Done)
+        await self._ask(command_line("count_processor_time", counts=counts), _Done)
 
     async def exact(self, horizon: int | None = None) -> ExactValues:
         """Finite-horizon values by enumeration; IntractableError where that is not possible, and why."""
-        command = f"exact\t{horizon or 0}\t{EXACT_BELIEF_BUDGET}\t{EXACT_TIME_S}"
+        command = command_line(
+            "exact", horizon=horizon or 0, beliefs=EXACT_BELIEF_BUDGET, seconds=EXACT_TIME_S
+        )
         return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
     async def reach(self, time_s: float) -> Reach:
@@ -194,22 +206,27 @@ class Engine:
         OverdueError where the last of many steps takes more than `REACH_MARGIN_S` beyond that.
         """
         return await self._ask(
-            f"reach\t{time_s}", Reach, deadline_s=time_s + REACH_MARGIN_S, locates_overdue=False
+            command_line("reach", seconds=time_s),
+            Reach,
+            deadline_s=time_s + REACH_MARGIN_S,
+            locates_overdue=False,
         )
 
     async def list_states(self, max_states: int = 0) -> Listed:
         """What one more decision leads to, from the current belief on with `max_states`, else where the last
         call has ended; IntractableError where outcomes cannot be counted, or there are too many states."""
-        return await self._ask(f"list\t{max_states}", Listed, deadline_s=LISTING_DEADLINE_S)
+        return await self._ask(
+            command_line("list", max_states=max_states), Listed, deadline_s=LISTING_DEADLINE_S
+        )
 
     async def write_listing(self, model: Path, states: Path) -> WrittenListing:
         """Writes what is listed (`cpp/point_based/flat_file.hpp`), and the texts of states, one a line."""
-        command = f"write_listing\t{model}\t{states}"
+        command = command_line("write_listing", model=model, states=states)
         return await self._ask(command, WrittenListing, deadline_s=LISTING_DEADLINE_S)
 
     async def predict(self, index: int) -> Prediction:
         """What may be observed after an action."""
-        return await self._ask(f"predict\t{index}", Prediction)
+        return await self._ask(command_line("predict", action=index), Prediction)
 
     async def update(
         self,
@@ -223,13 +240,11 @@ class Engine:
         The local variables of a real outcome, as text, correct the belief where the skill's documents say so.
         The update's remark says why numbers or local variables could not be used.
         """
-        if any(mark in response for mark in "\t\n"):
-            raise ModelError(f"the response {response!r} has a tab or a line end in it", code="AOS310")
         index = self._index(action)
         skill = self.description.actions[index].skill
         observed = self.observed.get(skill, ())
-        field = numbers_field(observed, numbers or {})
-        update = await self._corrected(action, f"update\t{index}\t{response}\t{field}", local_variables)
+        question = {"action": index, "response": response, "numbers": numbers_field(observed, numbers or {})}
+        update = await self._corrected(action, question, local_variables)
         if not update.has_other_numbers:
             return update
         given = {**(numbers or {}), **(local_variables or {})}
@@ -243,14 +258,15 @@ class Engine:
         return msgspec.structs.replace(update, remark=remark)
 
     async def _corrected(
-        self, action: str, command: str, local_variables: Mapping[str, str] | None
+        self, action: str, question: Mapping[str, Any], local_variables: Mapping[str, str] | None
     ) -> BeliefUpdate:
         """The answer to an update, with the local variables where the skill's documents want them."""
         wanted = self._built.emitted.locals.get(self.description.actions[self._index(action)].skill)
+        command = command_line("update", **question)
         if wanted is None or local_variables is None:
             return await self._change_belief(command, BeliefUpdate)
         try:
-            command += f"\t{local_values_line(wanted, local_variables)}"
+            command = command_line("update", **question, locals=local_values_line(wanted, local_variables))
         except UnusableLocals as reason:
             update, why = await self._change_belief(command, BeliefUpdate), str(reason)
         else:
@@ -278,7 +294,8 @@ class Engine:
 
     async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
         """The mixture of "it ran" and "it did not"."""
-        command = f"update_without_observation\t{self._index(action)}\t{ran_probability}"
+        index = self._index(action)
+        command = command_line("update_without_observation", action=index, ran_probability=ran_probability)
         return await self._change_belief(command, BeliefUpdate)
 
     async def export_belief(self, *, is_whole: bool = True) -> ExportedBelief:
@@ -286,11 +303,11 @@ class Engine:
 
         States are told without what does not matter if it need not be whole.
         """
-        belief = await self._ask(f"export_belief\t0\t{int(is_whole)}", ExportedBelief)
+        belief = await self._ask(command_line("export_belief", first=0, is_whole=is_whole), ExportedBelief)
         particles = list(belief.particles)
         while len(particles) < belief.states:
-            piece = await self._ask(f"export_belief\t{len(particles)}\t{int(is_whole)}", ExportedBelief)
-            particles += piece.particles
+            command = command_line("export_belief", first=len(particles), is_whole=is_whole)
+            particles += (await self._ask(command, ExportedBelief)).particles
         return msgspec.structs.replace(belief, particles=tuple(particles))
 
     async def draw_belief(self) -> BeliefSummary:
@@ -299,18 +316,20 @@ class Engine:
 
     async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
         """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
-        return await self._change_belief("\t".join(("import_belief", *belief.fields())), BeliefSummary)
+        return await self._change_belief(belief.command, BeliefSummary)
 
     async def reset_world(self, seed: int) -> WorldStart:
         """Starts a hidden state, drawn from the initial belief, for missions without a robot."""
-        start = await self._ask(f"reset_world\t{seed}", WorldStart)
-        self._world = [f"reset_world\t{seed}"]
+        command = command_line("reset_world", seed=seed)
+        start = await self._ask(command, WorldStart)
+        self._world = [command]
         return start
 
     async def step_world(self, index: int) -> WorldStep:
         """Runs an action on the hidden state, by the model."""
-        step = await self._ask(f"step_world\t{index}", EngineStep)
-        self._world.append(f"step_world\t{index}")
+        command = command_line("step_world", action=index)
+        step = await self._ask(command, EngineStep)
+        self._world.append(command)
         observed = self.observed.get(self.description.actions[index].skill, ())
         return WorldStep(step.reward, step.response, step.ending, numbers_by_name(observed, step.numbers))
 
@@ -320,18 +339,16 @@ class Engine:
 
     async def reset_worlds(self, seeds: Sequence[int]) -> Worlds:
         """Starts a hidden state for each seed, to be acted in side by side."""
-        return await self._ask("\t".join(("reset_worlds", *map(str, seeds))), Worlds)
+        return await self._ask(command_line("reset_worlds", seeds), Worlds)
 
     async def step_worlds(self, indices: bytes) -> WorldSteps:
         """Runs an action in each world, by the bytes of an int32 for each; -1 starts a world anew."""
-        return await self._ask(f"step_worlds\t{b64encode(indices).decode()}", WorldSteps)
+        return await self._ask(command_line("step_worlds", actions=b64encode(indices).decode()), WorldSteps)
 
     async def rate(self, seconds: float, seed: int, stepping: Stepping = "code") -> SampleCount:
         """Draws samples with random actions for so long; by a table none at all where searches use none."""
-        command = "rate" if stepping == "code" else "rate_by_table"
-        return await self._ask(
-            f"{command}\t{seconds}\t{seed}", SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S
-        )
+        command = command_line("rate" if stepping == "code" else "rate_by_table", seconds=seconds, seed=seed)
+        return await self._ask(command, SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S)
 
     def variables_of(self, action: str) -> dict[str, str]:
         """The state variables that parameters of the action stand for; computed parameters stand for none."""
@@ -403,7 +420,8 @@ class Engine:
 
     def _restoration(self, changes: int) -> list[str]:
         """What brings a new child to the belief after so many changes, the last or the one before it."""
-        return [f"restore_belief\t{changes}"] if changes > 0 and self._beliefs is not None else []
+        is_kept = changes > 0 and self._beliefs is not None
+        return [command_line("restore_belief", change=changes)] if is_kept else []
 
     async def _drop_child(self) -> None:
         child, self._child = self._child, None

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import re
 from collections import deque
 from collections.abc import Coroutine, Sequence
 from typing import Any, TypeVar
@@ -19,6 +20,7 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, ModelError, error_from_code
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.child.answers import BeliefUpdate
+from aos_solver.child.command_line import command_line
 from aos_solver.child.engine_child import EngineChild, EngineStart
 from aos_solver.emission.trace import TracedModel, traced
 
@@ -87,7 +89,9 @@ class _Replay:
         """Where the same fault comes again."""
         told = await self._fault_of([_with_one_thread(command) for command in commands])
         if told is None:
-            told = await self._fault_of([f"rate\t{_RANDOM_ACTIONS_S}\t{self._start.seed}"])
+            told = await self._fault_of(
+                [command_line("rate", seconds=_RANDOM_ACTIONS_S, seed=self._start.seed)]
+            )
             if told is not None and not self._is_in_the_piece(told):
                 return None
         return told
@@ -143,7 +147,4 @@ class _Replay:
 
 def _with_one_thread(command: str) -> str:
     """Of several threads it would not be known which one failed, nor would they meet the fault again."""
-    if not command.startswith("plan\t"):
-        return command
-    without_threads, _, _ = command.rpartition("\t")
-    return f"{without_threads}\t1"
+    return re.sub(r"\tthreads=\d+", "\tthreads=1", command)

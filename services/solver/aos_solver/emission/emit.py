@@ -30,6 +30,9 @@ _OWN_NAMES = (
     "State", "Draft", "Constants", "Environment", "Model", "actions", "constants", "default_values",
     "members", "start", "variables",
 )  # fmt: skip
+_MAX_COLUMNS = 110
+_COMMA = re.compile(r'"(?:[^"\\]|\\.)*"|(, )')
+"""Text in quotes, or a comma outside."""
 _PLAIN_VALUE = re.compile(r"[\w.+-]*")
 
 
@@ -87,6 +90,7 @@ def emit(program: Program) -> EmittedModel:
         flags_type=_flags_type(program),
         has_tables=any(variable.axes for variable in program.variables),
         has_rollout_policy=any(skill.rollout_policy for skill in program.skills),
+        draws_enums=any("AOS.SampleDiscrete(-1, " in piece.text for piece in program.pieces),
         has_corrections=any(skill.is_corrected for skill in program.skills),
         special_states=[state for state in program.special_states if state.condition or state.section],
         watched_skills=_watched_skills(program),
@@ -155,7 +159,7 @@ class _Lines:
         if self._is_in_document:
             self.lines.append(f'#line {len(self.lines) + 2} "{MODEL_FILE}"')
             self._is_in_document = False
-        self.lines.append(line)
+        self.lines += _wrapped(line)
 
     def add_code(self, line: str, span: Span, origins: tuple[Origin, ...]) -> None:
         """A line with document code, of which `span` is the document line."""
@@ -168,8 +172,22 @@ class _Lines:
 
     def add_plain(self, line: str, origins: tuple[Origin, ...]) -> None:
         """A line of ours that shows a plain value from a document."""
-        self.add(line)
+        self.add("")
+        self.lines[-1] = line  # Whole, since its columns lead back to the document.
         self.origins[len(self.lines)] = origins
+
+
+def _wrapped(line: str) -> list[str]:
+    """A line of ours as lines of at most `_MAX_COLUMNS`, where its commas allow that."""
+    lines: list[str] = []
+    indent = " " * (len(line) - len(line.lstrip()) + 4)
+    while len(line) > _MAX_COLUMNS and not line.lstrip().startswith(("//", "#")):
+        commas = [found.end() for found in _COMMA.finditer(line) if found[1] and found.end() <= _MAX_COLUMNS]
+        if not commas:
+            break
+        lines.append(line[: commas[-1]].rstrip())
+        line = indent + line[commas[-1] :]
+    return [*lines, line]
 
 
 def _needs_lines(piece: Piece) -> bool:

@@ -86,5 +86,5 @@ def _check(name: str, span: Span, findings: Findings, ours: frozenset[str]) -> N
         findings.error("AOS126", f"`{name}` is no name in C++", span, hint)
     elif name in CPP_KEYWORDS or name in _OF_THE_LANGUAGE:
         findings.error("AOS126", f"`{name}` means something else in model code", span, "Choose another name")
-    elif name in ours:
+    elif name in ours or name.startswith("aos_"):
         findings.error("AOS126", f"the emitted model uses the name `{name}`", span, "Choose another name")

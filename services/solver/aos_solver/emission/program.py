@@ -262,7 +262,7 @@ class Skill(msgspec.Struct, frozen=True):
         """The local variables as `given_observation` sees them; a parameter of the same name hides one."""
         hidden = {parameter.name for parameter in self.parameters}
         return tuple(
-            (local.name, f"__locals.{local.name}") for local in self.locals if local.name not in hidden
+            (local.name, f"aos_locals.{local.name}") for local in self.locals if local.name not in hidden
         )
 
 

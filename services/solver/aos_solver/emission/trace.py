@@ -65,7 +65,7 @@ class _Tracing:
         self._places = places
         self._given = [name for name in _RESULTS if _sets(piece.text, name)]
         self.spans: dict[tuple[int, int], Span] = {}
-        self.marks = Marks(before=self._before, after=self._after, inside="aos::blame::Inside inside__;")
+        self.marks = Marks(before=self._before, after=self._after, inside="aos::blame::Inside aos_inside;")
 
     @property
     def start(self) -> str:
@@ -80,7 +80,7 @@ class _Tracing:
         return " ".join(f"{self._giver(name)}.by({self._place(statement)});" for name in given)
 
     def _giver(self, name: str) -> str:
-        return f"{name}__by{self._piece.number}"
+        return f"aos_{name.strip('_')}_by_{self._piece.number}"
 
     def _place(self, statement: Statement) -> int:
         key = (statement.line, statement.column)

@@ -59,7 +59,7 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
     """A POMDP with `discount`; states, actions and observations are numbered as their names stand here.
 
     `rewards` (states, actions) are expected immediate rewards. Row `state * actions + action` of `outcomes`
-    holds the next states; `sensings` beside them names for each a row of `readings`, the distribution of
+    holds the next states; `sensings` beside them names for each a row of `likelihoods`, the distribution of
     what is observed there. Outcomes of most models share few of these, and mostly the next state and the
     action decide about it.
     """
@@ -72,7 +72,7 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
     rewards: Floats
     outcomes: Ragged
     sensings: Integers
-    readings: Ragged
+    likelihoods: Ragged
     starts: tuple[StartBelief, ...]
 
     @property
@@ -95,7 +95,7 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
             np.concatenate([start.states for start in self.starts]),
             np.concatenate([start.probabilities for start in self.starts]),
         )
-        counts = [*msgspec.structs.astuple(self.size), len(self.readings), len(self.readings.numbers)]
+        counts = [*msgspec.structs.astuple(self.size), len(self.likelihoods), len(self.likelihoods.numbers)]
         with path.open("wb") as file:
             file.write(_MARK)
             for array, kind in (
@@ -106,9 +106,9 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
                 (self.outcomes.numbers, "<u4"),
                 (self.sensings, "<u4"),
                 (self.outcomes.probabilities, "<f8"),
-                (self.readings.first, "<u8"),
-                (self.readings.numbers, "<u4"),
-                (self.readings.probabilities, "<f8"),
+                (self.likelihoods.first, "<u8"),
+                (self.likelihoods.numbers, "<u4"),
+                (self.likelihoods.probabilities, "<f8"),
                 ([start.weight for start in self.starts], "<f8"),
                 (starts.first, "<u8"),
                 (starts.numbers, "<u4"),
@@ -124,7 +124,7 @@ class FlatModel(msgspec.Struct, frozen=True, kw_only=True):
     rewards: Floats
     outcomes: Ragged
     sensings: Integers
-    readings: Ragged
+    likelihoods: Ragged
     starts: tuple[StartBelief, ...]
 
 
@@ -139,12 +139,12 @@ def read_flat(path: Path) -> FlatModel:
         place += array.nbytes
         return array.astype(np.float64 if kind == "<f8" else np.int64)
 
-    states, actions, _, outcomes, sensings, readings, starts, entries = map(int, take("<u8", 8))
+    states, actions, _, outcomes, sensings, likelihoods, starts, entries = map(int, take("<u8", 8))
     discount = float(take("<f8", 1)[0])
     rewards = take("<f8", states * actions).reshape(states, actions)
     first, after = take("<u8", states * actions + 1), take("<u4", outcomes)
     sensing_of, probabilities = take("<u4", outcomes), take("<f8", outcomes)
-    sensed = Ragged(take("<u8", sensings + 1), take("<u4", readings), take("<f8", readings))
+    sensed = Ragged(take("<u8", sensings + 1), take("<u4", likelihoods), take("<f8", likelihoods))
     weights = take("<f8", starts)
     beliefs = Ragged(take("<u8", starts + 1), take("<u4", entries), take("<f8", entries))
     return FlatModel(
@@ -152,6 +152,6 @@ def read_flat(path: Path) -> FlatModel:
         rewards=rewards,
         outcomes=Ragged(first, after, probabilities),
         sensings=sensing_of,
-        readings=sensed,
+        likelihoods=sensed,
         starts=tuple(StartBelief(float(weights[i]), *beliefs.row(i)) for i in range(starts)),
     )

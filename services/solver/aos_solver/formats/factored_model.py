@@ -165,7 +165,7 @@ class _Flattening:
         start = self._start()
         start_codes = self._before.encode(start.columns, len(start.origin))
         steps, codes = self._explore(np.unique(start_codes))
-        readings, first_sensing, sight_codes = self._readings(steps)
+        likelihoods, first_sensing, sight_codes = self._likelihoods(steps)
         rows, order, joined = _sorted_steps(steps, codes)
         sensings = np.concatenate(
             [
@@ -186,7 +186,7 @@ class _Flattening:
                 joined.probability[order],
             ),
             sensings=sensings[order],
-            readings=readings,
+            likelihoods=likelihoods,
             starts=self._starts(start, np.searchsorted(codes, start_codes)),
         )
 
@@ -238,7 +238,7 @@ class _Flattening:
             action.sensing_code.encode(frame.columns, rows),
         )
 
-    def _readings(self, steps: list[list[_Steps]]) -> tuple[Ragged, list[int], Integers]:
+    def _likelihoods(self, steps: list[list[_Steps]]) -> tuple[Ragged, list[int], Integers]:
         """The observations of every (action, key), the first row of every action, and the sights' codes."""
         firsts, rows, sights, chances, count = [], [], [], [], 0
         for action, found in zip(self._actions, steps, strict=True):

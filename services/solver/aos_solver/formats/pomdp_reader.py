@@ -299,7 +299,7 @@ class _Reader:
                     sensings.append(known.setdefault(sensing, len(known)))
                 first.append(len(after))
                 rewards[state, action] = self._rewards.expected(action, state, row, self._sensing_of(action))
-        readings = Ragged(
+        likelihoods = Ragged(
             np.cumsum([0, *(len(row) for row in known)]),
             np.array([number for row in known for number, _ in row], dtype=np.int64),
             np.array([probability for row in known for _, probability in row]),
@@ -315,7 +315,7 @@ class _Reader:
             rewards=rewards,
             outcomes=Ragged(np.array(first), np.array(after), np.array(chances)),
             sensings=np.array(sensings),
-            readings=readings,
+            likelihoods=likelihoods,
             starts=(start,),
         )
 

@@ -57,7 +57,7 @@ def _observations(sensing: SensingByState, names: _Names) -> Iterator[tuple[str,
                 # Never reached by this action; the formats want a distribution all the same.
                 yield names.actions[action], names.states[state], names.observations[0], 1.0
                 continue
-            for observation, probability in zip(*sensing.model.readings.row(row), strict=True):
+            for observation, probability in zip(*sensing.model.likelihoods.row(row), strict=True):
                 yield (
                     names.actions[action],
                     names.states[state],

@@ -14,7 +14,7 @@ NEVER = -1
 
 
 class SensingByState(msgspec.Struct, frozen=True):
-    """A model, and for (action, state) the row of `model.readings`; NEVER where no outcome needs it."""
+    """A model, and for (action, state) the row of `model.likelihoods`; NEVER where no outcome needs it."""
 
     model: ExplicitModel
     rows: Integers

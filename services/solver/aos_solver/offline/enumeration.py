@@ -81,7 +81,7 @@ def _with_an_end(
     row_count = (ended + 1) * len(actions)
     missing = 1 - np.bincount(rows, numbers.outcomes.probabilities, row_count)
     ending = np.flatnonzero(missing > _NEXT_TO_NOTHING)
-    silent = len(numbers.readings)
+    silent = len(numbers.likelihoods)
     rows = np.r_[rows, ending]
     order = np.argsort(rows, kind="stable")
 
@@ -91,7 +91,7 @@ def _with_an_end(
 
     first = np.searchsorted(rows[order], np.arange(row_count + 1))
     probabilities = np.r_[numbers.outcomes.probabilities, missing[ending]][order]
-    readings = numbers.readings
+    likelihoods = numbers.likelihoods
     return ExplicitModel(
         name=name,
         discount=numbers.discount,
@@ -101,10 +101,10 @@ def _with_an_end(
         rewards=np.vstack([numbers.rewards, np.zeros((1, len(actions)))]),
         outcomes=Ragged(first, joined(numbers.outcomes.numbers, ended), probabilities),
         sensings=joined(numbers.sensings, silent),
-        readings=Ragged(
-            np.r_[readings.first, readings.first[-1] + 1],
-            np.r_[readings.numbers, len(observations)],
-            np.r_[readings.probabilities, 1.0],
+        likelihoods=Ragged(
+            np.r_[likelihoods.first, likelihoods.first[-1] + 1],
+            np.r_[likelihoods.numbers, len(observations)],
+            np.r_[likelihoods.probabilities, 1.0],
         ),
         starts=numbers.starts,
     )

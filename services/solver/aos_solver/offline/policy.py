@@ -148,7 +148,7 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         """Follows the policy where `search` would search."""
         return cls(policy=policy, **msgspec.structs.asdict(search))
 
-    async def think(self, engine: Engine, step: int, index: int) -> None:
+    async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""
 
     async def run(self, engine: Engine, step: int, barred: Sequence[int] = ()) -> Plan:

@@ -157,15 +157,16 @@ class _Matrices:
 
     def __init__(self, model: ExplicitModel) -> None:
         self._model = model
-        lengths = np.diff(model.readings.first)[model.sensings]
+        lengths = np.diff(model.likelihoods.first)[model.sensings]
         elements = np.repeat(np.arange(len(model.sensings)), lengths)
-        places = np.repeat(model.readings.first[model.sensings] - np.r_[0, np.cumsum(lengths)[:-1]], lengths)
+        before = np.r_[0, np.cumsum(lengths)[:-1]]
+        places = np.repeat(model.likelihoods.first[model.sensings] - before, lengths)
         places = places + np.arange(len(elements))
         row = model.outcomes.row_numbers[elements]
         self.state, self.action = np.divmod(row, len(model.actions))
         self.after = model.outcomes.numbers[elements]
-        self.observation = model.readings.numbers[places]
-        self.probability = model.outcomes.probabilities[elements] * model.readings.probabilities[places]
+        self.observation = model.likelihoods.numbers[places]
+        self.probability = model.outcomes.probabilities[elements] * model.likelihoods.probabilities[places]
         order = np.argsort(self.action, kind="stable")
         for name in ("state", "action", "after", "observation", "probability"):
             setattr(self, name, getattr(self, name)[order])

@@ -24,7 +24,7 @@ def with_stopping(model: ExplicitModel, value: float) -> ExplicitModel:
     lengths = np.hstack([lengths, np.ones((states, 1), dtype=np.int64)])
     lengths = np.vstack([lengths, np.ones((1, actions + 1), dtype=np.int64)])
     first = np.r_[0, np.cumsum(lengths)]
-    silent = len(model.readings)
+    silent = len(model.likelihoods)
     is_new = np.ones(int(first[-1]), dtype=bool)
     rows = model.outcomes.row_numbers
     old_state, old_action = np.divmod(rows, actions)
@@ -39,10 +39,10 @@ def with_stopping(model: ExplicitModel, value: float) -> ExplicitModel:
     rewards = np.zeros((states + 1, actions + 1))
     rewards[:states, :actions] = model.rewards
     rewards[:states, actions] = np.where(_is_over(model), 0.0, value)
-    readings = Ragged(
-        np.r_[model.readings.first, len(model.readings.numbers) + 1],
-        np.r_[model.readings.numbers, nothing],
-        np.r_[model.readings.probabilities, 1.0],
+    likelihoods = Ragged(
+        np.r_[model.likelihoods.first, len(model.likelihoods.numbers) + 1],
+        np.r_[model.likelihoods.numbers, nothing],
+        np.r_[model.likelihoods.probabilities, 1.0],
     )
     return msgspec.structs.replace(
         model,
@@ -52,7 +52,7 @@ def with_stopping(model: ExplicitModel, value: float) -> ExplicitModel:
         rewards=rewards,
         outcomes=Ragged(first, after, probabilities),
         sensings=sensings,
-        readings=readings,
+        likelihoods=likelihoods,
     )
 
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -16,47 +15,16 @@
 #include <utility>
 #include <vector>
 
+#include "point_based/belief_key.hpp"
+#include "point_based/belief_nodes.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/certainty_equivalent.hpp"
 #include "point_based/initial_bounds.hpp"
+#include "point_based/posterior.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/rounding.hpp"
 
 namespace aos::point_based {
-
-// An observation leads to a belief that holds `probability` times the node's, and a rest.
-struct Successor {
-  double probability;
-  std::uint32_t sight;
-  std::uint32_t node;
-};
-
-// An action at a belief. Where it leads is found out only when its upper bound is the highest: most never are.
-struct Branch {
-  std::uint32_t action;
-  double reward;
-  double upper;
-  double lower = -std::numeric_limits<double>::infinity();
-  double rest = 0;        // the probability that is in no successor
-  double rest_upper = 0;  // and what it is worth at most
-  bool is_open = false;
-  std::vector<Successor> successors{};
-};
-
-struct Node {
-  Belief belief;
-  std::uint32_t region;
-  std::uint32_t left;                // decisions; 0 where there is no end
-  std::uint32_t vector = 0;          // the best alpha vector
-  std::uint32_t seen_vectors = 0;    // how many the lower bound is of
-  std::uint32_t seen_changes = 0;    // of the upper bound
-  std::uint32_t point = nowhere;     // in the upper bound
-  double corner = 0;                 // what the upper bound is interpolated to be from single states
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
-  bool is_expanded = false;
-  std::vector<Branch> branches;  // actions that may still be the best
-};
 
 class BeliefGraph {
  public:
@@ -70,7 +38,7 @@ class BeliefGraph {
     if (is_endless()) add_certainty_equivalent();
     std::size_t largest = 0;
     for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
-    posterior_.assign(largest, 0.0);
+    posterior_.reserve(largest);
     dense_.assign(largest, 0.0);
     upper_.resize(regions.all.size() * informed_.size());
     // So that what is merged and left out moves no bound by more than a small part of what decisions depend on.
@@ -82,7 +50,7 @@ class BeliefGraph {
 
   // The node of a belief over the region's states (by local number, ascending; normalised).
   std::uint32_t node_of(std::uint32_t region, std::uint32_t left, const Belief& belief) {
-    const Key key = key_of(region, left, belief);
+    const BeliefKey key = key_of(region, left, belief, kept_bits_);
     const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(nodes_.size()));
     if (!is_new) return entry->second;
     bytes_ += sizeof(Node) + belief.size() * (sizeof(double) + sizeof(std::uint32_t)) + 64;
@@ -247,7 +215,7 @@ class BeliefGraph {
 
   // Where an observation leads from a region about which nothing else is known, with so many decisions left then.
   std::uint32_t uninformed_successor(std::uint32_t region, std::uint32_t left, std::uint32_t action,
-                                     std::uint32_t sight) {
+                                     std::uint32_t observation_branch) {
     const Region& from = regions_.all[region];
     std::vector<std::uint32_t>& known =
         uninformed_[(std::uint64_t{region} * informed_.size() + left) * model_.actions + action];
@@ -259,21 +227,13 @@ class BeliefGraph {
       }
       Branch branch{action, 0, 0};
       add_successors(belief, left, from.moves[action], branch);
-      known.assign(from.moves[action].sights.size(), nowhere);
-      for (const Successor& successor : branch.successors) known[successor.sight] = successor.node;
+      known.assign(from.moves[action].observation_branches.size(), nowhere);
+      for (const Successor& successor : branch.successors) known[successor.observation_branch] = successor.node;
     }
-    return known[sight];
+    return known[observation_branch];
   }
 
  private:
-  struct Key {
-    std::uint64_t high, low;
-    bool operator==(const Key&) const = default;
-  };
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const { return key.high ^ key.low; }
-  };
-
   static double size_of(const ActionValues& values) {
     double size = 0;
     for (const double value : values) size = std::max(size, std::abs(value));
@@ -282,12 +242,12 @@ class BeliefGraph {
 
   // Of all that are worked out here.
   std::size_t longest_sum() const {
-    std::size_t longest = longest_row(model_.outcomes) + longest_row(model_.readings);
+    std::size_t longest = longest_row(model_.outcomes) + longest_row(model_.likelihoods);
     for (const Region& region : regions_.all) {
       longest = std::max(longest, region.states.size());
       for (const Move& move : region.moves) {
-        longest = std::max(longest, move.sights.size());
-        for (const Sight& sight : move.sights) longest = std::max(longest, sight.landings.size());
+        longest = std::max(longest, move.observation_branches.size());
+        for (const ObservationBranch& observation_branch : move.observation_branches) longest = std::max(longest, observation_branch.successors.size());
       }
     }
     return longest;
@@ -299,27 +259,6 @@ class BeliefGraph {
     work_ += node.belief.size();
     const double value = expected(vector.values, node.belief) - rounding_ * vector.size;
     return vector.length == node.left ? value : value + tail(vector.length, node.left);
-  }
-
-  static std::uint64_t mixed(std::uint64_t x) {
-    x *= 0x9e3779b97f4a7c15u;
-    x ^= x >> 32;
-    x *= 0xd6e8feb86659fd93u;
-    return x ^ (x >> 29);
-  }
-
-  // Of probabilities the first digits only, so that different ways to the same belief meet.
-  Key key_of(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
-    Key key{mixed(std::uint64_t{left} << 32 | region), mixed(~(std::uint64_t{left} << 32 | region))};
-    const int dropped = 52 - kept_bits_;
-    const std::uint64_t half = std::uint64_t{1} << dropped >> 1;
-    for (std::size_t i = 0; i < belief.size(); ++i) {
-      // Sums, so that a processor need not finish one state before it begins the next.
-      const std::uint64_t rounded = (std::bit_cast<std::uint64_t>(belief.probabilities[i]) + half) >> dropped;
-      key.high += mixed(rounded + belief.states[i] * 0xff51afd7ed558ccdu);
-      key.low += mixed(rounded * 0x2545f4914f6cdd1du ^ ~std::uint64_t{belief.states[i]});
-    }
-    return key;
   }
 
   // What is surely not lost by going on with one action, wherever a plan has ended.
@@ -389,24 +328,15 @@ class BeliefGraph {
   }
 
   void add_successors(const Belief& belief, std::uint32_t left, const Move& move, Branch& branch) {
-    predicted_.assign(move.targets, 0.0);
-    for (std::size_t i = 0; i < belief.size(); ++i) {
-      const auto* last = move.flows.end(belief.states[i]);
-      for (const auto* flow = move.flows.begin(belief.states[i]); flow != last; ++flow) {
-        predicted_[flow->target] += belief.probabilities[i] * flow->probability;
-      }
-      work_ += static_cast<std::uint64_t>(last - move.flows.begin(belief.states[i]));
-    }
-    for (std::uint32_t number = 0; number < move.sights.size(); ++number) {
-      const Sight& sight = move.sights[number];
-      next_.states.clear();
-      next_.probabilities.clear();
-      const double total = sight.is_ascending ? add_landings(sight) : gather_landings(sight);
-      work_ += sight.landings.size();
+    work_ += posterior_.predict(belief, move);
+    for (std::uint32_t number = 0; number < move.observation_branches.size(); ++number) {
+      const ObservationBranch& observation_branch = move.observation_branches[number];
+      const double total = posterior_.observe(observation_branch);
+      work_ += observation_branch.successors.size();
       if (total > negligible_) {
-        add_successor(sight.region, left, number, total, branch);
+        add_successor(observation_branch.region, left, number, total, branch);
       } else if (total > 0) {
-        add_rest(branch, total * (1 + rounding_), upper_of(sight.region, left).highest());
+        add_rest(branch, total * (1 + rounding_), upper_of(observation_branch.region, left).highest());
       }
     }
   }
@@ -416,70 +346,13 @@ class BeliefGraph {
     branch.rest_upper += probability * highest;
   }
 
-  // For the belief in `next_`, which sums to `total`.
-  void add_successor(std::uint32_t region, std::uint32_t left, std::uint32_t sight, double total, Branch& branch) {
-    weights_ = next_.probabilities;
-    weighted_ = next_.states;
-    normalise(next_, total);
-    const std::uint32_t number = node_of(region, left, next_);
-    const double share = share_of(nodes_[number].belief) * (1 - 4 * rounding_);
+  // For the posterior belief, which sums to `total`.
+  void add_successor(std::uint32_t region, std::uint32_t left, std::uint32_t observation_branch, double total, Branch& branch) {
+    const std::uint32_t number = node_of(region, left, posterior_.normalised(total, negligible_));
+    const double share = posterior_.share_of(nodes_[number].belief) * (1 - 4 * rounding_);
     const double rest = std::max(0.0, total - share) + 8 * rounding_ * total;
-    branch.successors.push_back({share, sight, number});
+    branch.successors.push_back({share, observation_branch, number});
     add_rest(branch, rest, upper_of(region, left).highest());
-  }
-
-  // How many times what was to be added holds a belief.
-  double share_of(const Belief& belief) const {
-    double share = std::numeric_limits<double>::infinity();
-    std::size_t place = 0;
-    for (std::size_t i = 0; i < belief.size(); ++i) {
-      while (place < weighted_.size() && weighted_[place] < belief.states[i]) ++place;
-      if (place == weighted_.size() || weighted_[place] != belief.states[i]) return 0;
-      if (weights_[place] < share * belief.probabilities[i]) share = weights_[place] / belief.probabilities[i];
-    }
-    return share;
-  }
-
-  // Sets `next_` where each landing is in a state of its own. Returns the sum of the probabilities.
-  double add_landings(const Sight& sight) {
-    double total = 0;
-    for (const Sight::Landing& landing : sight.landings) {
-      const double weight = predicted_[landing.target] * landing.probability;
-      if (weight <= 0) continue;
-      next_.states.push_back(landing.local);
-      next_.probabilities.push_back(weight);
-      total += weight;
-    }
-    return total;
-  }
-
-  double gather_landings(const Sight& sight) {
-    double total = 0;
-    for (const Sight::Landing& landing : sight.landings) {
-      const double weight = predicted_[landing.target] * landing.probability;
-      if (weight <= 0) continue;
-      if (posterior_[landing.local] == 0) next_.states.push_back(landing.local);
-      posterior_[landing.local] += weight;
-      total += weight;
-    }
-    if (!std::is_sorted(next_.states.begin(), next_.states.end())) std::sort(next_.states.begin(), next_.states.end());
-    for (const std::uint32_t local : next_.states) next_.probabilities.push_back(std::exchange(posterior_[local], 0.0));
-    return total;
-  }
-
-  // States that are next to impossible are left out.
-  void normalise(Belief& belief, double total) const {
-    std::size_t kept = 0;
-    double sum = 0;
-    for (std::size_t i = 0; i < belief.size(); ++i) {
-      if (belief.probabilities[i] <= negligible_ * total) continue;
-      belief.states[kept] = belief.states[i];
-      belief.probabilities[kept++] = belief.probabilities[i];
-      sum += belief.probabilities[kept - 1];
-    }
-    belief.states.resize(kept);
-    belief.probabilities.resize(kept);
-    for (double& probability : belief.probabilities) probability /= sum;
   }
 
   const FlatModel& model_;
@@ -497,16 +370,12 @@ class BeliefGraph {
   std::vector<LowerBound> lower_;                   // by region
   std::vector<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
   std::deque<Node> nodes_;
-  std::unordered_map<Key, std::uint32_t, KeyHash> index_;
+  std::unordered_map<BeliefKey, std::uint32_t, BeliefKeyHash> index_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> uninformed_;  // by region, decisions left, action
   std::size_t bytes_ = 0;
   std::uint64_t work_ = 0;
-  std::vector<double> predicted_;
-  std::vector<double> posterior_;
+  Posterior posterior_;
   std::vector<double> dense_;
-  Belief next_;  // room for one belief, and for its weights before it was normalised
-  std::vector<std::uint32_t> weighted_;
-  std::vector<double> weights_;
 };
 
 }  // namespace aos::point_based

@@ -70,13 +70,13 @@ class CertaintyEquivalent {
     for (const Region& region : regions_.all) {
       const std::size_t size = region.states.size();
       if (size > max_states_of_region_ || (pairs += size * size) > max_pairs_) return false;
-      std::size_t landings = 0;
+      std::size_t successors = 0;
       for (const Move& move : region.moves) {
         std::size_t of_move = 0;
-        for (const Sight& sight : move.sights) of_move += sight.landings.size();
-        landings = std::max(landings, of_move);
+        for (const ObservationBranch& observation_branch : move.observation_branches) of_move += observation_branch.successors.size();
+        successors = std::max(successors, of_move);
       }
-      if ((looked_at += size * landings) > max_landings_) return false;
+      if ((looked_at += size * successors) > max_landings_) return false;
     }
     return true;
   }
@@ -118,30 +118,30 @@ class CertaintyEquivalent {
     }
     of_target_.resize(std::max<std::size_t>(of_target_.size(), move.targets));
     for (std::size_t target = 0; target < move.targets; ++target) of_target_[target].clear();
-    for (const Sight& sight : move.sights) {
-      const std::size_t size = regions_.all[sight.region].states.size();
-      const std::size_t first = first_of_[sight.region] + likeliest(sight) * size;
-      for (const Sight::Landing& landing : sight.landings) {
-        std::vector<Step>& steps = of_target_[landing.target];
-        const std::size_t pair = first + landing.local;
+    for (const ObservationBranch& observation_branch : move.observation_branches) {
+      const std::size_t size = regions_.all[observation_branch.region].states.size();
+      const std::size_t first = first_of_[observation_branch.region] + likeliest(observation_branch) * size;
+      for (const ObservationBranch::Successor& successor : observation_branch.successors) {
+        std::vector<Step>& steps = of_target_[successor.target];
+        const std::size_t pair = first + successor.local;
         const auto known = std::find_if(steps.begin(), steps.end(), [&](const Step& step) { return step.pair == pair; });
         if (known == steps.end()) {
-          steps.push_back({pair, landing.probability});
+          steps.push_back({pair, successor.probability});
         } else {
-          known->probability += landing.probability;
+          known->probability += successor.probability;
         }
       }
     }
   }
   // The state that an observation leaves likeliest; by the observation alone where what was predicted is ruled out.
-  std::uint32_t likeliest(const Sight& sight) const {
+  std::uint32_t likeliest(const ObservationBranch& observation_branch) const {
     double best = -1;
     std::uint32_t local = 0;
-    for (const Sight::Landing& landing : sight.landings) {
-      const double weight = landing.probability * (predicted_[landing.target] + tiny_);
+    for (const ObservationBranch::Successor& successor : observation_branch.successors) {
+      const double weight = successor.probability * (predicted_[successor.target] + tiny_);
       if (weight <= best) continue;
       best = weight;
-      local = landing.local;
+      local = successor.local;
     }
     return local;
   }

@@ -1,10 +1,10 @@
 // A POMDP as numbers in a file: what an engine writes and the offline solver reads.
 //
 // The file: the text "AOSFLAT1", then little-endian and without gaps
-//   u64 states, actions, observations, outcomes, sensings, readings, starts, start entries; f64 discount;
+//   u64 states, actions, observations, outcomes, sensings, likelihoods, starts, start entries; f64 discount;
 //   f64 rewards[states * actions]: what an action is expected to give in a state;
 //   u64 first_outcome[states * actions + 1]; u32 next[outcomes]; u32 sensing[outcomes]; f64 probability[outcomes];
-//   u64 first_reading[sensings + 1]; u32 observation[readings]; f64 probability[readings];
+//   u64 first_likelihood[sensings + 1]; u32 observation[likelihoods]; f64 probability[likelihoods];
 //   f64 start_weight[starts]; u64 first_entry[starts + 1]; u32 state[start entries]; f64 probability[start entries].
 #pragma once
 
@@ -62,11 +62,11 @@ inline FlatModel read_flat_model(const std::string& path) {
   for (std::size_t i = 0; i < next.size(); ++i) {
     model.outcomes.elements.push_back({next[i], sensing[i], outcome_probability[i]});
   }
-  model.readings.first = file.numbers<std::uint64_t>(counts[4] + 1);
+  model.likelihoods.first = file.numbers<std::uint64_t>(counts[4] + 1);
   const auto observation = file.numbers<std::uint32_t>(counts[5]);
-  const auto reading_probability = file.numbers<double>(counts[5]);
+  const auto likelihood_probability = file.numbers<double>(counts[5]);
   for (std::size_t i = 0; i < observation.size(); ++i) {
-    model.readings.elements.push_back({observation[i], reading_probability[i]});
+    model.likelihoods.elements.push_back({observation[i], likelihood_probability[i]});
   }
   const auto weights = file.numbers<double>(counts[6]);
   const auto first_entry = file.numbers<std::uint64_t>(counts[6] + 1);
@@ -100,7 +100,7 @@ inline void write_flat_model(const std::string& path, const FlatModel& model) {
   for (const Start& start : model.starts) first_entry.push_back(first_entry.back() + start.belief.size());
   file.write("AOSFLAT1", 8);
   put(std::vector<std::uint64_t>{model.states, model.actions, model.observations, model.outcomes.elements.size(),
-                                 model.readings.first.size() - 1, model.readings.elements.size(), model.starts.size(),
+                                 model.likelihoods.first.size() - 1, model.likelihoods.elements.size(), model.starts.size(),
                                  first_entry.back()});
   put(std::vector<double>{model.discount});
   put(model.rewards);
@@ -108,9 +108,9 @@ inline void write_flat_model(const std::string& path, const FlatModel& model) {
   put_each<std::uint32_t>(file, model.outcomes.elements, [](const Outcome& outcome) { return outcome.next; });
   put_each<std::uint32_t>(file, model.outcomes.elements, [](const Outcome& outcome) { return outcome.sensing; });
   put_each<double>(file, model.outcomes.elements, [](const Outcome& outcome) { return outcome.probability; });
-  put(model.readings.first);
-  put_each<std::uint32_t>(file, model.readings.elements, [](const Reading& reading) { return reading.observation; });
-  put_each<double>(file, model.readings.elements, [](const Reading& reading) { return reading.probability; });
+  put(model.likelihoods.first);
+  put_each<std::uint32_t>(file, model.likelihoods.elements, [](const Likelihood& likelihood) { return likelihood.observation; });
+  put_each<double>(file, model.likelihoods.elements, [](const Likelihood& likelihood) { return likelihood.probability; });
   put_each<double>(file, model.starts, [](const Start& start) { return start.weight; });
   put(first_entry);
   for (const Start& start : model.starts) {

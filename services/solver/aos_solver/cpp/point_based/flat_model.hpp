@@ -15,7 +15,7 @@ struct Outcome {
   double probability;
 };
 
-struct Reading {
+struct Likelihood {
   std::uint32_t observation;
   double probability;
 };
@@ -44,7 +44,7 @@ struct FlatModel {
   std::size_t horizon = 0;  // so many decisions are rewarded; 0: without end, with a discount below 1
   std::vector<double> rewards;
   Rows<Outcome> outcomes;  // of (state, action)
-  Rows<Reading> readings;  // of a sensing
+  Rows<Likelihood> likelihoods;  // of a sensing
   std::vector<Start> starts;
 
   std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }

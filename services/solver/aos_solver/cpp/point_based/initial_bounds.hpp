@@ -42,7 +42,7 @@ class InitialBounds {
       double sum = 0;
       for (const auto* outcome = model.outcomes.begin(row); outcome != model.outcomes.end(row); ++outcome) {
         sum += outcome->probability;
-        readings_ += static_cast<double>(model.readings.end(outcome->sensing) - model.readings.begin(outcome->sensing));
+        likelihoods_ += static_cast<double>(model.likelihoods.end(outcome->sensing) - model.likelihoods.begin(outcome->sensing));
       }
       most_probable_ = std::max(most_probable_, sum * (1 + rounding));
     }
@@ -71,7 +71,7 @@ class InitialBounds {
 
   void add_layers() {
     const double actions = static_cast<double>(model_.actions);
-    const bool looks = readings_ * actions * static_cast<double>(model_.horizon) <= layer_operations_;
+    const bool looks = likelihoods_ * actions * static_cast<double>(model_.horizon) <= layer_operations_;
     informed.assign(1, ActionValues(model_.states * model_.actions, 0.0));
     blind = informed;
     std::vector<double> best(model_.states, 0.0);
@@ -127,7 +127,7 @@ class InitialBounds {
   // Of somebody who sees the state after the next step (fast informed bound: Hauskrecht, 2000), begun with the values of
   // somebody who sees it always.
   ActionValues endless_informed_values() const {
-    const std::vector<double> values = endless_seen_values();
+    const std::vector<double> values = endless_mdp_values();
     ActionValues above(model_.states * model_.actions, 0.0);
     for (const std::uint32_t state : states_) {
       for (std::size_t action = 0; action < model_.actions; ++action) {
@@ -138,7 +138,7 @@ class InitialBounds {
     }
     Gathered gathered;
     gathered.slot_of.assign(model_.observations, 0);
-    const double sweeps = std::max(operations_ / (readings_ * static_cast<double>(model_.actions) + 1), 1.0);
+    const double sweeps = std::max(operations_ / (likelihoods_ * static_cast<double>(model_.actions) + 1), 1.0);
     double change = std::numeric_limits<double>::infinity();
     for (double done = 0; done < sweeps && change > settled_ * scale_; ++done) {
       change = 0;
@@ -155,7 +155,7 @@ class InitialBounds {
   }
 
   // Of somebody who always sees the state.
-  std::vector<double> endless_seen_values() const {
+  std::vector<double> endless_mdp_values() const {
     const Rows<std::uint32_t> choices = different_rows();
     std::vector<double> values = settled_values(choices);
     const double shift = shift_of(values, choices).most;
@@ -332,16 +332,16 @@ class InitialBounds {
       double largest = 0;
       for (std::size_t i = 0; i < actions; ++i) largest = std::max(largest, std::abs(next[i]));
       size += outcome->probability * largest;
-      const auto* last = model_.readings.end(outcome->sensing);
-      for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
-        std::size_t& slot = slot_of[reading->observation];
-        if (slot >= seen.size() || seen[slot] != reading->observation) {
+      const auto* last = model_.likelihoods.end(outcome->sensing);
+      for (const auto* likelihood = model_.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
+        std::size_t& slot = slot_of[likelihood->observation];
+        if (slot >= seen.size() || seen[slot] != likelihood->observation) {
           slot = seen.size();
-          seen.push_back(reading->observation);
+          seen.push_back(likelihood->observation);
           sums.resize(seen.size() * actions, 0.0);
         }
         double* sum = sums.data() + slot * actions;
-        const double weight = outcome->probability * reading->probability;
+        const double weight = outcome->probability * likelihood->probability;
         for (std::size_t i = 0; i < actions; ++i) sum[i] += weight * next[i];
       }
     }
@@ -357,7 +357,7 @@ class InitialBounds {
   const Regions& regions_;
   double rounding_;
   std::vector<std::uint32_t> states_;
-  double readings_ = 0;  // of all outcomes
+  double likelihoods_ = 0;  // of all outcomes
   double highest_ = 0;
   double scale_ = 1e-300;
   double most_probable_ = 1;  // the largest sum of a row's probabilities

@@ -22,16 +22,16 @@ namespace aos::point_based {
 inline constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 
 // One thing that may be observed after an action in a region, and where it leads.
-struct Sight {
-  struct Landing {
+struct ObservationBranch {
+  struct Successor {
     std::uint32_t target;
     std::uint32_t local;  // the state's number in the region that is entered
     double probability;   // of the observation there
   };
   std::uint32_t observation;
   std::uint32_t region;
-  bool is_ascending = true;  // each landing is in a state with a higher number than the one before
-  std::vector<Landing> landings;
+  bool is_ascending = true;  // each successor is in a state with a higher number than the one before
+  std::vector<Successor> successors;
 };
 
 // An action in a region. A target is a next state with its sensing.
@@ -43,7 +43,7 @@ struct Move {
   std::vector<double> rewards;  // by local state
   Rows<Flow> flows;             // of a local state
   std::size_t targets = 0;
-  std::vector<Sight> sights;
+  std::vector<ObservationBranch> observation_branches;
 };
 
 struct Region {
@@ -156,9 +156,9 @@ class Regions {
         const std::uint64_t first_key = std::uint64_t{root_of(state)} << 32 | (action * model_.observations);
         for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
           if (is_worthless_[outcome->next]) continue;
-          const auto* last = model_.readings.end(outcome->sensing);
-          for (const auto* reading = model_.readings.begin(outcome->sensing); reading != last; ++reading) {
-            const auto [next, is_new] = successor.try_emplace(first_key + reading->observation, outcome->next);
+          const auto* last = model_.likelihoods.end(outcome->sensing);
+          for (const auto* likelihood = model_.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
+            const auto [next, is_new] = successor.try_emplace(first_key + likelihood->observation, outcome->next);
             if (!is_new && unite(next, outcome->next)) has_united = true;
           }
         }
@@ -206,14 +206,14 @@ class Regions {
   }
 
   void add_target(Move& move, const Outcome& outcome, std::uint32_t target) {
-    const auto* last = model_.readings.end(outcome.sensing);
-    for (const auto* reading = model_.readings.begin(outcome.sensing); reading != last; ++reading) {
-      const auto [sight, is_new] = sights_.try_emplace(reading->observation, sights_.size());
-      if (is_new) move.sights.push_back({reading->observation, region_of[outcome.next], true, {}});
-      auto& [observation, region, is_ascending, landings] = move.sights[sight];
+    const auto* last = model_.likelihoods.end(outcome.sensing);
+    for (const auto* likelihood = model_.likelihoods.begin(outcome.sensing); likelihood != last; ++likelihood) {
+      const auto [observation_branch, is_new] = sights_.try_emplace(likelihood->observation, sights_.size());
+      if (is_new) move.observation_branches.push_back({likelihood->observation, region_of[outcome.next], true, {}});
+      auto& [observation, region, is_ascending, successors] = move.observation_branches[observation_branch];
       const std::uint32_t local = local_of[outcome.next];
-      if (!landings.empty() && landings.back().local >= local) is_ascending = false;
-      landings.push_back({target, local, reading->probability});
+      if (!successors.empty() && successors.back().local >= local) is_ascending = false;
+      successors.push_back({target, local, likelihood->probability});
     }
   }
 

@@ -52,7 +52,7 @@ class Draws {
     return name + 1 + normalised(copied.weights, copied.count);
   }
 
-  // An index, or -1 where the weights, which are not normalised, leave room. A gap that single precision explains is
+  // An index, or -1 where the weights, which are not normalised, leave probability. A gap that single precision explains is
   // none.
   template <class Weights = std::initializer_list<double>>
   int SampleDiscrete(const Weights& weights) {
@@ -89,19 +89,19 @@ class Draws {
     Copied(const Copied&) = delete;
     Copied& operator=(const Copied&) = delete;
     void append(double weight) {
-      if (count == room) grow();
+      if (count == capacity) grow();
       weights[count++] = weight;
     }
     [[gnu::cold]] void grow() {
       if (many.empty()) many.assign(weights, weights + count);
-      many.resize(static_cast<std::size_t>(room *= 2));
+      many.resize(static_cast<std::size_t>(capacity *= 2));
       weights = many.data();
     }
     std::array<double, 256> few;
     std::vector<double> many;
     double* weights = few.data();
     int count = 0;
-    int room = static_cast<int>(few.size());
+    int capacity = static_cast<int>(few.size());
   };
 
   Source& source() { return static_cast<Source&>(*this); }

@@ -29,10 +29,10 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_weighted_states = 100'000;
-inline constexpr std::size_t most_weighted_bytes = std::size_t{64} << 20;
-inline constexpr int most_initial_paths = 1'000'000;
-inline constexpr std::size_t most_enumerated_paths = 4'000'000;  // of one update of an exact belief
+inline constexpr std::size_t max_weighted_states = 100'000;
+inline constexpr std::size_t max_weighted_bytes = std::size_t{64} << 20;
+inline constexpr int max_initial_paths = 1'000'000;
+inline constexpr std::size_t max_enumerated_paths = 4'000'000;  // of one update of an exact belief
 inline constexpr double negligible_weight = 1e-12;
 
 // What the belief becomes when the model holds an observation impossible.
@@ -64,19 +64,19 @@ class Belief {
   }
 
   static Belief initial(Sampler& random) {
-    if (combinations(random) > 2 * most_initial_paths) return drawn(random);
+    if (combinations(random) > 2 * max_initial_paths) return drawn(random);
     try {
       Gathering<Model> gathering;
       State state{};
       Enumerator draws;
       double gone = 0;
-      const std::size_t most = most_states(Source::enumeration);
+      const std::size_t most = max_states(Source::enumeration);
       const auto add = [&](Enumerator& path) {
         Model::initial(state, path);
         gathering.add(state, path.probability());
         if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
       };
-      gone += draws.for_nearly_each_path(add, most_initial_paths);
+      gone += draws.for_nearly_each_path(add, max_initial_paths);
       gone += gathering.reduce(most, random);
       return Belief{gathering, gone, Source::enumeration};
     } catch (const NotEnumerable&) {
@@ -100,7 +100,7 @@ class Belief {
     const auto add = [&](Observation observation, double weight) { odds[observation] += weight; };
     try {
       if (is_drawn()) throw NotEnumerable{"the states were drawn"};
-      enumerate_outcomes<Model>(particles_, action, ignored_numbers, most_enumerated_paths,
+      enumerate_outcomes<Model>(particles_, action, ignored_numbers, max_enumerated_paths,
                                 [&](const State&, Observation seen, double weight) { add(seen, weight); });
     } catch (const NotEnumerable&) {
       odds.clear();
@@ -215,9 +215,9 @@ class Belief {
     cumulative_.push_back((cumulative_.empty() ? 0 : cumulative_.back()) + weight);
   }
 
-  static std::size_t most_states(Source source) {
+  static std::size_t max_states(Source source) {
     if (source == Source::drawing) return particle_count;
-    return std::clamp(most_weighted_bytes / Model::state_bytes(), particle_count, most_weighted_states);
+    return std::clamp(max_weighted_bytes / Model::state_bytes(), particle_count, max_weighted_states);
   }
 
   // About how many combinations of draws the initial belief has: the median of estimates from single paths, each of which
@@ -253,14 +253,14 @@ class Belief {
   std::pair<Belief, double> enumerated_or_drawn(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
     try {
       Gathering<Model> gathering;
-      const std::size_t most = most_states(source_);
+      const std::size_t most = max_states(source_);
       double gone = 0;
       const auto add = [&](const State& next, Observation seen, double weight) {
         if ((step.is_observed && seen != step.observation) || weight <= 0) return;
         gathering.add(next, weight);
         if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
       };
-      gone += enumerate_outcomes<Model>(particles_, step.action, numbers, most_enumerated_paths, add);
+      gone += enumerate_outcomes<Model>(particles_, step.action, numbers, max_enumerated_paths, add);
       gone += gathering.reduce(most, random);
       const double probability = gathering.total();
       const bool is_unbounded = numbers.weighs() && error_bound_ + gone > 0;

@@ -16,8 +16,8 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_told_values = 16;  // of one variable
-inline constexpr std::size_t most_told_in_all = 4096;
+inline constexpr std::size_t max_reported_values = 16;  // of one variable
+inline constexpr std::size_t max_reported_in_all = 4096;
 
 template <class Model>
 class Marginals {
@@ -38,7 +38,7 @@ class Marginals {
 
   // An array with an entry for each variable: its name, its likeliest values, and the probability of all others.
   void write(JsonWriter& json) {
-    choose_told();
+    choose_reported();
     write_texts();
     json.begin_array();
     for (const Variable& variable : variables_) {
@@ -169,9 +169,9 @@ class Marginals {
     return entry->second;
   }
 
-  void choose_told() {
-    const std::size_t share = most_told_in_all / std::max<std::size_t>(variables_.size(), 1);
-    const std::size_t most = std::clamp<std::size_t>(share, 1, most_told_values);
+  void choose_reported() {
+    const std::size_t share = max_reported_in_all / std::max<std::size_t>(variables_.size(), 1);
+    const std::size_t most = std::clamp<std::size_t>(share, 1, max_reported_values);
     for (Variable& variable : variables_) {
       std::stable_sort(variable.values.begin(), variable.values.end(),
                        [](const Value& left, const Value& right) { return left.weight > right.weight; });

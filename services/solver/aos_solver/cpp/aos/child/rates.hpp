@@ -10,6 +10,7 @@
 #include "aos/base/json.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/child/command.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/state_space.hpp"
 #include "aos/planning/step_table.hpp"
@@ -92,6 +93,21 @@ void write_rate(JsonWriter& json, double seconds, Steps&& steps) {
   json.begin_object().member("samples", samples).member("seconds", spent.count());
   json.member("cpu_seconds", processor.count());
   json.member("mean_reward", samples > 0 ? rewards / static_cast<double>(samples) : 0.0).end_object();
+}
+
+// How fast planners step the model by the documents' code.
+template <class Model>
+void write_code_rate(JsonWriter& json, const Command& command) {
+  const auto seconds = command.number<double>("seconds");
+  write_rate(json, seconds, CodeSteps<Model>{command.number<std::uint64_t>("seed")});
+}
+
+// The same by the table of a small model; none where there is no table.
+template <class Model>
+void write_table_rate(JsonWriter& json, const Command& command) {
+  const auto seconds = command.number<double>("seconds");
+  TableSteps<Model> steps{command.number<std::uint64_t>("seed")};
+  write_rate(json, steps.is_there() ? seconds : 0, steps);
 }
 
 }  // namespace aos

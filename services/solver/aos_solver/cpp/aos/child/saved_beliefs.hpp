@@ -16,7 +16,7 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_answer_bytes = std::size_t{16} << 20;  // about
+inline constexpr std::size_t max_answer_bytes = std::size_t{16} << 20;  // about
 
 // The particles from number `first` on, as many as fit one answer, each as its weight and its state as text. What is the
 // same in all states, and the history of a drawn belief, only with the first of them. `told` gives what is told of a state.
@@ -29,8 +29,8 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
   for (const auto& [name, text] : constants.texts()) json.member(name, text);
   json.end_object().member("history", first == 0 ? to_base64(saved_history(belief)) : std::string{});
   json.key("particles").begin_array();
-  const std::size_t most_bytes = json.text().size() + most_answer_bytes;
-  for (std::size_t number = first; number < particles.size() && json.text().size() < most_bytes; ++number) {
+  const std::size_t max_bytes = json.text().size() + max_answer_bytes;
+  for (std::size_t number = first; number < particles.size() && json.text().size() < max_bytes; ++number) {
     const auto& [state, weight] = particles[number];
     json.begin_array().value(weight).value(Model::save_state(told(state))).end_array();
   }

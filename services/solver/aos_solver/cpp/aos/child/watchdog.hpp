@@ -28,7 +28,7 @@ struct Seen {
 
 // Async-signal-safe: it reads and writes memory, and may end the process.
 inline void look(int) {
-  static std::array<Seen, blame::most_threads> seen;
+  static std::array<Seen, blame::max_threads> seen;
   int running = 0;
   for (std::size_t thread = 0; thread < seen.size(); ++thread) running += blame::page[thread * blame::line_words] != 0;
   for (std::size_t thread = 0; thread < seen.size(); ++thread) {

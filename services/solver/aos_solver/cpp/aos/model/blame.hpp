@@ -12,7 +12,7 @@ inline constexpr std::size_t page_bytes = 4096;
 inline constexpr std::size_t page_bytes = 65536;  // the largest page that Linux has anywhere
 #endif
 inline constexpr std::size_t line_words = 64 / sizeof(std::uint32_t);  // a cache line, so that no thread waits
-inline constexpr int most_threads = 64;
+inline constexpr int max_threads = 64;
 
 // Two numbers for each thread, at the start of its line: what runs, and how often it came to an end. The engine child lays a page that outlives the process over
 // this one: at a fixed place, since a pointer to it could point to anything that a step looks at.
@@ -20,7 +20,7 @@ alignas(page_bytes) inline volatile std::uint32_t page[page_bytes / sizeof(std::
 
 inline thread_local std::size_t place = 0;
 
-// A thread of number 1 to `most_threads` - 1 calls this before it runs document code; the first has line 0.
+// A thread of number 1 to `max_threads` - 1 calls this before it runs document code; the first has line 0.
 inline void use_line(int thread) { place = static_cast<std::size_t>(thread) * line_words; }
 
 // Pieces count from 1 in the order of the emitted file; 0 is code of ours.

@@ -19,11 +19,11 @@ E nth(std::initializer_list<E> values, int index) {
 
 // Out of the way of the code that runs in every step.
 [[noreturn, gnu::cold]] void out_of_range(std::ptrdiff_t index, std::size_t size);
-[[noreturn, gnu::cold]] void no_room(std::size_t size, std::size_t room);
+[[noreturn, gnu::cold]] void over_capacity(std::size_t size, std::size_t max);
 
-// A vector of up to `Room` elements in place, so that a state stays trivially copyable. Converts from and to
-// std::vector; an index out of range and a push beyond `Room` are ModelFaults.
-template <class T, std::size_t Room>
+// A vector of up to `Capacity` elements in place, so that a state stays trivially copyable. Converts from and to
+// std::vector; an index out of range and a push beyond `Capacity` are ModelFaults.
+template <class T, std::size_t Capacity>
 class Vector {
  public:
   using value_type = T;
@@ -40,8 +40,8 @@ class Vector {
   Vector(const std::vector<U>& values) {
     assign(values.begin(), values.end());
   }
-  template <class U, std::size_t OtherRoom>
-  Vector(const Vector<U, OtherRoom>& values) {
+  template <class U, std::size_t OtherCapacity>
+  Vector(const Vector<U, OtherCapacity>& values) {
     assign(values.begin(), values.end());
   }
   template <class Iterator>
@@ -61,8 +61,8 @@ class Vector {
   }
 
   std::size_t size() const { return size_; }
-  static constexpr std::size_t max_size() { return Room; }
-  static constexpr std::size_t capacity() { return Room; }
+  static constexpr std::size_t max_size() { return Capacity; }
+  static constexpr std::size_t capacity() { return Capacity; }
   bool empty() const { return size_ == 0; }
 
   T& operator[](std::ptrdiff_t index) { return values_[checked(index)]; }
@@ -154,8 +154,8 @@ class Vector {
   void fill(const T& value) { assign(size_, value); }
   void swap(Vector& other) { std::swap(*this, other); }
 
-  template <std::size_t OtherRoom>
-  friend bool operator==(const Vector& left, const Vector<T, OtherRoom>& right) {
+  template <std::size_t OtherCapacity>
+  friend bool operator==(const Vector& left, const Vector<T, OtherCapacity>& right) {
     if (left.size() != right.size()) return false;
     for (std::size_t index = 0; index < left.size(); ++index) {
       if (!(left.begin()[index] == right.begin()[index])) return false;
@@ -173,12 +173,12 @@ class Vector {
   // Makes room for `more` elements; the index of the first.
   std::size_t grown(std::size_t more) {
     const std::size_t before = size_;
-    if (before + more > Room) no_room(before + more, Room);
+    if (before + more > Capacity) over_capacity(before + more, Capacity);
     size_ = static_cast<std::uint32_t>(before + more);
     return before;
   }
 
-  T values_[Room] = {};
+  T values_[Capacity] = {};
   std::uint32_t size_ = 0;
 };
 

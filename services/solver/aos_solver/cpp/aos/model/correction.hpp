@@ -50,10 +50,10 @@ void tell(const char* name, auto& variable, const auto& value) {
 // what it is now. A state that had ended before the step stays as it is.
 template <class Environment, class Skill, class State>
 void correct(const State& before, State& next, const auto& parameters, auto& random) {
-  if (before.__ending != Ending::running) return;
+  if (before.aos_ending != Ending::running) return;
   Skill::given_observation(before, next, parameters, random);
-  next.__ending = Ending::running;
-  if constexpr (requires { next.__spent; }) next.__spent = before.__spent;
+  next.aos_ending = Ending::running;
+  if constexpr (requires { next.aos_spent; }) next.aos_spent = before.aos_spent;
   Environment::special_states(next, random);
   blame::at(0);
 }

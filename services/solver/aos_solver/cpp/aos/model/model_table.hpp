@@ -115,7 +115,7 @@ constexpr ModelTable table_of() {
       .actions = &Model::grounded_actions(),
       .has_rollout_policy = Model::has_rollout_policy,
       .has_state_heuristic = Model::has_state_heuristic,
-      .ending_offset = offsetof(State, __ending),
+      .ending_offset = offsetof(State, aos_ending),
       .irrelevant = Model::irrelevant.data(),
       .irrelevant_count = Model::irrelevant.size(),
       .prepare = Model::prepare,

@@ -1,5 +1,5 @@
 // Values as code sees them that knows no types: their members and their single values, one after another. Compounds and
-// states list their members in `__fields`, enums have a `name_of`, both emitted.
+// states list their members in `aos_fields`, enums have a `name_of`, both emitted.
 //
 // A type is visited by one small function. All that is made of values (text, JSON, places) is compiled once, with the
 // engine: values.hpp, value_text.hpp. The variables of a state, which may be thousands, are data: see Member.
@@ -30,9 +30,9 @@ struct ByteRange {
 };
 
 template <class T>
-concept Compound = requires(const T& value) { T::__fields(value, [](const char*, const auto&) {}); };
+concept Compound = requires(const T& value) { T::aos_fields(value, [](const char*, const auto&) {}); };
 template <class T>
-concept Listed = requires { T::__members(); };
+concept Listed = requires { T::aos_members(); };
 template <class T>
 concept Sequence = requires(const T& value) {
   typename T::value_type;
@@ -125,10 +125,10 @@ void visit_members(const void* state, std::span<const Member> members, ValueVisi
 template <class T>
 void visit_value(const T& value, ValueVisitor& visitor) {
   if constexpr (Listed<T>) {
-    visit_members(&value, T::__members(), visitor);
+    visit_members(&value, T::aos_members(), visitor);
   } else if constexpr (Compound<T>) {
     visitor.begin_compound();
-    T::__fields(value, [&](const char* name, const auto& member) {
+    T::aos_fields(value, [&](const char* name, const auto& member) {
       visitor.member(name);
       visit_value(member, visitor);
     });
@@ -213,7 +213,7 @@ std::uint64_t hashed(std::uint64_t hash, const T& value) {
   if constexpr (PlainSequence<T>) {
     return hashed_bytes(mixed(hash, value.size()), value.data(), value.size() * sizeof(typename T::value_type));
   } else if constexpr (Compound<T>) {
-    T::__fields(value, [&](const char*, const auto& member) { hash = hashed(hash, member); });
+    T::aos_fields(value, [&](const char*, const auto& member) { hash = hashed(hash, member); });
     return hash;
   } else if constexpr (Mapping<T>) {
     for (const auto& entry : value) hash = hashed(hash, entry.second);

@@ -37,7 +37,7 @@ class StateReader {
       std::remove_const_t<T> ignored = value;
       read(ignored);
     } else if constexpr (Compound<T>) {
-      T::__fields(value, [this](const char*, auto& member) { read(member); });
+      T::aos_fields(value, [this](const char*, auto& member) { read(member); });
     } else if constexpr (Mapping<T>) {
       for (auto& entry : value) read(entry.second);
     } else if constexpr (std::derived_from<T, std::vector<bool>>) {

@@ -29,8 +29,8 @@ namespace aos {
 void out_of_range(std::ptrdiff_t index, std::size_t size) {
   throw ModelFault{"AOS215", "element " + std::to_string(index) + " of a vector of " + std::to_string(size)};
 }
-void no_room(std::size_t size, std::size_t room) {
-  const std::string holds = "; its state variable holds " + std::to_string(room);
+void over_capacity(std::size_t size, std::size_t max) {
+  const std::string holds = "; its state variable holds " + std::to_string(max);
   throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
 }
 void bad_weights(const char* text) { throw ModelFault{"AOS215", text}; }
@@ -48,7 +48,7 @@ void Text::no_character(std::ptrdiff_t index, std::size_t size) {
 }
 void Text::overflow(std::size_t size) {
   throw ModelFault{"AOS215", "a text of " + std::to_string(size) + " characters; a state variable of type string holds " +
-                                 std::to_string(room)};
+                                 std::to_string(max_length)};
 }
 
 namespace detail {

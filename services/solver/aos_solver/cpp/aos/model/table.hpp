@@ -104,7 +104,7 @@ class Table {
   using mapped_type = T;
   using iterator = TableIterator<Table, T>;
   using const_iterator = TableIterator<Table, const T>;
-  static constexpr int room = (1 * ... * Axes::size);
+  static constexpr int capacity = (1 * ... * Axes::size);
 
   T& operator[](const key_type& key) { return values_[checked(key)]; }
   const T& operator[](const key_type& key) const { return values_[checked(key)]; }
@@ -113,14 +113,14 @@ class Table {
   iterator find(const key_type& key) { return {values_, position(key)}; }
   const_iterator find(const key_type& key) const { return {values_, position(key)}; }
   std::size_t count(const key_type& key) const { return contains(key) ? 1 : 0; }
-  bool contains(const key_type& key) const { return position(key) != room; }
+  bool contains(const key_type& key) const { return position(key) != capacity; }
 
-  static constexpr std::size_t size() { return room; }
-  static constexpr bool empty() { return room == 0; }
+  static constexpr std::size_t size() { return capacity; }
+  static constexpr bool empty() { return capacity == 0; }
   iterator begin() { return {values_, 0}; }
-  iterator end() { return {values_, room}; }
+  iterator end() { return {values_, capacity}; }
   const_iterator begin() const { return {values_, 0}; }
-  const_iterator end() const { return {values_, room}; }
+  const_iterator end() const { return {values_, capacity}; }
   const_iterator cbegin() const { return begin(); }
   const_iterator cend() const { return end(); }
 
@@ -139,7 +139,7 @@ class Table {
   static key_type key(const std::array<int, sizeof...(Axes)>& indices, std::index_sequence<Index...>) {
     return key_type{Axes::key(indices[Index])...};
   }
-  // The place of a key, or `room` if there is no such key.
+  // The place of a key, or `capacity` if there is no such key.
   static int position(const key_type& key) { return position(key, std::index_sequence_for<Axes...>{}); }
   template <std::size_t... Index>
   static int position(const key_type& key, std::index_sequence<Index...>) {
@@ -150,15 +150,15 @@ class Table {
       position = position * size + index;
     };
     (step(Axes::size, Axes::index(std::get<Index>(key))), ...);
-    return is_known ? position : room;
+    return is_known ? position : capacity;
   }
   static int checked(const key_type& key) {
     const int found = position(key);
-    if (found == room) throw ModelFault{"AOS215", "a key that its map variable does not have"};
+    if (found == capacity) throw ModelFault{"AOS215", "a key that its map variable does not have"};
     return found;
   }
 
-  T values_[room > 0 ? room : 1] = {};
+  T values_[capacity > 0 ? capacity : 1] = {};
 };
 
 }  // namespace aos

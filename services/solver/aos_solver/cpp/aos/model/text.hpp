@@ -9,11 +9,11 @@
 
 namespace aos {
 
-// Holds up to `room` characters in place, so that a state stays trivially copyable. It reads as a std::string and
+// Holds up to `max_length` characters in place, so that a state stays trivially copyable. It reads as a std::string and
 // takes assignments and in-place changes like one; longer text is a ModelFault.
 class Text {
  public:
-  static constexpr std::size_t room = 62;
+  static constexpr std::size_t max_length = 62;
   static constexpr std::size_t npos = std::string::npos;
 
   Text() = default;
@@ -22,7 +22,7 @@ class Text {
   Text(const std::string& text) { assign(text); }
 
   Text& operator+=(std::string_view more) {
-    if (length_ + more.size() > room) overflow(length_ + more.size());
+    if (length_ + more.size() > max_length) overflow(length_ + more.size());
     more.copy(characters_ + length_, more.size());
     set_length(length_ + more.size());
     return *this;
@@ -31,7 +31,7 @@ class Text {
   void push_back(char more) { *this += more; }
   void clear() { set_length(0); }
   void assign(std::string_view text) {
-    if (text.size() > room) overflow(text.size());
+    if (text.size() > max_length) overflow(text.size());
     text.copy(characters_, text.size());
     set_length(text.size());
   }
@@ -116,7 +116,7 @@ class Text {
     length_ = static_cast<std::uint8_t>(length);
   }
 
-  char characters_[room + 1] = {};
+  char characters_[max_length + 1] = {};
   std::uint8_t length_ = 0;
 };
 

@@ -45,7 +45,7 @@ struct NoText {
 // What a skill document leaves out.
 struct SkillDefaults {
   struct Parameters {
-    static void __fields(auto&, auto&&) {}
+    static void aos_fields(auto&, auto&&) {}
   };
   static constexpr double violation_penalty = 0;
   static constexpr bool has_text_response = false;
@@ -94,17 +94,17 @@ Ending ending_of(double reward, bool is_failure) {
 // state is used up now.
 template <Said said = Said::endings, class State>
 double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
-  if constexpr (requires { next.__spent; }) {
-    if ((next.__spent & bit) != 0) return 0;
+  if constexpr (requires { next.aos_spent; }) {
+    if ((next.aos_spent & bit) != 0) return 0;
   }
   double reward = 0;
   bool is_goal = false;
   bool is_failure = false;
   bool is_used_up = false;
   evaluate(reward, is_goal, is_failure, is_used_up);
-  if ((is_goal || is_failure) && next.__ending == Ending::running) next.__ending = ending_of<said>(reward, is_failure);
-  if constexpr (requires { next.__spent; }) {
-    if (is_used_up) next.__spent |= static_cast<decltype(next.__spent)>(bit);
+  if ((is_goal || is_failure) && next.aos_ending == Ending::running) next.aos_ending = ending_of<said>(reward, is_failure);
+  if constexpr (requires { next.aos_spent; }) {
+    if (is_used_up) next.aos_spent |= static_cast<decltype(next.aos_spent)>(bit);
   }
   return reward;
 }
@@ -185,7 +185,7 @@ Step transition(State& next, const auto& parameters, auto& random) {
 // not reckon with such a state.
 template <class Environment, class Skill, class State>
 [[gnu::cold, gnu::noinline]] Step step_after_the_end(State copy, const auto& parameters, auto& random) {
-  copy.__ending = Ending::running;
+  copy.aos_ending = Ending::running;
   try {
     return {0, transition<Environment, Skill>(copy, parameters, random).observation};
   } catch (const ModelFault&) {
@@ -198,7 +198,7 @@ template <class Environment, class Skill, class State>
 // Runs a skill in place. An ended state stays as it is and earns nothing.
 template <class Environment, class Skill, class State>
 Step step(State& state, const auto& parameters, auto& random) {
-  if (state.__ending != Ending::running) [[unlikely]] {
+  if (state.aos_ending != Ending::running) [[unlikely]] {
     return detail::step_after_the_end<Environment, Skill>(state, parameters, random);
   }
   return detail::transition<Environment, Skill>(state, parameters, random);

@@ -9,14 +9,14 @@
 namespace aos {
 
 inline constexpr std::uint32_t no_node = 0xffffffffu;
-inline constexpr int most_search_threads = 32;
+inline constexpr int max_search_threads = 32;
 
 // A simulation is one way down from the belief of up to `horizon` steps of the model. POMCP counts its descents with their
 // rollouts; DESPOT counts the steps of scenarios, of default policies and of rollouts, and divides them by the horizon.
 struct Budget {
   std::uint64_t simulations = 0;  // 0: no limit
   double seconds = 0;             // 0: no limit
-  int threads = 1;                // 1 to `most_search_threads`
+  int threads = 1;                // 1 to `max_search_threads`
 };
 
 // Actions that a decision may not take, since nobody could carry them out now. Later decisions may.

@@ -30,24 +30,24 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_scenarios = 500;
+inline constexpr std::size_t max_scenarios = 500;
 inline constexpr std::size_t fewest_scenarios = 30;
 inline constexpr double share_of_first_look = 0.2;  // of the budget, for all actions at the root
 inline constexpr double gap_share = 0.95;           // of the root's gap, that a node's share of it may keep
 inline constexpr double penalty_in_deviations = 1;
-inline constexpr std::size_t most_scenario_bytes = std::size_t{512} << 20;
-inline constexpr std::size_t most_node_bytes = std::size_t{128} << 20;
+inline constexpr std::size_t max_scenario_bytes = std::size_t{512} << 20;
+inline constexpr std::size_t max_node_bytes = std::size_t{128} << 20;
 
 template <class Model>
 class Despot {
  public:
   using State = typename Model::State;
 
-  explicit Despot(SeenValues<Model>& values)
+  explicit Despot(MdpValues<Model>& values)
       : evaluation_(values),
-        nodes_(most_node_bytes / sizeof(Node)),
-        actions_(most_node_bytes / sizeof(ActionNode)),
-        scenarios_(most_scenario_bytes / scenario_bytes()) {}
+        nodes_(max_node_bytes / sizeof(Node)),
+        actions_(max_node_bytes / sizeof(ActionNode)),
+        scenarios_(max_scenario_bytes / scenario_bytes()) {}
 
   // Runs the search and returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
@@ -159,7 +159,7 @@ class Despot {
   std::size_t affordable_scenarios(PlanningClock::duration spent) const {
     double share = 1;  // of the most
     const auto affordable_share = [&](double budget, double spent_on_fewest) {
-      return share_of_first_look * budget * fewest_scenarios / (spent_on_fewest * action_count() * most_evaluated);
+      return share_of_first_look * budget * fewest_scenarios / (spent_on_fewest * action_count() * max_evaluated);
     };
     if (budget_.simulations > 0) {
       const double budget = static_cast<double>(budget_.simulations) * horizon_;
@@ -167,8 +167,8 @@ class Despot {
     } else if (budget_.seconds > 0) {
       share = affordable_share(budget_.seconds, std::chrono::duration<double>(spent).count());
     }
-    const auto affordable = static_cast<std::size_t>(std::min(share, 1.0) * most_scenarios);
-    const std::size_t room = std::min(most_node_bytes / sizeof(Node), most_scenario_bytes / scenario_bytes());
+    const auto affordable = static_cast<std::size_t>(std::min(share, 1.0) * max_scenarios);
+    const std::size_t room = std::min(max_node_bytes / sizeof(Node), max_scenario_bytes / scenario_bytes());
     return std::clamp(room / (2 * action_count()), std::size_t{1}, std::max(affordable, fewest_scenarios));
   }
 
@@ -194,8 +194,8 @@ class Despot {
 
   // Adds all actions of a node and their children; returns false where there is no room or no time.
   bool expand(std::uint32_t number) {
-    const std::size_t most_new = action_count() * nodes_[number].scenarios;
-    if (!scenarios_.has_room_for(most_new) || !nodes_.has_room_for(most_new) || !actions_.has_room_for(action_count())) {
+    const std::size_t max_new = action_count() * nodes_[number].scenarios;
+    if (!scenarios_.has_room_for(max_new) || !nodes_.has_room_for(max_new) || !actions_.has_room_for(action_count())) {
       return false;
     }
     const auto first_action = static_cast<std::uint32_t>(actions_.size());

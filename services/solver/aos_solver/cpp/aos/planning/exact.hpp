@@ -55,7 +55,7 @@ class ExactEvaluation {
     const Weighted root = space_.weights_of(belief);
     std::vector<ExactValue> values(space_.actions());
     if (horizon <= 0 || root.empty()) return values;
-    prepare_seen_values(horizon);
+    prepare_mdp_values(horizon);
     for (std::size_t action = 0; action < values.size(); ++action) values[action] = action_value(root, action, horizon);
     return values;
   }
@@ -77,24 +77,24 @@ class ExactEvaluation {
   const point_based::FlatModel& rows() const { return space_.rows(); }
   bool has_rows(std::uint32_t state) const { return state < rows().states; }
 
-  // What states are worth to somebody who sees them, by decisions to go.
-  void prepare_seen_values(int horizon) {
+  // The fully observable (MDP) values of states, by decisions to go.
+  void prepare_mdp_values(int horizon) {
     constexpr std::size_t max_values = 4'000'000;
     if (space_.size() * static_cast<std::size_t>(horizon) > max_values) return;
-    if (seen_values_.empty()) seen_values_.emplace_back(space_.size(), 0.0);
-    for (auto left = static_cast<int>(seen_values_.size()); left < horizon; ++left) {
+    if (mdp_values_.empty()) mdp_values_.emplace_back(space_.size(), 0.0);
+    for (auto left = static_cast<int>(mdp_values_.size()); left < horizon; ++left) {
       std::vector<double> values(space_.size(), std::numeric_limits<double>::infinity());
       for (std::uint32_t state = 0; state < rows().states; ++state) {
         double best = -std::numeric_limits<double>::infinity();
         for (std::size_t action = 0; action < space_.actions(); ++action) {
-          best = std::max(best, seen_value(state, action, seen_values_.back()));
+          best = std::max(best, mdp_value(state, action, mdp_values_.back()));
         }
         values[state] = best;
       }
-      seen_values_.push_back(std::move(values));
+      mdp_values_.push_back(std::move(values));
     }
   }
-  double seen_value(std::uint32_t state, std::size_t action, const std::vector<double>& later) const {
+  double mdp_value(std::uint32_t state, std::size_t action, const std::vector<double>& later) const {
     const std::size_t row = rows().row(state, action);
     double continuation = 0;
     for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
@@ -112,9 +112,9 @@ class ExactEvaluation {
       result.value += weight * rows().rewards[row];
       if (horizon == 1) continue;
       for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
-        const auto* const last = rows().readings.end(outcome->sensing);
-        for (const auto* reading = rows().readings.begin(outcome->sensing); reading != last; ++reading) {
-          posteriors[reading->observation][outcome->next] += weight * outcome->probability * reading->probability;
+        const auto* const last = rows().likelihoods.end(outcome->sensing);
+        for (const auto* likelihood = rows().likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
+          posteriors[likelihood->observation][outcome->next] += weight * outcome->probability * likelihood->probability;
           ++walked_;
         }
       }
@@ -160,12 +160,12 @@ class ExactEvaluation {
 
   // What the action is worth at most; infinite where that is not known.
   double bound(const Weighted& belief, std::size_t action, int horizon) const {
-    if (static_cast<std::size_t>(horizon) > seen_values_.size()) return std::numeric_limits<double>::infinity();
-    const std::vector<double>& later = seen_values_[static_cast<std::size_t>(horizon - 1)];
+    if (static_cast<std::size_t>(horizon) > mdp_values_.size()) return std::numeric_limits<double>::infinity();
+    const std::vector<double>& later = mdp_values_[static_cast<std::size_t>(horizon - 1)];
     double sum = 0;
     double magnitude = 0;
     for (const auto& [state, weight] : belief) {
-      const double value = weight * seen_value(state, action, later);
+      const double value = weight * mdp_value(state, action, later);
       sum += value;
       magnitude += std::abs(value);
     }
@@ -188,7 +188,7 @@ class ExactEvaluation {
   ExactLimits limits_;
   std::uint64_t evaluated_ = 0;
   std::uint64_t walked_ = 0;
-  std::vector<std::vector<double>> seen_values_;  // by decisions to go and state
+  std::vector<std::vector<double>> mdp_values_;  // by decisions to go and state
   std::unordered_map<std::size_t, std::unordered_map<BeliefKey, ExactValue, KeyHash>> values_;
 };
 

@@ -1,4 +1,4 @@
-// An estimate of what a state is worth to somebody who sees it, for models whose states are too many to list: tables over
+// An estimate of the fully observable (MDP) value of a state, for models whose states are too many to list: tables over
 // few variables (cell_tables.hpp), learned from simulations by fitted value iteration. It is a guess, and never a bound.
 //
 // Examples are states of walks that begin in the belief: at first at random, later half of them by the values. Each action

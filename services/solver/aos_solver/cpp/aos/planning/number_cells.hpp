@@ -35,7 +35,7 @@ class NumberCells {
     if (reports.is_full()) return "too many different distributions of numbers are reported";
     make_grids(reports);
     for (NumberGrid& grid : grids_) grid.merge_alike();
-    max = std::min(max, max_readings / std::max<std::size_t>(reports.reports().size(), 1));
+    max = std::min(max, max_likelihoods / std::max<std::size_t>(reports.reports().size(), 1));
     std::set<std::vector<std::uint32_t>> sets;
     for (const auto& report : reports.reports()) sets.insert(gauges_of(reports, report));
     most_ = 1;
@@ -58,16 +58,16 @@ class NumberCells {
   std::size_t most() const { return most_; }
   std::size_t observations() const { return observations_; }
 
-  // The same readings with cells in place of reports.
-  point_based::Rows<point_based::Reading> by_cells(const point_based::Rows<point_based::Reading>& reported) const {
-    point_based::Rows<point_based::Reading> result;
+  // The same likelihoods with cells in place of reports.
+  point_based::Rows<point_based::Likelihood> by_cells(const point_based::Rows<point_based::Likelihood>& reported) const {
+    point_based::Rows<point_based::Likelihood> result;
     result.first.push_back(0);
     std::map<std::uint32_t, double> sums;
     for (std::size_t row = 0; row + 1 < reported.first.size(); ++row) {
       sums.clear();
-      for (const auto* reading = reported.begin(row); reading != reported.end(row); ++reading) {
-        for (const auto& [observation, probability] : cells_of_[reading->observation]) {
-          sums[observation] += reading->probability * probability;
+      for (const auto* likelihood = reported.begin(row); likelihood != reported.end(row); ++likelihood) {
+        for (const auto& [observation, probability] : cells_of_[likelihood->observation]) {
+          sums[observation] += likelihood->probability * probability;
         }
       }
       for (const auto& [observation, probability] : sums) result.elements.push_back({observation, probability});
@@ -77,7 +77,7 @@ class NumberCells {
   }
 
  private:
-  static constexpr std::size_t max_readings = 8'000'000;
+  static constexpr std::size_t max_likelihoods = 8'000'000;
 
   static std::vector<std::uint32_t> gauges_of(const NumberReports& reports, const NumberReports::Report& report) {
     std::vector<std::uint32_t> gauges;
@@ -102,7 +102,7 @@ class NumberCells {
   std::size_t combinations(const std::vector<std::uint32_t>& gauges) const {
     std::size_t product = 1;
     for (const std::uint32_t gauge : gauges) {
-      if (product > max_readings) break;
+      if (product > max_likelihoods) break;
       product *= grids_[gauge].cells();
     }
     return product;
@@ -139,16 +139,16 @@ class NumberCells {
       const auto number = static_cast<std::uint32_t>(observations_);
       const auto [entry, is_new] = first.try_emplace({report.response, std::move(gauges)}, number);
       if (is_new) observations_ += count;
-      std::vector<point_based::Reading> cells{{0, 1.0}};
+      std::vector<point_based::Likelihood> cells{{0, 1.0}};
       for (const std::uint32_t part : report.parts) cells = multiplied(cells, probabilities[part]);
-      for (point_based::Reading& cell : cells) cell.observation += entry->second;
+      for (point_based::Likelihood& cell : cells) cell.observation += entry->second;
       cells_of_.push_back(without_the_least(std::move(cells)));
     }
   }
 
-  static std::vector<point_based::Reading> multiplied(const std::vector<point_based::Reading>& cells,
+  static std::vector<point_based::Likelihood> multiplied(const std::vector<point_based::Likelihood>& cells,
                                                       const std::vector<double>& by) {
-    std::vector<point_based::Reading> result;
+    std::vector<point_based::Likelihood> result;
     for (const auto& [observation, probability] : cells) {
       for (std::size_t cell = 0; cell < by.size(); ++cell) {
         const auto number = static_cast<std::uint32_t>(observation * by.size() + cell);
@@ -159,10 +159,10 @@ class NumberCells {
   }
 
   // What is not above the error of what is likely goes to the likeliest.
-  static std::vector<point_based::Reading> without_the_least(std::vector<point_based::Reading> cells) {
+  static std::vector<point_based::Likelihood> without_the_least(std::vector<point_based::Likelihood> cells) {
     constexpr double least = error / (4 * static_cast<double>(max_combinations));
     double left_out = 0;
-    std::erase_if(cells, [&](const point_based::Reading& cell) {
+    std::erase_if(cells, [&](const point_based::Likelihood& cell) {
       if (cell.probability > least) return false;
       left_out += cell.probability;
       return true;
@@ -173,7 +173,7 @@ class NumberCells {
   }
 
   std::vector<NumberGrid> grids_;                             // by gauge
-  std::vector<std::vector<point_based::Reading>> cells_of_;  // by report
+  std::vector<std::vector<point_based::Likelihood>> cells_of_;  // by report
   std::size_t observations_ = 0;
   std::size_t most_ = 1;
 };

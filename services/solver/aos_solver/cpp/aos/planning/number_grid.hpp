@@ -28,16 +28,16 @@ class NumberGrid {
     double total = 0;
     const std::size_t step = 1 + sources.size() / max_sources;
     for (std::size_t i = 0; i < sources.size(); i += step) total += sources[i].weight;
-    told_.assign(cells(), {});
+    joint_.assign(cells(), {});
     std::vector<double> whole;
     for (std::size_t i = 0; i < sources.size(); i += step) {
       const double weight = sources[i].weight / total;
       const std::vector<double> probabilities = probabilities_of(*sources[i].distribution);
-      for (std::size_t cell = 0; cell < cells(); ++cell) told_[cell].push_back(weight * probabilities[cell]);
+      for (std::size_t cell = 0; cell < cells(); ++cell) joint_[cell].push_back(weight * probabilities[cell]);
       whole.push_back(weight);
     }
     information_ = -information_of(whole);
-    for (const auto& cell : told_) information_ += information_of(cell);
+    for (const auto& cell : joint_) information_ += information_of(cell);
     for (std::size_t cell = 0; cell + 1 < cells(); ++cell) losses_.push_back(loss_at(cell));
   }
 
@@ -53,8 +53,8 @@ class NumberGrid {
   void merge() {
     const auto place = std::min_element(losses_.begin(), losses_.end()) - losses_.begin();
     const auto cell = static_cast<std::size_t>(place);
-    for (std::size_t i = 0; i < told_[cell].size(); ++i) told_[cell][i] += told_[cell + 1][i];
-    told_.erase(told_.begin() + place + 1);
+    for (std::size_t i = 0; i < joint_[cell].size(); ++i) joint_[cell][i] += joint_[cell + 1][i];
+    joint_.erase(joint_.begin() + place + 1);
     edges_.erase(edges_.begin() + place);
     losses_.erase(losses_.begin() + place);
     if (cell > 0) losses_[cell - 1] = loss_at(cell - 1);
@@ -111,13 +111,13 @@ class NumberGrid {
     return sum > 0 ? added - sum * std::log(sum) : 0;
   }
   double loss_at(std::size_t cell) const {
-    std::vector<double> merged = told_[cell];
-    for (std::size_t i = 0; i < merged.size(); ++i) merged[i] += told_[cell + 1][i];
-    return information_of(told_[cell]) + information_of(told_[cell + 1]) - information_of(merged);
+    std::vector<double> merged = joint_[cell];
+    for (std::size_t i = 0; i < merged.size(); ++i) merged[i] += joint_[cell + 1][i];
+    return information_of(joint_[cell]) + information_of(joint_[cell + 1]) - information_of(merged);
   }
 
   std::vector<double> edges_;  // between cells; an edge belongs to the cell above it
-  std::vector<std::vector<double>> told_;  // by cell: its probability with each distribution
+  std::vector<std::vector<double>> joint_;  // by cell: its probability with each distribution
   std::vector<double> losses_;             // of merging a cell with the next
   double information_ = 0;
 };

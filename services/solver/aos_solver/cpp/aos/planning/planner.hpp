@@ -14,7 +14,7 @@
 #include "aos/base/rounded_text.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/bounds.hpp"
+#include "aos/planning/mdp_values.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot.hpp"
 #include "aos/planning/exact_search.hpp"
@@ -99,10 +99,10 @@ class Planner {
 
   // Looks ahead below the action that is carried out, if the last search was one that can use it.
   template <class IsOver>
-  void think_about(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+  void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                    IsOver&& is_over) {
-    if (used_ == PlannerKind::pomcp) pomcp_.think_about(action, belief, budget, horizon, random, is_over);
-    if (used_ == PlannerKind::sarsop) point_based_.think_about(action, budget, is_over);
+    if (used_ == PlannerKind::pomcp) pomcp_.ponder(action, belief, budget, horizon, random, is_over);
+    if (used_ == PlannerKind::sarsop) point_based_.ponder(action, budget, is_over);
   }
   // How many simulations the next search need not make, since they were made before.
   std::uint64_t known_simulations() const {
@@ -183,7 +183,7 @@ class Planner {
   }
 
   StateSpace<Model> space_;
-  SeenValues<Model> values_{space_};
+  MdpValues<Model> values_{space_};
   Pomcp<Model> pomcp_{space_, values_};
   ExactSearch<Model> exact_{space_};
   PointBased<Model> point_based_{space_};

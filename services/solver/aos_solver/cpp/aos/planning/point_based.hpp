@@ -80,7 +80,7 @@ class PointBased {
 
   // The same below an action that is carried out.
   template <class IsOver>
-  void think_about(int action, Budget budget, IsOver&& is_over) {
+  void ponder(int action, Budget budget, IsOver&& is_over) {
     if (running_ <= 0 || budget.seconds <= 0) return;
     known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), 0, until(budget, is_over)));
   }
@@ -118,17 +118,17 @@ class PointBased {
   }
   // Whether it takes long to look at all observations of all states once for each decision to go.
   bool is_large(const point_based::FlatModel& model) const {
-    constexpr double max_readings = 2e6;
-    double readings = 0;
+    constexpr double max_likelihoods = 2e6;
+    double likelihoods = 0;
     for (const point_based::Outcome& outcome : model.outcomes.elements) {
-      readings += static_cast<double>(model.readings.end(outcome.sensing) - model.readings.begin(outcome.sensing));
+      likelihoods += static_cast<double>(model.likelihoods.end(outcome.sensing) - model.likelihoods.begin(outcome.sensing));
     }
-    return readings * horizon_ > max_readings;
+    return likelihoods * horizon_ > max_likelihoods;
   }
   point_based::FlatModel flat_model() const {
     point_based::FlatModel model = space_.rows();
     if (tells_by_cells()) {
-      model.readings = cells_.by_cells(model.readings);
+      model.likelihoods = cells_.by_cells(model.likelihoods);
       model.observations = cells_.observations();
     }
     model.starts = starts_;

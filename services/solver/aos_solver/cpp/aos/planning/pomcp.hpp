@@ -1,8 +1,8 @@
 // POMCP (Silver and Veness, 2010): Monte-Carlo tree search over histories, from an exact root belief.
 //
 // What differs from the paper, and why:
-// - Where the states that matter are few enough, returns are counted from what a state is worth to somebody who sees it
-//   (bounds.hpp): a step earns its reward and the change of that worth. Nothing changes in which action is best, but luck
+// - Where the states that matter are few enough, returns are counted from the fully observable (MDP) value of a state
+//   (mdp_values.hpp): a step earns its reward and the change of that worth. Nothing changes in which action is best, but luck
 //   of the state no longer blurs the returns, and what is left to find is the cost of not seeing. A new history starts at
 //   0, as if all were seen from there on.
 // - Where there are too many states, and no rollout policy, the same is done with an estimate of that worth, learned before
@@ -42,7 +42,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/bounds.hpp"
+#include "aos/planning/mdp_values.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/learned_values.hpp"
 #include "aos/planning/prior_values.hpp"
@@ -51,7 +51,7 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
+inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
 inline constexpr double least_time_share = 0.1;  // of a budget in time that is always used
 inline constexpr std::size_t max_prior_steps = 20'000;
 
@@ -60,7 +60,7 @@ class Pomcp {
  public:
   using State = typename Model::State;
 
-  Pomcp(const StateSpace<Model>& space, SeenValues<Model>& values) : space_(space), values_(values) {}
+  Pomcp(const StateSpace<Model>& space, MdpValues<Model>& values) : space_(space), values_(values) {}
 
   // Runs the search and returns how many simulations it took.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
@@ -70,7 +70,7 @@ class Pomcp {
 
   // Looks ahead below one action while it is carried out, until `is_over()`, which is asked every millisecond or so.
   template <class IsOver>
-  std::uint64_t think_about(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
+  std::uint64_t ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                             IsOver&& is_over) {
     return search(belief, budget, horizon, random, {}, action, is_over);
   }
@@ -92,7 +92,7 @@ class Pomcp {
         squares += known.n * known.variance;
       }
       if (n == 0) continue;
-      const double value = running * (q / n + seen_worth_);
+      const double value = running * (q / n + mdp_value_);
       result[static_cast<std::size_t>(a)] = {value, static_cast<std::uint32_t>(n), running * std::sqrt(squares) / n,
                                              running * reward / n};
     }
@@ -134,17 +134,17 @@ class Pomcp {
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred, int first, IsOver&& is_over) {
     const bool has_values = values_.prepare(belief, horizon);
-    const SeenValues<Model>* const values = has_values ? &values_ : nullptr;
+    const MdpValues<Model>* const values = has_values ? &values_ : nullptr;
     const bool may_estimate = !has_values && !Model::has_rollout_policy;
     const LearnedValues<Model>* const estimates =
         may_estimate && estimates_.prepare(belief, horizon, random) ? &estimates_ : nullptr;
     const auto start = PlanningClock::now();
     const auto worth = [&](const State& state) { return ComputedState<Model>{state, values, estimates}.value(horizon); };
-    seen_worth_ = has_values || estimates != nullptr ? mean_worth(belief, worth) : 0;
+    mdp_value_ = has_values || estimates != nullptr ? mean_value(belief, worth) : 0;
     const auto threads = static_cast<std::size_t>(budget.threads);
     if (trees_.size() != threads) {
       trees_.clear();
-      for (std::size_t i = 0; i < threads; ++i) trees_.push_back(std::make_unique<Tree>(most_search_bytes / threads));
+      for (std::size_t i = 0; i < threads; ++i) trees_.push_back(std::make_unique<Tree>(max_search_bytes / threads));
     }
     prior_.clear();
     if (belief.probability_of(Ending::running) <= 0) return 0;
@@ -226,7 +226,7 @@ class Pomcp {
 
   // What the running part of a belief is worth on average.
   template <class Worth>
-  static double mean_worth(const Belief<Model>& belief, Worth&& worth) {
+  static double mean_value(const Belief<Model>& belief, Worth&& worth) {
     double sum = 0;
     double running = 0;
     for (const auto& [state, weight] : belief.particles()) {
@@ -257,11 +257,11 @@ class Pomcp {
 
   std::vector<std::unique_ptr<Tree>> trees_;
   const StateSpace<Model>& space_;
-  SeenValues<Model>& values_;
+  MdpValues<Model>& values_;
   StepTable<Model> steps_;
   LearnedValues<Model> estimates_;
   std::vector<double> prior_;  // of the last search
-  double seen_worth_ = 0;
+  double mdp_value_ = 0;
 };
 
 }  // namespace aos

@@ -14,7 +14,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/bounds.hpp"
+#include "aos/planning/mdp_values.hpp"
 
 namespace aos {
 
@@ -27,7 +27,7 @@ struct Scenario {
 
 inline constexpr int rollouts_per_scenario = 3;
 inline constexpr std::size_t smallest_group = 10;
-inline constexpr std::size_t most_evaluated = 50;  // of the scenarios with the same history
+inline constexpr std::size_t max_evaluated = 50;  // of the scenarios with the same history
 
 // A scenario after a step, and what the step let it observe.
 template <class Model>
@@ -70,14 +70,13 @@ struct ScenarioBounds {
 
 // Evaluates scenarios: what a default policy earns, and what nobody can exceed.
 //
-// Where the model is small enough (bounds.hpp), all is counted from what a scenario's state is worth to somebody who sees
-// it: a step costs what its action is worth less than the best one for that state. On average over all luck that adds up to
-// the same, but most of the luck is left out, and 0 is what nobody can exceed. There a policy takes the action that is best
-// on average over the scenarios of a group, by what it would be worth to somebody who sees them, and goes on by what
-// is observed. Scenarios whose observation only few others share stay together: a policy that went by those few would know
+// Where the model is small enough (mdp_values.hpp), all is counted from the fully observable (MDP) value of a scenario's
+// state: a step costs what its action is worth less than the best one for that state. On average over all luck that adds up
+// to the same, but most of the luck is left out, and 0 is what nobody can exceed. There a policy takes the action that is
+// best by MDP values on average over the scenarios of a group, and goes on by what is observed. Scenarios whose observation only few others share stay together: a policy that went by those few would know
 // what nobody can know.
 //
-// The other policy is that of the rollouts; where there are no values of seen states, the most that a few of them earn
+// The other policy is that of the rollouts; where there are no MDP values, the most that a few of them earn
 // stands for the bound, though it is none. Where there are both, a history has the better one for its default policy. Of
 // many scenarios with the same history some stand for all.
 template <class Model>
@@ -85,7 +84,7 @@ class ScenarioEvaluation {
  public:
   using State = typename Model::State;
 
-  explicit ScenarioEvaluation(SeenValues<Model>& values) : values_(values) {}
+  explicit ScenarioEvaluation(MdpValues<Model>& values) : values_(values) {}
 
   // Derives values from the model where it is small enough.
   void prepare(const Belief<Model>& belief, int horizon) {
@@ -100,7 +99,7 @@ class ScenarioEvaluation {
     return next != no_state ? next : values_.number_of(state);
   }
 
-  // What is counted from: what a state is worth to somebody who sees it, or nothing.
+  // What is counted from: the fully observable (MDP) value of a state, or nothing.
   double origin(std::uint32_t seen) const { return has_values_ ? values_.value(seen, horizon_) : 0; }
   // What a step earns by this count.
   double earned(std::uint32_t seen_before, int action, int depth, double reward) const {
@@ -174,7 +173,7 @@ class ScenarioEvaluation {
   // Rollouts that nobody has written a policy for are at random, and say less than values do.
   bool has_rollouts() const { return !has_values_ || Model::has_rollout_policy; }
   static std::size_t stride(std::size_t first, std::size_t last) {
-    return std::max<std::size_t>((last - first) / most_evaluated, 1);
+    return std::max<std::size_t>((last - first) / max_evaluated, 1);
   }
 
   void roll_out(const Scenario<Model>& scenario, int depth, Earnings& earnings) {
@@ -237,7 +236,7 @@ class ScenarioEvaluation {
     return static_cast<int>(std::max_element(sums_.begin(), sums_.end()) - sums_.begin());
   }
 
-  SeenValues<Model>& values_;
+  MdpValues<Model>& values_;
   bool has_values_ = false;
   int horizon_ = 0;
   std::uint64_t seed_ = 0;

@@ -20,14 +20,14 @@
 
 namespace aos {
 
-inline constexpr std::uint32_t most_listed_children = 4;
+inline constexpr std::uint32_t max_listed_children = 4;
 
 struct HistoryNode {
   Observation observation = default_observation;
   double v = 0;
   double squares = 0;  // sum of its actions'
   std::uint32_t n = 0;
-  std::uint32_t most_visits = 0;  // of an action
+  std::uint32_t max_visits = 0;  // of an action
   std::uint32_t sibling = no_node;
   std::uint32_t first_action = no_node;
   std::uint32_t best = 0;  // the best action among the well visited ones
@@ -84,7 +84,7 @@ class SearchTree {
   // The history after an action and an observation, or `no_node`.
   std::uint32_t find_child(std::uint32_t action, Observation observation) const {
     const ActionNode& parent = actions_[action];
-    if (parent.children > most_listed_children) return find_indexed(action, observation);
+    if (parent.children > max_listed_children) return find_indexed(action, observation);
     std::uint32_t child = parent.first_child;
     while (child != no_node && histories_[child].observation != observation) child = histories_[child].sibling;
     return child;
@@ -129,8 +129,8 @@ class SearchTree {
   void hang(std::uint32_t action, std::uint32_t child) {
     ActionNode& parent = actions_[action];
     histories_[child].sibling = std::exchange(parent.first_child, child);
-    if (++parent.children < most_listed_children + 1) return;
-    if (parent.children > most_listed_children + 1) return add_to_index(action, child);
+    if (++parent.children < max_listed_children + 1) return;
+    if (parent.children > max_listed_children + 1) return add_to_index(action, child);
     for (; child != no_node; child = histories_[child].sibling) add_to_index(action, child);
   }
 

@@ -6,7 +6,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/bounds.hpp"
+#include "aos/planning/mdp_values.hpp"
 #include "aos/planning/learned_values.hpp"
 #include "aos/planning/step_table.hpp"
 
@@ -17,8 +17,8 @@ class ComputedState {
  public:
   using State = typename Model::State;
 
-  // What states are worth to somebody who sees them, by value iteration or as an estimate; null where that is not known.
-  ComputedState(const State& state, const SeenValues<Model>* values, const LearnedValues<Model>* estimates)
+  // The fully observable (MDP) values of states, by value iteration or as an estimate; null where that is not known.
+  ComputedState(const State& state, const MdpValues<Model>* values, const LearnedValues<Model>* estimates)
       : state_(state), values_(values), estimates_(estimates) {}
 
   Step step(int action, Sampler& random) { return Model::step(state_, action, random); }
@@ -41,7 +41,7 @@ class ComputedState {
   bool is_valued() const { return values_ != nullptr || estimates_ != nullptr; }
 
   State state_;
-  const SeenValues<Model>* values_;
+  const MdpValues<Model>* values_;
   const LearnedValues<Model>* estimates_;
 };
 
@@ -49,7 +49,7 @@ template <class Model>
 class ListedState {
  public:
   // A state of the belief that the table was prepared for.
-  ListedState(const StepTable<Model>& steps, const SeenValues<Model>& values, Sampler& random)
+  ListedState(const StepTable<Model>& steps, const MdpValues<Model>& values, Sampler& random)
       : steps_(steps), values_(values), number_(steps.start(random.bits())) {}
 
   Step step(int action, Sampler& random) {
@@ -64,7 +64,7 @@ class ListedState {
 
  private:
   const StepTable<Model>& steps_;
-  const SeenValues<Model>& values_;
+  const MdpValues<Model>& values_;
   std::uint32_t number_;
 };
 

@@ -43,7 +43,7 @@ class StateSpace {
     rows_.actions = static_cast<std::size_t>(Model::action_count());
     rows_.discount = Model::discount;
     rows_.outcomes.first.push_back(0);
-    rows_.readings.first.push_back(0);
+    rows_.likelihoods.first.push_back(0);
   }
 
   // Lists what can be reached from a belief, without what is observed where there is too much of it. Returns whether all
@@ -195,7 +195,7 @@ class StateSpace {
     rows_.rewards.push_back(reward);
     add_outcomes();
     rows_.outcomes.first.push_back(rows_.outcomes.elements.size());
-    if (rows_.outcomes.elements.size() > limits_.outcomes || rows_.readings.elements.size() > limits_.outcomes) {
+    if (rows_.outcomes.elements.size() > limits_.outcomes || rows_.likelihoods.elements.size() > limits_.outcomes) {
       throw NotEnumerable{"there are too many outcomes to list"};
     }
   }
@@ -222,22 +222,22 @@ class StateSpace {
   // The distribution of what is observed on paths with the same next state. Most have been met before.
   std::uint32_t sensing_of(std::size_t first, std::size_t last, double total) {
     constexpr double unit = 0x1p51;  // what rounding tells apart by less is the same
-    readings_.clear();
+    likelihoods_.clear();
     key_.clear();
     for (std::size_t i = first; i < last; ++i) {
-      if (readings_.empty() || readings_.back().observation != paths_[i].observation) {
-        readings_.push_back({paths_[i].observation, 0});
+      if (likelihoods_.empty() || likelihoods_.back().observation != paths_[i].observation) {
+        likelihoods_.push_back({paths_[i].observation, 0});
       }
-      readings_.back().probability += paths_[i].probability / total;
+      likelihoods_.back().probability += paths_[i].probability / total;
     }
-    for (const auto& [observation, probability] : readings_) {
+    for (const auto& [observation, probability] : likelihoods_) {
       key_.push_back(observation);
       key_.push_back(static_cast<std::uint64_t>(std::llround(unit * probability)));
     }
     const auto [entry, is_new] = sensings_.try_emplace(key_, static_cast<std::uint32_t>(sensings_.size()));
     if (is_new) {
-      rows_.readings.elements.insert(rows_.readings.elements.end(), readings_.begin(), readings_.end());
-      rows_.readings.first.push_back(rows_.readings.elements.size());
+      rows_.likelihoods.elements.insert(rows_.likelihoods.elements.end(), likelihoods_.begin(), likelihoods_.end());
+      rows_.likelihoods.first.push_back(rows_.likelihoods.elements.size());
     }
     return entry->second;
   }
@@ -259,7 +259,7 @@ class StateSpace {
   Enumerator draws_;
   std::unordered_map<SensingKey, std::uint32_t, SensingHash> sensings_;
   std::vector<Path> paths_;
-  std::vector<point_based::Reading> readings_;
+  std::vector<point_based::Likelihood> likelihoods_;
   SensingKey key_;
 };
 

@@ -84,10 +84,10 @@ class StepTable {
     outcomes_.clear();
     double running = 0;
     for (const auto* outcome = rows.outcomes.begin(row); outcome != rows.outcomes.end(row); ++outcome) {
-      const auto* const last = rows.readings.end(outcome->sensing);
-      for (const auto* reading = rows.readings.begin(outcome->sensing); reading != last; ++reading) {
-        const Step step{rows.rewards[row], space.observations().of(action, reading->observation)};
-        outcomes_.push_back({{step, outcome->next}, outcome->probability * reading->probability});
+      const auto* const last = rows.likelihoods.end(outcome->sensing);
+      for (const auto* likelihood = rows.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
+        const Step step{rows.rewards[row], space.observations().of(action, likelihood->observation)};
+        outcomes_.push_back({{step, outcome->next}, outcome->probability * likelihood->probability});
       }
       running += outcome->probability;
     }

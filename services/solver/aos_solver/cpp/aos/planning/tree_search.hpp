@@ -241,7 +241,7 @@ class TreeSearch {
     const double square = deviation * (seen - node.mean);
     node.squares += square;
     parent.squares += square;
-    parent.most_visits = std::max(parent.most_visits, node.n);
+    parent.max_visits = std::max(parent.max_visits, node.n);
     renew_best(parent, actions, visit.action, node.q < q_before);
 
     const double before = parent.n * parent.v;
@@ -253,7 +253,7 @@ class TreeSearch {
   // After a change of one action.
   static void renew_best(HistoryNode& parent, const ActionNode* actions, std::uint32_t changed, bool has_fallen) {
     const bool is_best = changed == parent.best;
-    if ((is_best && has_fallen) || !is_well_visited(actions[parent.best].n, parent.most_visits)) {
+    if ((is_best && has_fallen) || !is_well_visited(actions[parent.best].n, parent.max_visits)) {
       parent.best = changed;
       for (std::uint32_t a = 0; a < action_count(); ++a) take_better(parent, actions, a);
     } else if (!is_best) {
@@ -261,8 +261,8 @@ class TreeSearch {
     }
   }
   static void take_better(HistoryNode& parent, const ActionNode* actions, std::uint32_t a) {
-    const bool is_better = actions[a].q > actions[parent.best].q || !is_well_visited(actions[parent.best].n, parent.most_visits);
-    if (is_better && is_well_visited(actions[a].n, parent.most_visits)) parent.best = a;
+    const bool is_better = actions[a].q > actions[parent.best].q || !is_well_visited(actions[parent.best].n, parent.max_visits);
+    if (is_better && is_well_visited(actions[a].n, parent.max_visits)) parent.best = a;
   }
 
   void add_reward(std::uint32_t a, double reward) {

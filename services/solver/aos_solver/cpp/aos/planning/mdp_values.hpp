@@ -1,4 +1,4 @@
-// What a state is worth to somebody who sees it, for models of up to some hundred thousand states: what planners count
+// The fully observable (MDP) value of a state, for models of up to some hundred thousand states: what planners count
 // values from, an upper bound of them, and the actions that DESPOT's default policy prefers.
 //
 // Values are of the underlying MDP by value iteration, for each number of decisions to go until they no longer change,
@@ -18,15 +18,15 @@
 
 namespace aos {
 
-inline constexpr std::size_t most_layered_values = 8'000'000;
+inline constexpr std::size_t max_layered_values = 8'000'000;
 inline constexpr double settled_share = 1e-4;  // of the largest value
 
 template <class Model>
-class SeenValues {
+class MdpValues {
  public:
   using State = typename Model::State;
 
-  explicit SeenValues(StateSpace<Model>& space) : space_(space) {}
+  explicit MdpValues(StateSpace<Model>& space) : space_(space) {}
 
   // Prepares values for up to `horizon` decisions. Returns whether the model is small enough. Does little for a belief
   // whose states are known.
@@ -81,7 +81,7 @@ class SeenValues {
   void iterate() {
     layers_.assign(1, std::vector<double>(space_.size()));
     action_values_.assign(space_.size() * actions(), 0);
-    const bool has_room = space_.size() * (static_cast<std::size_t>(horizon_) + 1) <= most_layered_values;
+    const bool has_room = space_.size() * (static_cast<std::size_t>(horizon_) + 1) <= max_layered_values;
     for (int decisions = 1; decisions <= horizon_; ++decisions) {
       std::vector<double> values(space_.size());
       const double change = one_more_decision(layers_.back(), values);

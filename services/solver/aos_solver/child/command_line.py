@@ -1,0 +1,31 @@
+"""A question to the engine child, as the one line that `cpp/aos/child/command.hpp` reads.
+
+The line is the command's name, its fields as `name=value`, and for a command that takes a list an empty field
+and the items, all apart by tabs. Fields are known by their names; the child says which one is missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from aos_protocol.errors import ModelError
+
+__all__ = ["command_line"]
+
+
+def command_line(command: str, items: Iterable[object] | None = None, /, **fields: object) -> str:
+    """The line for a command; ModelError AOS310 for a text that would not be one field of it.
+
+    Fields that are None are left out, and truth is 1 or 0.
+    """
+    parts = [command, *(f"{name}={_text(value)}" for name, value in fields.items() if value is not None)]
+    if items is not None:
+        parts += ["", *map(_text, items)]
+    for part in parts:
+        if "\t" in part or "\n" in part:
+            raise ModelError(f"{part!r} has a tab or a line end in it", code="AOS310")
+    return "\t".join(parts)
+
+
+def _text(value: object) -> str:
+    return str(int(value)) if isinstance(value, bool) else str(value)

@@ -1,0 +1,165 @@
+// What an engine child is asked to decide and to look ahead: searches, exact values, what can be reached.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "aos/base/clock.hpp"
+#include "aos/base/json.hpp"
+#include "aos/base/random.hpp"
+#include "aos/child/belief_commands.hpp"
+#include "aos/child/command.hpp"
+#include "aos/child/listing.hpp"
+#include "aos/child/reachability.hpp"
+#include "aos/child/wording.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/exact.hpp"
+#include "aos/planning/planner.hpp"
+
+namespace aos {
+
+template <class Model>
+class PlanningCommands {
+ public:
+  PlanningCommands(BeliefCommands<Model>& beliefs, Planner<Model>& search) : beliefs_(beliefs), search_(search) {}
+
+  // The items are the numbers of actions that cannot be carried out now.
+  void plan(JsonWriter& json, const Command& command) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto processor_start = processor_time();
+    const Budget budget = budget_of(command);
+    const int horizon = horizon_of(command);
+    std::vector<int> barred_actions;
+    for (const auto item : command.items()) {
+      barred_actions.push_back(checked_action<Model>(detail::number_in<int>(item)));
+    }
+    const BarredActions barred{barred_actions};
+    const auto planner = planner_kind(command.text("planner"));
+    if (!planner) throw BadCommand{"there is no planner " + std::string{command.text("planner")}};
+    if (horizon != planned_horizon_) search_.forget();
+    planned_horizon_ = horizon;
+    Sampler random{command.number<std::uint64_t>("seed")};
+    const std::uint64_t known = search_.known_simulations();
+    const std::uint64_t simulations = search_.search(*planner, belief(), budget, horizon, random, barred);
+    const auto estimates = search_.estimates(belief());
+    const int best = search_.choice(estimates, barred);
+    json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
+    json.member("known_simulations", known);
+    const std::string_view name = search_.name();
+    json.member("planner", name).member("why", search_.why());
+    json.member("threads", name == "pomcp" ? budget.threads : 1);  // Only POMCP shares its work out.
+    json.key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      const auto& estimate = estimates[static_cast<std::size_t>(action)];
+      json.begin_object().member("action", Model::action_name(action)).member("q", estimate.q);
+      json.member("n", estimate.n).member("stderr", estimate.standard_error).end_object();
+    }
+    json.end_array().key("predicted");
+    beliefs_.write_predicted(json, best);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    const std::chrono::duration<double> processor{processor_time() - processor_start};
+    json.member("seconds", spent.count()).member("cpu_seconds", processor.count()).end_object();
+  }
+
+  // Begins to ponder what may come after an action that is carried out now; `go_on_pondering` does it.
+  void ponder(JsonWriter& json, const Command& command) {
+    pondered_ = {action_of<Model>(command), budget_of(command), command.number<std::uint64_t>("seed")};
+    json.begin_object().end_object();
+  }
+
+  // Until the budget is used up or `is_over()`. A fault is left to the next search that meets it.
+  template <class IsOver>
+  void go_on_pondering(IsOver&& is_over) {
+    if (!pondered_ || planned_horizon_ == 0) return;
+    const Pondered pondered = *std::exchange(pondered_, std::nullopt);
+    Sampler random{pondered.seed};
+    try {
+      search_.ponder(pondered.action, belief(), pondered.budget, planned_horizon_, random, is_over);
+    } catch (...) {
+      search_.forget();
+      blame::at(0);
+    }
+  }
+
+  // Budgets in seconds are of processor time from now on, or of real time again.
+  void count_processor_time(JsonWriter& json, const Command& command) {
+    PlanningClock::counts_processor_time = command.flag("counts");
+    json.begin_object().end_object();
+  }
+
+  void exact(JsonWriter& json, const Command& command) const {
+    const int horizon = horizon_of(command);
+    const std::chrono::duration<double> limit{command.number<double>("seconds")};
+    const auto start = std::chrono::steady_clock::now();
+    const auto is_over = [=] { return std::chrono::steady_clock::now() - start > limit; };
+    StateSpace<Model> space;
+    space.reach_within(belief(), horizon);
+    ExactEvaluation<Model> evaluation{space, {.beliefs = command.number<std::uint64_t>("beliefs"), .is_over = is_over}};
+    const auto values = evaluation.action_values(belief(), horizon);
+    json.begin_object().key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      json.begin_object().member("action", Model::action_name(action));
+      json.member("q", values[static_cast<std::size_t>(action)].value).end_object();
+    }
+    json.end_array().member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
+  }
+
+  void reach(JsonWriter& json, const Command& command) const {
+    const Reachability<Model> reached{belief(), command.number<double>("seconds")};
+    json.begin_object().member("has_goal", reached.has_goal()).key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      json.begin_object().member("name", Model::action_name(action));
+      json.member("skill", Model::skill_name(Model::skill_of(action))).member("is_met", reached.is_met(action)).end_object();
+    }
+    json.end_array().member("states", reached.states()).member("depth", reached.depth());
+    json.member("limit", reached.limit()).end_object();
+  }
+
+  // The model as numbers from the current belief on: without a limit of states a call goes on where the last one ended.
+  void list(JsonWriter& json, const Command& command) {
+    const auto max_states = command.number<std::size_t>("max_states");
+    if (max_states > 0) listing_.emplace(belief(), max_states);
+    if (!listing_) throw BadCommand{"nothing is listed"};
+    listing_->go_on(json);
+  }
+  void write_listing(JsonWriter& json, const Command& command) {
+    if (!listing_) throw BadCommand{"nothing is listed"};
+    listing_->write(json, std::string{command.text("model")}, std::string{command.text("states")});
+    listing_.reset();
+  }
+
+ private:
+  struct Pondered {
+    int action;
+    Budget budget;
+    std::uint64_t seed;
+  };
+
+  const Belief<Model>& belief() const { return beliefs_.belief(); }
+
+  static int horizon_of(const Command& command) {
+    const int horizon = command.number<int>("horizon");
+    return horizon > 0 ? horizon : Model::horizon;
+  }
+
+  static Budget budget_of(const Command& command) {
+    const int threads = command.number<int>("threads");
+    return {command.number<std::uint64_t>("simulations"), command.number<double>("seconds"),
+            std::clamp(threads, 1, max_search_threads)};
+  }
+
+  BeliefCommands<Model>& beliefs_;
+  Planner<Model>& search_;
+  int planned_horizon_ = 0;
+  std::optional<Pondered> pondered_;
+  std::optional<Listing<Model>> listing_;
+};
+
+}  // namespace aos

@@ -1,0 +1,77 @@
+// The model's numbers as the words of the documents, and back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "aos/base/json.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/child/command.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+// The number of an action, if there is one.
+template <class Model>
+int checked_action(int action) {
+  if (action < 0 || action >= Model::action_count()) throw BadCommand{"there is no such action"};
+  return action;
+}
+template <class Model>
+int action_of(const Command& command) {
+  return checked_action<Model>(command.number<int>("action"));
+}
+
+template <class Model>
+std::string text_of_response(int action, Observation observation) {
+  if (observation >= 0) return Model::response_name(Model::skill_of(action), static_cast<int>(observation));
+  if (observation == default_observation) return default_observation_text;
+  return std::string{observation_text(observation)};
+}
+
+template <class Model>
+Observation observation_of(int action, std::string_view response) {
+  const int skill = Model::skill_of(action);
+  for (int number = 0; number < Model::response_count(skill); ++number) {
+    if (response == Model::response_name(skill, number)) return number;
+  }
+  if (response == default_observation_text) return default_observation;
+  return text_observation(response);
+}
+
+inline const char* ending_text(Ending ending) {
+  switch (ending) {
+    case Ending::running: return "";
+    case Ending::goal: return "goal";
+    case Ending::failure: return "failure";
+    case Ending::over: return "over";
+  }
+  return "";
+}
+
+// Each number is its name's number, its index and its value.
+inline void write_numbers(JsonWriter& json, const ObservedNumbers& numbers) {
+  json.begin_array();
+  for (const auto& [key, value] : numbers) {
+    json.begin_array().value(name_of_number(key)).value(index_of_number(key)).value(value).end_array();
+  }
+  json.end_array();
+}
+
+// The same as text, all apart by spaces.
+inline ObservedNumbers numbers_from(std::string_view text) {
+  const auto parts = text.empty() ? std::vector<std::string_view>{} : detail::parts_of(text, ' ');
+  if (parts.size() % 3 != 0) throw BadCommand{"a number is not a name, an index and a value"};
+  ObservedNumbers numbers;
+  for (std::size_t part = 0; part < parts.size(); part += 3) {
+    const auto name = detail::number_in<std::uint32_t>(parts[part]);
+    const auto key = number_key(name, detail::number_in<std::uint32_t>(parts[part + 1]));
+    if (!numbers.add(key, detail::number_in<double>(parts[part + 2]))) throw BadCommand{"a number is given twice"};
+  }
+  return numbers;
+}
+
+}  // namespace aos

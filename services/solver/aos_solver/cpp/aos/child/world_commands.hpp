@@ -1,0 +1,66 @@
+// Simulated worlds that an engine child is asked to step by the model: one for missions without a robot, many for somebody
+// who learns.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "aos/base/base64.hpp"
+#include "aos/base/json.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/child/command.hpp"
+#include "aos/child/wording.hpp"
+#include "aos/child/worlds.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+template <class Model>
+class WorldCommands {
+ public:
+  void reset(JsonWriter& json, const Command& command) {
+    random_ = Sampler{command.number<std::uint64_t>("seed")};
+    hidden_ = State{};
+    Model::initial(hidden_, random_);
+    json.begin_object().member("ending", ending_text(Model::ending(hidden_))).end_object();
+  }
+
+  void step(JsonWriter& json, const Command& command) {
+    const int action = action_of<Model>(command);
+    RecordedNumbers recorded{random_};
+    const ReportingTo reporting{random_, recorded};
+    const Step step = Model::step(hidden_, action, random_);
+    json.begin_object().member("reward", step.reward).member("response", text_of_response<Model>(action, step.observation));
+    json.member("ending", ending_text(Model::ending(hidden_)));
+    write_numbers(json.key("numbers"), recorded.numbers());
+    json.end_object();
+  }
+
+  // The hidden state as text for people.
+  void show(JsonWriter& json) const { json.begin_object().member("state", Model::state_text(hidden_)).end_object(); }
+
+  void reset_many(JsonWriter& json, const Command& command) {
+    std::vector<std::uint64_t> seeds;
+    for (const auto seed : command.items()) seeds.push_back(detail::number_in<std::uint64_t>(seed));
+    worlds_.reset(json, seeds);
+  }
+
+  // The actions are 32-bit numbers in base64.
+  void step_many(JsonWriter& json, const Command& command) {
+    const auto actions = from_base64<std::int32_t>(command.text("actions"));
+    if (!actions || actions->size() != worlds_.count()) throw BadCommand{"not one action for each world"};
+    for (const std::int32_t action : *actions) checked_action<Model>(std::max(action, 0));
+    worlds_.step(json, *actions);
+  }
+
+ private:
+  using State = typename Model::State;
+
+  State hidden_{};
+  Sampler random_{0};
+  Worlds<Model> worlds_;
+};
+
+}  // namespace aos

@@ -1,0 +1,110 @@
+// Bayes' rule between regions: what an action predicts from a belief, and the belief after an observation.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "point_based/bounds.hpp"
+#include "point_based/regions.hpp"
+
+namespace aos::point_based {
+
+// Memory for one belief, used again for the next.
+class Posterior {
+ public:
+  // For regions of up to so many states.
+  void reserve(std::size_t states) { dense_.assign(states, 0.0); }
+
+  // What an action leads to from a belief. Returns how many numbers were multiplied.
+  std::uint64_t predict(const Belief& belief, const Move& move) {
+    std::uint64_t work = 0;
+    predicted_.assign(move.targets, 0.0);
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      const auto* last = move.flows.end(belief.states[i]);
+      for (const auto* flow = move.flows.begin(belief.states[i]); flow != last; ++flow) {
+        predicted_[flow->target] += belief.probabilities[i] * flow->probability;
+      }
+      work += static_cast<std::uint64_t>(last - move.flows.begin(belief.states[i]));
+    }
+    return work;
+  }
+
+  // The weights after an observation. Returns their sum, its probability.
+  double observe(const ObservationBranch& branch) {
+    belief_.states.clear();
+    belief_.probabilities.clear();
+    return branch.is_ascending ? listed(branch) : gathered(branch);
+  }
+
+  // The weights as a belief, given their sum. States that are next to impossible are left out.
+  const Belief& normalised(double total, double negligible) {
+    weights_ = belief_.probabilities;
+    weighted_ = belief_.states;
+    std::size_t kept = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < belief_.size(); ++i) {
+      if (belief_.probabilities[i] <= negligible * total) continue;
+      belief_.states[kept] = belief_.states[i];
+      belief_.probabilities[kept++] = belief_.probabilities[i];
+      sum += belief_.probabilities[kept - 1];
+    }
+    belief_.states.resize(kept);
+    belief_.probabilities.resize(kept);
+    for (double& probability : belief_.probabilities) probability /= sum;
+    return belief_;
+  }
+
+  // How many times the weights hold a belief.
+  double share_of(const Belief& belief) const {
+    double share = std::numeric_limits<double>::infinity();
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      while (place < weighted_.size() && weighted_[place] < belief.states[i]) ++place;
+      if (place == weighted_.size() || weighted_[place] != belief.states[i]) return 0;
+      if (weights_[place] < share * belief.probabilities[i]) share = weights_[place] / belief.probabilities[i];
+    }
+    return share;
+  }
+
+ private:
+  // Where each successor is in a state of its own, in their order.
+  double listed(const ObservationBranch& branch) {
+    double total = 0;
+    for (const ObservationBranch::Successor& successor : branch.successors) {
+      const double weight = predicted_[successor.target] * successor.probability;
+      if (weight <= 0) continue;
+      belief_.states.push_back(successor.local);
+      belief_.probabilities.push_back(weight);
+      total += weight;
+    }
+    return total;
+  }
+
+  double gathered(const ObservationBranch& branch) {
+    double total = 0;
+    for (const ObservationBranch::Successor& successor : branch.successors) {
+      const double weight = predicted_[successor.target] * successor.probability;
+      if (weight <= 0) continue;
+      if (dense_[successor.local] == 0) belief_.states.push_back(successor.local);
+      dense_[successor.local] += weight;
+      total += weight;
+    }
+    if (!std::is_sorted(belief_.states.begin(), belief_.states.end())) {
+      std::sort(belief_.states.begin(), belief_.states.end());
+    }
+    for (const std::uint32_t local : belief_.states) belief_.probabilities.push_back(std::exchange(dense_[local], 0.0));
+    return total;
+  }
+
+  std::vector<double> predicted_;  // by target
+  std::vector<double> dense_;      // by state; all 0 between calls
+  Belief belief_;
+  std::vector<std::uint32_t> weighted_;  // the states and their weights before they were normalised
+  std::vector<double> weights_;
+};
+
+}  // namespace aos::point_based

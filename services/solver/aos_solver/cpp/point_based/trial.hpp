@@ -1,0 +1,162 @@
+// Trials: a way from a belief into the graph, along which it is found out where actions lead.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "point_based/backups.hpp"
+#include "point_based/belief_graph.hpp"
+
+namespace aos::point_based {
+
+// One after another. Each returns whether it has found out where an action leads, and leaves its path.
+class Trial {
+ public:
+  Trial(const FlatModel& model, BeliefGraph& graph, Backups& backups)
+      : model_(model), graph_(graph), backups_(backups), begun_(model.actions) {}
+
+  // The beliefs on the way, from its begin on.
+  const std::vector<std::uint32_t>& path() const { return path_; }
+  // By action: how many sampled trials began with it.
+  const std::vector<std::uint32_t>& begun() const { return begun_; }
+  void forget_begun() { begun_.assign(model_.actions, 0); }
+  // From now on as if no trial had been sampled.
+  void start_over() { sampled_ = 0; }
+
+  // The same action for as long as it may be the best and leads on, with the likeliest observation each time.
+  template <class IsOver>
+  bool persist(std::uint32_t number, std::uint32_t action, IsOver&& is_over) {
+    begin();
+    while (path_.size() < longest_detour_) {
+      Node& node = graph_[number];
+      graph_.expand(node);
+      const auto branch = std::find_if(node.branches.begin(), node.branches.end(),
+                                       [&](const Branch& candidate) { return candidate.action == action; });
+      if (branch == node.branches.end()) break;
+      path_.push_back(number);
+      if (!branch->is_open) has_learnt_ = true;
+      graph_.open(node, *branch);
+      backups_.refresh(*branch);
+      const Successor* likeliest = nullptr;
+      for (const Successor& successor : branch->successors) {
+        if (likeliest == nullptr || successor.probability > likeliest->probability) likeliest = &successor;
+      }
+      if (likeliest == nullptr || likeliest->node == number || is_over()) break;
+      number = likeliest->node;
+    }
+    return has_learnt_;
+  }
+
+  // By three rules in turn, towards the gap that matters most at the root.
+  template <class IsOver>
+  bool sample(std::uint32_t number, double precision, IsOver&& is_over) {
+    begin();
+    const auto follows = static_cast<Follows>(sampled_++ % 3);
+    const double gap = graph_[number].upper - graph_[number].lower;
+    double allowed = std::max(precision, share_of_gap_ * gap);
+    double low = graph_[number].lower;
+    double high = low + allowed;
+    const std::size_t longest = path_.size() + longest_trial_;
+    while (path_.size() < longest) {
+      Node& node = graph_[number];
+      graph_.refresh_lower(node);
+      graph_.refresh_upper(node);
+      if (node.upper <= low && node.upper <= std::max(high, node.lower + allowed)) break;
+      path_.push_back(number);
+      graph_.expand(node);
+      if (is_over()) break;
+      const Branch* const best = followed_branch(node, follows, is_over);
+      if (best == nullptr) break;
+      double best_lower = -std::numeric_limits<double>::infinity();
+      for (const Branch& branch : node.branches) best_lower = std::max(best_lower, branch.lower);
+      if (path_.size() == 1) ++begun_[best->action];
+      low = std::max(low, best_lower);
+      high = std::max(high, best_lower + allowed);
+      allowed /= model_.discount;
+      const Successor* next = widest_of(best->successors, allowed);
+      if (next == nullptr) break;
+      double other_lower = best->reward;
+      double other_upper = best->reward;
+      for (const Successor& successor : best->successors) {
+        if (&successor == next) continue;
+        other_lower += model_.discount * successor.probability * graph_[successor.node].lower;
+        other_upper += model_.discount * successor.probability * graph_[successor.node].upper;
+      }
+      low = (low - other_lower) / (model_.discount * next->probability);
+      high = (high - other_upper) / (model_.discount * next->probability);
+      number = next->node;
+    }
+    return has_learnt_;
+  }
+
+  // The successor with the most gap beyond what is allowed there.
+  const Successor* widest_of(const std::vector<Successor>& successors, double allowed) {
+    const Successor* widest = nullptr;
+    double widest_excess = 0;
+    for (const Successor& successor : successors) {
+      const Node& node = graph_[successor.node];
+      const double excess = successor.probability * (node.upper - node.lower - allowed);
+      if (widest != nullptr && excess <= widest_excess) continue;
+      widest = &successor;
+      widest_excess = excess;
+    }
+    return widest;
+  }
+
+ private:
+  // By which bound a trial goes.
+  enum class Follows { middle, upper, lower };
+
+  static constexpr double share_of_gap_ = 0.1;  // of the root's, that a trial tries to come below
+  static constexpr std::size_t longest_trial_ = 1000;
+  static constexpr std::size_t longest_detour_ = 30;
+
+  void begin() {
+    path_.clear();
+    has_learnt_ = false;
+  }
+
+  // Among the actions of which it is known where they lead; of the one with the highest upper bound it always is. None if
+  // `is_over()` before. Refreshes the bounds of these.
+  template <class IsOver>
+  const Branch* followed_branch(Node& node, Follows follows, IsOver&& is_over) {
+    for (Branch& branch : node.branches) {
+      if (follows == Follows::lower && !branch.is_open && !is_over()) {
+        graph_.open(node, branch);
+        has_learnt_ = true;
+      }
+      if (branch.is_open) backups_.refresh(branch);
+    }
+    while (!node.branches.empty()) {
+      Branch* highest = &node.branches.front();
+      Branch* followed = nullptr;
+      for (Branch& branch : node.branches) {
+        if (branch.upper > highest->upper) highest = &branch;
+        if (branch.is_open && (followed == nullptr || merit(branch, follows) > merit(*followed, follows))) followed = &branch;
+      }
+      if (highest->is_open) return followed;
+      graph_.open(node, *highest);
+      backups_.refresh(*highest);
+      has_learnt_ = true;
+      if (is_over()) break;
+    }
+    return nullptr;
+  }
+
+  static double merit(const Branch& branch, Follows follows) {
+    return (follows == Follows::upper ? 0 : branch.lower) + (follows == Follows::lower ? 0 : branch.upper);
+  }
+
+  const FlatModel& model_;
+  BeliefGraph& graph_;
+  Backups& backups_;
+  std::vector<std::uint32_t> path_;
+  std::vector<std::uint32_t> begun_;
+  std::uint64_t sampled_ = 0;
+  bool has_learnt_ = false;
+};
+
+}  // namespace aos::point_based

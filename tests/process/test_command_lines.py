@@ -1,0 +1,100 @@
+"""Commands are one line of named fields, which both sides know by the same names."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from asyncio.subprocess import PIPE
+from pathlib import Path
+
+import pytest
+from models import built_text
+
+from aos_protocol.errors import ModelError
+from aos_solver.child.answers import ExportedBelief
+from aos_solver.child.command_line import command_line
+from aos_solver.child.engine import Engine
+
+LAMP = {
+    "lamp.ef": "project: lamp\nhorizon: 3\nstate_variable: bool is_on\nreward_code:\n"
+    "if (state.is_on) __reward = 1;\n",
+    "press.sd": "project: lamp\ndynamic_model:\nstate__.is_on = !state.is_on;\n__moduleResponse = clicked;\n",
+    "press.am": "project: lamp\nresponse: clicked\nresponse_rule: True\nmodule_activation: skill\n"
+    "path: /press\n",
+}
+
+
+class Recorded(Engine):
+    """An engine that remembers what it asked."""
+
+    asked: list[str]
+
+    async def _ask(self, command: str, kind: type, **more: float) -> object:  # type: ignore[override]
+        self.asked.append(command)
+        return await super()._ask(command, kind, **more)
+
+
+async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
+    """One line of each command that an engine asks."""
+    built = await built_text(LAMP, cache_dir)
+    executable.append(built.executable)
+    Recorded.asked = []
+    engine = await Recorded.start(built, seed=1)
+    try:
+        await engine.summary()
+        await engine.plan(seed=1, simulations=10, barred=())
+        await engine.ponder(0, seed=1, time_s=0.0)
+        await engine.count_processor_time(False)
+        await engine.exact(2)
+        await engine.reach(0.1)
+        await engine.list_states(100)
+        await engine.write_listing(cache_dir / "model.flat", cache_dir / "states")
+        await engine.predict(0)
+        await engine.update("press", "clicked")
+        await engine.update_without_observation("press", ran_probability=0.5)
+        await engine.import_belief(await engine.export_belief())
+        await engine.reset_belief()
+        await engine.draw_belief()
+        await engine.reset_world(1)
+        await engine.step_world(0)
+        await engine.world_state()
+        await engine.reset_worlds([1, 2])
+        await engine.step_worlds(bytes(8))
+        await engine.rate(0.01, 1)
+        await engine.rate(0.01, 1, "table")
+    finally:
+        await engine.close()
+    return [*Recorded.asked, command_line("restore_belief", change=1)]
+
+
+async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path, tmp_path: Path) -> None:
+    executable: list[Path] = []
+    lines: list[str] = []
+    lacking: list[tuple[str, str]] = []
+    for line in await commands_of(cache_dir, executable):
+        name, *rest = line.split("\t")
+        fields = rest[: rest.index("")] if "" in rest else rest
+        for field in fields:
+            lines.append("\t".join(part for part in (name, *rest) if part != field))
+            lacking.append((name, field.partition("=")[0]))
+    command = [str(executable[0]), str(tmp_path / "blame"), "", "1", "widen"]
+    asked = "\n".join([command_line("list", max_states=100), *lines]) + "\n"
+    engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
+    printed, _ = await asyncio.wait_for(engine.communicate(asked.encode()), timeout=120)
+    answers = [json.loads(line) for line in printed.splitlines()[2:]]
+    assert len(answers) == len(lacking) > 25
+    texts = [answer["fault"]["text"] for answer in answers]
+    assert texts == [f"{name} has no field {field}" for name, field in lacking]
+
+
+def test_a_belief_is_a_command_with_a_list() -> None:
+    belief = ExportedBelief(0.5, True, 1, {"room": "3 4"}, "words", ((1.0, "1 0"),))
+    assert belief.command.split("\t") == [
+        "import_belief", "error_bound=0.5", "is_drawn=1", "history=words", "constants=1",
+        "", "room", "3 4", "1.0", "1 0",
+    ]  # fmt: skip
+
+
+def test_a_text_that_would_be_two_fields_is_no_field() -> None:
+    with pytest.raises(ModelError, match="tab or a line end"):
+        command_line("update", response="clicked\ttwice")
