@@ -11,7 +11,14 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-SHARED = ("deploy/*.yaml", "deploy/bundles", "deploy/worlds", "deploy/interfaces", "tests/bench")
+SHARED = (
+    "deploy/*.yaml",
+    "deploy/bundles",
+    "deploy/experiments",
+    "deploy/interfaces",
+    "deploy/worlds",
+    "tests/bench",
+)
 
 
 class BuildWithShared(build_py):

@@ -30,6 +30,8 @@ _COMMANDS = {
     "language_server": ("language-server",),
     "plan": ("plan", "simulate", "rate"),
     "solve": ("solve",),
+    "test": ("test",),
+    "experiment": ("experiment",),
     "bench": ("bench",),
     "gym": ("gym",),
     "machine": ("doctor", "version"),

@@ -61,7 +61,7 @@ def exit_code_of_error(error: AosError, *, has_started: bool = False) -> ExitCod
     """The exit code of a fault; `has_started` says that the mission already ran."""
     if has_started:
         return ExitCode.FAULT
-    if error.code.startswith(("AOS1", "AOS32")) or error.code in ("AOS201", "AOS801"):
+    if error.code.startswith(("AOS1", "AOS32")) or error.code in ("AOS201", "AOS801", "AOS808"):
         return ExitCode.DOCUMENTS_WRONG
     if error.code.startswith(("AOS6", "AOS8")) or error.code in ("AOS202", "AOS203", "AOS701"):
         return ExitCode.NOT_STARTED

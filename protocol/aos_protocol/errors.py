@@ -129,6 +129,7 @@ CODES: dict[str, str] = {
     "AOS805": "something this machine lacks",
     "AOS806": "an unknown ROS interface",
     "AOS807": "a path that nobody serves",
+    "AOS808": "an experiment or a file of mission tests is not valid",
 }
 """Every code with its meaning; docs/errors.md is made from this table."""
 

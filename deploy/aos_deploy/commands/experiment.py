@@ -1,0 +1,117 @@
+"""`aos experiment`: the missions of an experiment, and its report."""
+
+from __future__ import annotations
+
+import asyncio
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from aos_deploy.options import HELP_NAMES, AsJson
+from aos_deploy.printing import from_here, print_json
+from aos_deploy.shipped import shipped
+from aos_deploy.terminal import progress
+
+__all__ = ["register"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    group = typer.Typer(
+        no_args_is_help=True,
+        context_settings=HELP_NAMES,
+        rich_markup_mode=None,
+        help="Run an experiment's missions, and see which of its claims hold.",
+    )
+    group.callback()(lambda: None)
+    group.command(epilog="Example: aos experiment run armadillo --seeds 20 --system-seeds 4 --jobs 2")(run)
+    app.add_typer(group, name="experiment")
+
+
+def run(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="A file in deploy/experiments, or any file")],
+    seeds: Annotated[int, typer.Option(min=0, help="Missions that the model plays, of each part")] = 100,
+    system_seeds: Annotated[
+        int, typer.Option(min=0, help="Missions of the whole system with its adapters, of each part")
+    ] = 0,
+    first_seed: Annotated[int, typer.Option(min=0, help="The seeds begin here")] = 1,
+    part: Annotated[list[str] | None, typer.Option(help="Only this part; repeatable")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Records and report; else experiments/NAME")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run missions of all parts and write a report.
+
+    The report has every claim with whether it was seen, and figures with
+    intervals. A run that was interrupted goes on where it was: missions that
+    are recorded are not run again, unless documents or settings have changed.
+    """
+    from aos_deploy.experiments.plots import draw_plots
+    from aos_deploy.experiments.report import write_report
+    from aos_deploy.experiments.results import PartResult, Results, result_of, surroundings
+    from aos_deploy.trials.campaign import play_campaign
+    from aos_deploy.trials.files import read_experiment
+
+    path = _experiment_file(name)
+    experiment = read_experiment(path)
+    unknown = set(part or ()) - set(experiment.parts)
+    if unknown:
+        known = ", ".join(experiment.parts)
+        raise typer.BadParameter(f"{sorted(unknown)[0]} is none of {known}", param_hint="--part")
+    folder = (out or Path("experiments") / path.stem).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    parts = {key: value for key, value in experiment.parts.items() if not part or key in part}
+    wanted = {"model": seeds, "system": system_seeds}
+    results: list[PartResult] = []
+    with progress() as bar:
+        for by, number in wanted.items():
+            for key, each in parts.items() if number else ():
+                task = bar.add_task(f"{key}, {by}", total=number)
+                setting = msgspec.structs.replace(each, by=by)
+                played = asyncio.run(
+                    play_campaign(
+                        setting,
+                        range(first_seed, first_seed + number),
+                        folder=path.parent,
+                        out=folder / by / key,
+                        jobs=jobs,
+                        on_trial=partial(bar.advance, task),
+                    )
+                )
+                results.append(result_of(key, each, by, played, experiment))
+    told = Results(
+        name=path.stem,
+        title=experiment.title,
+        about=experiment.about,
+        command=f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}",
+        surroundings=surroundings(),
+        parts=tuple(results),
+    )
+    (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(told), indent=2))
+    pages = write_report(told, draw_plots(told, folder / "plots"), folder)
+    if as_json:
+        print_json(told)
+        return
+    for result in results:
+        for verdict in result.verdicts:
+            seen = "seen    " if verdict.is_seen else "NOT SEEN"
+            print(f"{seen} {result.name} ({result.by}): {verdict.says}: {verdict.held} of {verdict.missions}")
+    print(f"the report is in {from_here(pages[0])} and {from_here(pages[1])}")
+
+
+def _experiment_file(name: str) -> Path:
+    """The file of that name, or the shipped experiment."""
+    given = Path(name)
+    if given.suffix in (".yaml", ".yml"):
+        return given.resolve()
+    known = {path.stem: path for path in sorted(shipped("deploy/experiments").glob("*.yaml"))}
+    if name not in known:
+        raise typer.BadParameter(
+            f"{name} is none of {', '.join(known)}, and no .yaml file", param_hint="NAME"
+        )
+    return known[name]

@@ -1,0 +1,1 @@
+"""Experiments: many missions of several documents, and a report of which claims were seen."""

@@ -1,0 +1,126 @@
+"""What came of an experiment: figures with intervals and verdicts of each part, and what it was run with."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections import Counter
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+
+import msgspec
+
+from aos_deploy.trials.campaign import Played
+from aos_deploy.trials.claims import Verdict, judge, matches
+from aos_deploy.trials.files import Experiment, Part
+from aos_deploy.trials.intervals import Interval, interval_of_mean, interval_of_share
+from aos_deploy.trials.trial import Trial
+from aos_protocol import __version__
+
+__all__ = ["Figures", "PartResult", "Results", "Surroundings", "figures_of", "result_of", "surroundings"]
+
+_PACKAGES = ("eclipse-zenoh", "pybullet", "numpy")
+
+
+class Figures(msgspec.Struct, frozen=True, kw_only=True):
+    """Of the missions of one part. `value` is the discounted return, which only a model can count.
+
+    `counts` are the means of the experiment's counted steps.
+    """
+
+    missions: int
+    broken: int
+    goal: Interval
+    steps: Interval | None
+    value: Interval | None
+    counts: dict[str, Interval | None]
+    endings: dict[str, int]
+    first_actions: dict[str, int]
+
+
+class PartResult(msgspec.Struct, frozen=True, kw_only=True):
+    """One part as one of the two played it; `by` is `model` or `system`."""
+
+    name: str
+    by: str
+    deploy: str
+    bundles: tuple[str, ...]
+    digest: str
+    seeds: tuple[int, ...]
+    figures: Figures
+    verdicts: tuple[Verdict, ...]
+    broken: dict[str, str]
+
+
+class Surroundings(msgspec.Struct, frozen=True, kw_only=True):
+    """Where and when it was run."""
+
+    date: str
+    machine: str
+    versions: dict[str, str]
+
+
+class Results(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that a report shows."""
+
+    name: str
+    title: str
+    about: str
+    command: str
+    surroundings: Surroundings
+    parts: tuple[PartResult, ...]
+
+
+def result_of(name: str, part: Part, by: str, played: Played, experiment: Experiment) -> PartResult:
+    """A part's figures and verdicts."""
+    claims = [claim for claim in part.claims if claim.only in (None, by)]
+    return PartResult(
+        name=name,
+        by=by,
+        deploy=part.deploy,
+        bundles=part.bundles,
+        digest=played.digest,
+        seeds=tuple(trial.seed for trial in played.trials),
+        figures=figures_of(played.trials, experiment.counts),
+        verdicts=tuple(judge(claim, played.trials, by) for claim in claims),
+        broken={str(trial.seed): trial.fault for trial in played.trials if trial.fault},
+    )
+
+
+def figures_of(trials: Sequence[Trial], counts: dict[str, str]) -> Figures:
+    """Missions that broke count as ones that did not reach the goal, and in nothing else."""
+    whole = [trial for trial in trials if not trial.fault]
+    values = [trial.value for trial in whole if trial.value is not None]
+    return Figures(
+        missions=len(trials),
+        broken=len(trials) - len(whole),
+        goal=interval_of_share(sum(trial.goal for trial in whole), len(trials)),
+        steps=interval_of_mean([len(trial.actions) for trial in whole]),
+        value=interval_of_mean(values),
+        counts={
+            name: interval_of_mean([sum(matches(pattern, step) for step in trial.steps) for trial in whole])
+            for name, pattern in counts.items()
+        },
+        endings=dict(Counter(trial.ending for trial in trials).most_common()),
+        first_actions=dict(Counter(trial.actions[0] for trial in whole if trial.actions).most_common()),
+    )
+
+
+def surroundings() -> Surroundings:
+    """This machine, today."""
+    return Surroundings(
+        date=datetime.now(UTC).date().isoformat(),
+        machine=f"{os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+        versions={"aos": __version__, "python": platform.python_version(), **_installed()},
+    )
+
+
+def _installed() -> dict[str, str]:
+    found = {}
+    for package in _PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found

@@ -1,0 +1,120 @@
+"""Many missions of one setting, several at a time, none run twice where their records are kept."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol
+
+import msgspec
+
+from aos_deploy.deploy_file import Deployment
+from aos_deploy.mission_run import files_of_bundle
+from aos_deploy.trials.model_player import ModelPlayer
+from aos_deploy.trials.setting import Setting, deployment_of
+from aos_deploy.trials.system_player import SystemPlayer
+from aos_deploy.trials.trial import Trial
+from aos_protocol import __version__
+from aos_runtime.lifecycle import root_cause
+
+__all__ = ["Played", "play_campaign"]
+
+
+class Played(msgspec.Struct, frozen=True):
+    """The trials in the order of their seeds, and the digest of what they were run with."""
+
+    trials: tuple[Trial, ...]
+    digest: str
+
+
+class _Player(Protocol):
+    async def play(self, seed: int) -> Trial: ...
+
+
+class _Kept(msgspec.Struct, frozen=True):
+    """One line of the file of records."""
+
+    digest: str
+    trial: Trial
+
+
+async def play_campaign(
+    setting: Setting,
+    seeds: Sequence[int],
+    *,
+    folder: Path,
+    out: Path,
+    jobs: int,
+    on_trial: Callable[[], None],
+) -> Played:
+    """Plays a mission of each seed. Records in `out` are used where they were made of the same.
+
+    Missions that broke are run again. `folder` is where the setting's paths begin.
+    """
+    deployment = deployment_of(setting, folder, out)
+    digest = _digest(setting, deployment)
+    records = out / "missions.jsonl"
+    done = {trial.seed: trial for trial in _kept(records, digest)}
+    left = [seed for seed in seeds if seed not in done]
+    for seed in seeds:
+        if seed in done:
+            on_trial()
+
+    def keep(trial: Trial) -> None:
+        done[trial.seed] = trial
+        with records.open("ab") as file:
+            file.write(msgspec.json.encode(_Kept(digest, trial)) + b"\n")
+        on_trial()
+
+    if left:
+        await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)
+        await _play_all(await _player(setting, deployment, out), left, jobs, keep)
+    return Played(tuple(done[seed] for seed in seeds), digest)
+
+
+async def _play_all(player: _Player, seeds: Sequence[int], jobs: int, keep: Callable[[Trial], None]) -> None:
+    queue = iter(seeds)
+
+    async def work() -> None:
+        for seed in queue:
+            keep(await player.play(seed))
+
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            for _ in range(min(jobs, len(seeds))):
+                tasks.create_task(work())
+    except BaseExceptionGroup as group:
+        raise root_cause(group) from group
+
+
+async def _player(setting: Setting, deployment: Deployment, out: Path) -> _Player:
+    if setting.by == "model":
+        return await ModelPlayer.prepared(deployment)
+    return SystemPlayer(deployment, out / "runs")
+
+
+def _kept(records: Path, digest: str) -> list[Trial]:
+    """What was recorded with the same documents and settings; a line that was cut short is left out."""
+    trials = []
+    for line in records.read_bytes().splitlines() if records.is_file() else ():
+        try:
+            kept = msgspec.json.decode(line, type=_Kept)
+        except msgspec.MsgspecError:
+            continue
+        if kept.digest == digest and not kept.trial.fault:
+            trials.append(kept.trial)
+    return trials
+
+
+def _digest(setting: Setting, deployment: Deployment) -> str:
+    """Of all that a mission's outcome depends on beside its seed."""
+    whole = hashlib.sha256(f"{__version__} {setting.by}".encode())
+    whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))
+    for bundle in deployment.bundles:
+        for name, data in sorted(files_of_bundle(bundle, deployment.file.leave_out).items()):
+            whole.update(f"{len(name)}:{name}:{len(data)}:".encode() + data)
+    for path in (deployment.world if setting.by == "system" else None, deployment.policy):
+        whole.update(path.read_bytes() if path is not None else b"-")
+    return whole.hexdigest()[:16]

@@ -1,0 +1,186 @@
+"""Claims: statements about missions that can be checked, as experiments and mission tests write them.
+
+A pattern names steps: `pick` and `navigate(destination=corridor)` are actions, `pick > success` an action
+with what came back. `*` and `?` stand for any text and any letter, ` | ` separates alternatives. A skill's
+name alone means it with any parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fnmatch import fnmatchcase
+from typing import Annotated, Any, Literal
+
+import msgspec
+
+from aos_deploy.trials.intervals import Interval, interval_of_share
+from aos_deploy.trials.trial import Trial
+
+__all__ = ["Before", "Claim", "Count", "Verdict", "When", "has_check", "judge", "matches"]
+
+Share = Annotated[float, msgspec.Meta(ge=0, le=1)]
+Number = Annotated[int, msgspec.Meta(ge=0)]
+
+_MODEL_SHARE, _SYSTEM_SHARE = 0.95, 0.9
+
+
+class Count(msgspec.Struct, frozen=True, kw_only=True):
+    """How many steps of a mission a pattern names."""
+
+    step: str
+    at_least: Number = 0
+    at_most: Number | None = None
+
+
+class Before(msgspec.Struct, frozen=True, kw_only=True):
+    """Before each `step` came `comes`, so many `times`, after the last step `since` if that is given."""
+
+    step: str
+    comes: str
+    since: str | None = None
+    times: Number = 1
+
+
+class When(msgspec.Struct, frozen=True, kw_only=True):
+    """Which missions a claim is about: what was done in them, with the words of a claim."""
+
+    some: str | None = None
+    never: str | None = None
+    order: tuple[str, ...] = ()
+
+
+class Claim(msgspec.Struct, frozen=True, kw_only=True):
+    """Says something of a mission; all its checks have to hold in at least `share` of the missions.
+
+    `only` says by whom those missions are played. Without a share, 0.95 is wanted where the model plays and
+    0.9 in a whole system, of which there are fewer missions.
+
+    `first` and `last` are the first and the last step. `some` step was taken, `never` another one. Steps of
+    `order` were taken in this order, those of `never_order` not. `actions` are all actions, in full. `endings`
+    are the allowed ones. `goal` says whether the goal was reached. `never_state` names texts of the world's
+    truth that no state holds. With `surely`, the lower end of the interval has to reach the share as well.
+    """
+
+    says: str
+    only: Literal["model", "system"] | None = None
+    share: Share | None = None
+    surely: bool = False
+    when: When | None = None
+    first: str | None = None
+    last: str | None = None
+    some: str | None = None
+    never: str | None = None
+    order: tuple[str, ...] = ()
+    never_order: tuple[str, ...] = ()
+    before: Before | None = None
+    count: Count | None = None
+    actions: tuple[str, ...] = ()
+    endings: tuple[str, ...] = ()
+    goal: bool | None = None
+    never_state: str | None = None
+
+
+class Verdict(msgspec.Struct, frozen=True, kw_only=True):
+    """What came of a claim: in how many of how many missions it held, and the seeds of those where it did not."""
+
+    says: str
+    held: int
+    missions: int
+    share: Interval
+    wanted: float
+    is_seen: bool
+    failed_seeds: tuple[int, ...]
+
+
+def has_check(claim: Claim) -> bool:
+    """Whether a claim says anything that could fail."""
+    return any(getattr(claim, name) not in (None, ()) for name in _CHECKS)
+
+
+def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:
+    """The verdict on a claim; it is not seen where no mission is one that it is about, or where one broke."""
+    about = [trial for trial in trials if trial.fault or _is_about(claim, trial)]
+    failed = [trial.seed for trial in about if trial.fault or not _all_hold(claim, trial)]
+    wanted = claim.share if claim.share is not None else _MODEL_SHARE if by == "model" else _SYSTEM_SHARE
+    share = interval_of_share(len(about) - len(failed), len(about))
+    reached = share.low if claim.surely else share.value
+    return Verdict(
+        says=claim.says,
+        held=len(about) - len(failed),
+        missions=len(about),
+        share=share,
+        wanted=wanted,
+        is_seen=bool(about) and reached >= wanted,
+        failed_seeds=tuple(failed),
+    )
+
+
+def matches(pattern: str, step: str) -> bool:
+    """Whether a pattern names a step, which is written as `action > response`."""
+    return any(_one_matches(each.strip(), step) for each in pattern.split(" | "))
+
+
+def _one_matches(pattern: str, step: str) -> bool:
+    action, _, told = step.partition(" > ")
+    wanted_action, has_response, wanted = pattern.partition(" > ")
+    is_skill = "(" not in wanted_action and fnmatchcase(action.partition("(")[0], wanted_action)
+    return (is_skill or fnmatchcase(action, wanted_action)) and (
+        not has_response or fnmatchcase(told, wanted)
+    )
+
+
+def _is_about(claim: Claim, trial: Trial) -> bool:
+    return claim.when is None or _all_hold(claim.when, trial)
+
+
+def _all_hold(said: Claim | When, trial: Trial) -> bool:
+    given = {name: getattr(said, name, None) for name in _CHECKS}
+    return all(_CHECKS[name](said, trial) for name, value in given.items() if value not in (None, ()))
+
+
+def _count(pattern: str, trial: Trial) -> int:
+    return sum(matches(pattern, step) for step in trial.steps)
+
+
+def _is_order(patterns: Sequence[str], trial: Trial) -> bool:
+    left = iter(trial.steps)
+    return all(any(matches(pattern, step) for step in left) for pattern in patterns)
+
+
+def _comes_before(before: Before, trial: Trial) -> bool:
+    come = 0
+    for step in trial.steps:
+        if matches(before.step, step) and come < before.times:
+            return False
+        if before.since is not None and matches(before.since, step):
+            come = 0
+        come += matches(before.comes, step)
+    return True
+
+
+def _counts(count: Count, trial: Trial) -> bool:
+    number = _count(count.step, trial)
+    return count.at_least <= number and (count.at_most is None or number <= count.at_most)
+
+
+def _never_holds(pattern: str, trial: Trial) -> bool:
+    """Without states nothing is known, so that nothing is claimed of them either."""
+    known = len(trial.states) >= len(trial.actions)
+    wanted = [each.strip() for each in pattern.split(" | ")]
+    return known and not any(each in state for state in trial.states for each in wanted)
+
+
+_CHECKS: dict[str, Callable[[Any, Trial], bool]] = {
+    "first": lambda claim, trial: bool(trial.steps) and matches(claim.first, trial.steps[0]),
+    "last": lambda claim, trial: bool(trial.steps) and matches(claim.last, trial.steps[-1]),
+    "some": lambda claim, trial: _count(claim.some, trial) > 0,
+    "never": lambda claim, trial: not _count(claim.never, trial),
+    "order": lambda claim, trial: _is_order(claim.order, trial),
+    "never_order": lambda claim, trial: not _is_order(claim.never_order, trial),
+    "before": lambda claim, trial: _comes_before(claim.before, trial),
+    "count": lambda claim, trial: _counts(claim.count, trial),
+    "actions": lambda claim, trial: trial.actions == claim.actions,
+    "endings": lambda claim, trial: trial.ending in claim.endings,
+    "goal": lambda claim, trial: trial.goal == claim.goal,
+    "never_state": lambda claim, trial: _never_holds(claim.never_state, trial),
+}

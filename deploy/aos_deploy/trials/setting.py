@@ -1,0 +1,81 @@
+"""What a mission is run with: a deploy file, and what is different from it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+from ruamel.yaml import YAML
+
+from aos_deploy.adapters import played_by_model
+from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file
+from aos_protocol.errors import DeployError
+
+__all__ = ["Player", "Setting", "deployment_of"]
+
+Player = Literal["model", "system", "system-model"]
+"""Who plays the skills: the documents' model in this process, or a whole system, by the deploy file's
+adapters or by the model."""
+
+
+class Setting(msgspec.Struct, frozen=True, kw_only=True):
+    """`bundles` stand in place of the deploy file's; `simulations` and `step_limit` too.
+
+    `faults` are values for the world file's `faults`, for a simulated world.
+    """
+
+    deploy: str
+    by: Player = "model"
+    bundles: tuple[str, ...] = ()
+    simulations: int | None = None
+    step_limit: int | None = None
+    faults: dict[str, float] = {}
+
+
+def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
+    """The deployment of a setting, on a free port; `folder` is where its paths begin.
+
+    `out` takes a copy of the world file where faults are other ones. DeployError where they do not fit.
+    """
+    deployment = read_deploy_file(folder / setting.deploy)
+    file = msgspec.structs.replace(deployment.file, bus=BusPart(listen="tcp/127.0.0.1:0"))
+    if setting.simulations is not None:
+        solver = msgspec.structs.replace(file.solver, simulations=setting.simulations, time_s=None)
+        file = msgspec.structs.replace(file, solver=solver)
+    if setting.step_limit is not None:
+        mission = msgspec.structs.replace(file.mission, step_limit=setting.step_limit)
+        file = msgspec.structs.replace(file, mission=mission)
+    if setting.bundles:
+        bundles = tuple((folder / bundle).resolve() for bundle in setting.bundles)
+        for bundle in bundles:
+            if not bundle.exists():
+                raise DeployError(f"there is no bundle {bundle}", code="AOS801", hint="Look at `bundles:`")
+        deployment = msgspec.structs.replace(deployment, bundles=bundles)
+    deployment = msgspec.structs.replace(deployment, file=file)
+    if setting.by == "system-model":
+        return msgspec.structs.replace(deployment, adapters=played_by_model())
+    if setting.faults:
+        return _with_faults(deployment, setting, out)
+    return deployment
+
+
+def _with_faults(deployment: Deployment, setting: Setting, out: Path) -> Deployment:
+    """The deployment with a world file whose faults are other ones."""
+    if deployment.world is None or setting.by != "system":
+        hint = "Faults are those of the deploy file's `world:`, in missions that are run `by: system`"
+        raise DeployError(f"{setting.deploy}: there is no simulated world to have faults", hint=hint)
+    yaml = YAML(typ="safe", pure=True)
+    world: dict[str, Any] = yaml.load(deployment.world.read_text(encoding="utf-8"))
+    world["faults"] = {**world.get("faults", {}), **setting.faults}
+    out.mkdir(parents=True, exist_ok=True)
+    changed = out / f"world-{deployment.path.stem}.yaml"
+    with changed.open("w", encoding="utf-8") as file:
+        yaml.dump(world, file)
+    adapters = tuple(
+        msgspec.structs.replace(plan, options=plan.options | {"world": str(changed)})
+        if plan.options.get("world") == str(deployment.world)
+        else plan
+        for plan in deployment.adapters
+    )
+    return msgspec.structs.replace(deployment, world=changed, adapters=adapters)

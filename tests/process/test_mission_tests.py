@@ -1,0 +1,55 @@
+"""`aos test`: real missions of users' tests, with what a continuous integration reads."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+AOS = Path(sys.executable).parent / "aos"
+DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
+
+MISSIONS = f"""
+aos: 1
+tests:
+  finer:
+    deploy: {DEPLOY}/armadillo.yaml
+    bundles: [{DEPLOY}/bundles/armadillo-finer]
+    seeds: 2
+    simulations: 500
+    step_limit: 4
+    claims:
+      - {{says: it goes to the easy table, first: navigate(destination=easy_table)}}
+      - {{says: it never picks, never: pick}}
+"""
+
+
+def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path, cache_dir: Path) -> None:
+    missions, junit = tmp_path / "missions.yaml", tmp_path / "junit.xml"
+    missions.write_text(MISSIONS)
+
+    def run(*options: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [AOS, "test", missions, "--keep", tmp_path / "kept", *options],
+            capture_output=True,
+            text=True,
+            timeout=200,
+            env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
+        )
+
+    first = run("--junit", str(junit))
+    assert first.returncode == 4, first.stderr
+    assert "ok     finer: it goes to the easy table: held in 2 of 2 missions" in first.stdout
+    assert "FAILED finer: it never picks: held in 0 of 2 missions" in first.stdout
+    assert "seed 1, step_limit: navigate(destination=easy_table) > arrived, pick" in first.stdout
+    cases = list(ElementTree.parse(junit).iter("testcase"))
+    assert [case.find("failure") is None for case in cases] == [True, False]
+    # What was recorded is not run again.
+    records = tmp_path / "kept" / "finer" / "missions.jsonl"
+    before = records.read_bytes()
+    again = json.loads(run("--json").stdout)
+    assert records.read_bytes() == before
+    assert [verdict["held"] for verdict in again["finer"]["verdicts"]] == [2, 0]

@@ -1,0 +1,139 @@
+"""Claims about missions, what they mean, and how sure a share is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.shipped import shipped
+from aos_deploy.trials.claims import Before, Claim, Count, When, judge, matches
+from aos_deploy.trials.files import read_experiment, read_test_file
+from aos_deploy.trials.intervals import interval_of_mean, interval_of_share
+from aos_deploy.trials.setting import deployment_of
+from aos_deploy.trials.trial import Trial
+from aos_protocol.errors import DeployError
+
+
+def trial(*steps: str, seed: int = 1, ending: str = "goal", states: tuple[str, ...] = ()) -> Trial:
+    """A mission of steps that are written as `action > response`."""
+    pairs = [step.split(" > ") for step in steps]
+    return Trial(
+        seed=seed,
+        ending=ending,
+        goal=ending == "goal",
+        actions=tuple(action for action, _ in pairs),
+        responses=tuple(told for _, told in pairs),
+        states=states,
+    )
+
+
+DELIVERED = trial("pick > ok", "sense > empty", "sense > full", "go(to=hall) > there", "serve > done")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "names"),
+    [
+        ("go", True),
+        ("go(to=hall)", True),
+        ("go(to=*", True),
+        ("go > there", True),
+        ("pick | go", True),
+        ("go > lost", False),
+        ("go(to=attic)", False),
+        ("g", False),
+    ],
+)
+def test_a_pattern_names_an_action_with_or_without_parameters_and_response(pattern: str, names: bool) -> None:
+    assert matches(pattern, "go(to=hall) > there") is names
+
+
+@pytest.mark.parametrize(
+    ("claim", "holds"),
+    [
+        (Claim(says="", first="pick"), True),
+        (Claim(says="", first="serve"), False),
+        (Claim(says="", last="serve"), True),
+        (Claim(says="", last="pick"), False),
+        (Claim(says="", some="sense > full"), True),
+        (Claim(says="", some="sense > broken"), False),
+        (Claim(says="", never="drop"), True),
+        (Claim(says="", never="sense"), False),
+        (Claim(says="", order=("pick", "sense > full", "serve")), True),
+        (Claim(says="", order=("serve", "pick")), False),
+        (Claim(says="", never_order=("serve", "pick")), True),
+        (Claim(says="", never_order=("pick", "serve")), False),
+        (Claim(says="", before=Before(step="serve", comes="sense > full", since="pick")), True),
+        (Claim(says="", before=Before(step="serve", comes="sense", times=3)), False),
+        (Claim(says="", before=Before(step="serve", comes="sense", since="go")), False),
+        (Claim(says="", count=Count(step="sense", at_least=2, at_most=2)), True),
+        (Claim(says="", count=Count(step="sense", at_most=1)), False),
+        (Claim(says="", actions=DELIVERED.actions), True),
+        (Claim(says="", actions=("pick",)), False),
+        (Claim(says="", endings=("over", "goal")), True),
+        (Claim(says="", endings=("failure",)), False),
+        (Claim(says="", goal=True), True),
+        (Claim(says="", goal=False), False),
+    ],
+)
+def test_each_check_can_hold_and_can_fail(claim: Claim, holds: bool) -> None:
+    assert judge(claim, [DELIVERED]).is_seen is holds
+
+
+def test_nothing_is_claimed_of_states_that_nobody_knows() -> None:
+    claim = Claim(says="", never_state="hurt=true | lost=true")
+    assert not judge(claim, [DELIVERED]).is_seen
+    known = trial("a > b", states=("hurt=false, lost=false",))
+    assert judge(claim, [known]).is_seen
+    assert not judge(claim, [trial("a > b", states=("hurt=false, lost=true",))]).is_seen
+
+
+def test_a_claim_about_some_missions_leaves_the_others_out() -> None:
+    claim = Claim(says="", when=When(some="serve"), first="pick")
+    verdict = judge(claim, [DELIVERED, trial("wait > ok", seed=2)])
+    assert (verdict.held, verdict.missions, verdict.is_seen) == (1, 1, True)
+    assert not judge(claim, [trial("wait > ok")]).is_seen, "no mission shows it"
+
+
+def test_a_mission_that_broke_counts_against_every_claim() -> None:
+    broken = Trial(seed=3, ending="fault", goal=False, fault="the engine has ended")
+    verdict = judge(Claim(says="", never="drop", share=0.5), [DELIVERED, broken])
+    assert verdict.failed_seeds == (3,)
+    assert verdict.share.value == 0.5
+
+
+def test_surely_asks_the_lower_end_of_the_interval() -> None:
+    ten = [trial("a > b", seed=seed) for seed in range(10)]
+    assert judge(Claim(says="", goal=True, share=0.8), ten).is_seen
+    assert not judge(Claim(says="", goal=True, share=0.8, surely=True), ten).is_seen
+    assert judge(Claim(says="", goal=True, share=0.7, surely=True), ten).is_seen
+
+
+def test_intervals_are_those_of_the_tables() -> None:
+    share = interval_of_share(18, 20)
+    assert (share.low, share.high) == pytest.approx((0.699, 0.972), abs=0.001)
+    mean = interval_of_mean([1.0, 2.0, 3.0, 4.0, 5.0])
+    assert mean is not None
+    assert mean.high - mean.value == pytest.approx(2.776 * (2.5 / 5) ** 0.5, abs=0.01)
+    assert interval_of_mean([1.0]) is None
+
+
+def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "missions.yaml"
+    path.write_text(
+        "aos: 1\ntests:\n  one:\n    deploy: x.yaml\n    seeds: 0\n    claims:\n"
+        "      - says: nothing\n      - {says: much, frist: pick}\n  two: {deploy: y.yaml}\n"
+    )
+    with pytest.raises(DeployError) as caught:
+        read_test_file(path)
+    found = {(each.code, each.span.line) for each in caught.value.diagnostics}
+    assert caught.value.code == "AOS808"
+    assert {("AOS106", 5), ("AOS105", 7), ("AOS102", 8), ("AOS105", 9)} <= found
+
+
+@pytest.mark.parametrize(
+    "path", sorted(shipped("deploy/experiments").glob("*.yaml")), ids=lambda path: path.stem
+)
+def test_shipped_experiments_name_what_is_there(path: Path, tmp_path: Path) -> None:
+    for part in read_experiment(path).parts.values():
+        deployment_of(part, path.parent, tmp_path)
