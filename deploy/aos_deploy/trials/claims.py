@@ -56,9 +56,9 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     0.9 in a whole system, of which there are fewer missions.
 
     `first` and `last` are the first and the last step. `some` step was taken, `never` another one. Steps of
-    `order` were taken in this order, those of `never_order` not. `actions` are all actions, in full. `endings`
-    are the allowed ones. `goal` says whether the goal was reached. `never_state` names texts of the world's
-    truth that no state holds. With `surely`, the lower end of the interval has to reach the share as well.
+    `order` were taken in this order, and those of `never_order` were not. `actions` are all actions, in full.
+    `endings` are the allowed ones. `goal` says whether the goal was reached. `never_state` names texts of the
+    world's truth that no state holds. With `surely`, the lower end of the interval has to reach the share too.
     """
 
     says: str
@@ -81,7 +81,7 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
-    """What came of a claim: in how many of how many missions it held, and the seeds of those where it did not."""
+    """What came of a claim: in how many of how many missions it held, and the seeds where it did not."""
 
     says: str
     held: int
