@@ -58,7 +58,7 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     `first` and `last` are the first and the last step. `some` step was taken, `never` another one. Steps of
     `order` were taken in this order, and those of `never_order` were not. `actions` are all actions, in full.
     `endings` are the allowed ones. `goal` says whether the goal was reached. `never_state` names texts of the
-    world's truth that no state holds. With `surely`, the lower end of the interval has to reach the share too.
+    world's truth that no state holds. With `surely`, the interval's lower end has to reach the share.
     """
 
     says: str
