@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,8 @@ from aos_deploy.options import HELP_NAMES, AsJson
 from aos_deploy.printing import from_here, print_json
 from aos_deploy.shipped import shipped
 from aos_deploy.terminal import progress
+from aos_protocol.distribution import pip_install
+from aos_protocol.errors import DeployError
 
 __all__ = ["register"]
 
@@ -51,6 +54,7 @@ def run(
     intervals. A run that was interrupted goes on where it was: missions that
     are recorded are not run again, unless documents or settings have changed.
     """
+    _check_installed()
     from aos_deploy.experiments.plots import draw_plots
     from aos_deploy.experiments.report import write_report
     from aos_deploy.experiments.results import PartResult, Results, result_of, surroundings
@@ -102,6 +106,17 @@ def run(
             seen = "seen    " if verdict.is_seen else "NOT SEEN"
             print(f"{seen} {result.name} ({result.by}): {verdict.says}: {verdict.held} of {verdict.missions}")
     print(f"the report is in {from_here(pages[0])} and {from_here(pages[1])}")
+
+
+def _check_installed() -> None:
+    """DeployError AOS805 before anything has run, if the report could not be made in the end."""
+    for package in ("matplotlib", "markdown_it"):
+        if find_spec(package) is None:
+            raise DeployError(
+                f"a report needs the package {package}, which is not installed",
+                code="AOS805",
+                hint=f"Run {pip_install('report')}",
+            )
 
 
 def _experiment_file(name: str) -> Path:
