@@ -54,10 +54,19 @@ def scratch(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterat
         yield folder
 
 
+SHARED_BEFORE: set[Path] = set()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _shared_before() -> None:
+    """What programs of others have left, such as a killed node that lets Zenoh share memory."""
+    SHARED_BEFORE.update(Path("/dev/shm").iterdir())
+
+
 def files_left(scratch: Path) -> list[Path]:
     """Temporary files and shared memory that nobody removed."""
-    shared = [path for path in Path("/dev/shm").iterdir() if "aos" in path.name or "zenoh" in path.name]
-    return [*scratch.iterdir(), *shared]
+    shared = set(Path("/dev/shm").iterdir()) - SHARED_BEFORE
+    return [*scratch.iterdir(), *(path for path in shared if "aos" in path.name or "zenoh" in path.name)]
 
 
 class Up:
