@@ -112,7 +112,8 @@ TEST("Thinning out keeps heavy states as they are, tells what it drops, and chan
   for (std::uint32_t state = 0; state < 200; ++state) problem.starts.push_back({state, 1.0 / 200});
   TableModel::take(problem);
   aos::Sampler random{3};
-  for (const auto& particle : Belief::initial(random).particles()) states.push_back(particle.state);
+  const Belief initial = Belief::initial(random);  // outlives the loop over its particles
+  for (const auto& particle : initial.particles()) states.push_back(particle.state);
   std::vector<double> sums(200, 0.0);
   constexpr int rounds = 4000;
   for (int round = 0; round < rounds; ++round) {
