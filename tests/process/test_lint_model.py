@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +15,7 @@ from typer.testing import CliRunner
 from aos_deploy.cli import aos_app
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as building
+from aos_solver.building.compiler import find_compiler
 from aos_solver.child import engine, replay
 
 HALL = """project: hall
@@ -146,10 +148,22 @@ RECURSIVE = """auto sum = []<int N>(auto self, std::integral_constant<int, N>) -
 state__.place = sum(sum, std::integral_constant<int, %d>{});"""
 
 
+BRANCHING = """auto sum = []<int N, int K>(
+    auto self, std::integral_constant<int, N>, std::integral_constant<int, K>) -> int {
+    if constexpr (N == 0) return K;
+    else return self(self, std::integral_constant<int, N - 1>{}, std::integral_constant<int, 2 * K>{}) +
+                self(self, std::integral_constant<int, N - 1>{}, std::integral_constant<int, 2 * K + 1>{});
+};
+state__.place = sum(sum, std::integral_constant<int, 16>{}, std::integral_constant<int, 0>{});"""
+"""A hundred thousand functions, none of them deep."""
+
+
 def test_templates_that_recurse_deeply_are_refused_at_their_line(
     app: typer.Typer, hall: Callable[..., Path]
 ) -> None:
-    assert linted(app, hall(RECURSIVE % ("", 800)), exit_code=1)["AOS201"][1] == "walk.sd:6"
+    # Gcc tells where the function calls itself, clang where it begins.
+    line = 6 if asyncio.run(find_compiler()).family == "gcc" else 4
+    assert linted(app, hall(RECURSIVE % ("", 800)), exit_code=1)["AOS201"][1] == f"walk.sd:{line}"
 
 
 def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
@@ -157,8 +171,7 @@ def test_code_that_computes_too_long_while_it_is_compiled_is_refused(
 ) -> None:
     monkeypatch.setattr(building, "MODEL_CPU_S", 1.0)
     monkeypatch.setattr(building, "ENGINE_SHARE", 0.0)
-    many = "auto sum = []<int... I>(std::integer_sequence<int, I...>) { return (0 + ... + I); };\n"
-    folder = hall(many + "state__.place = sum(std::make_integer_sequence<int, 20000>{});")
+    folder = hall(BRANCHING)
     assert linted(app, folder, exit_code=1)["AOS202"][:2] == ("error", "walk.sd:4")
 
 

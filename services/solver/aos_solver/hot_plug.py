@@ -13,6 +13,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -36,6 +37,12 @@ _LAST = 19
 """The niceness of what nobody waits for: of all that wants a processor it is served last."""
 
 _UNHURRIED_DEADLINE_S = 1800.0
+
+_PATIENCE_S = 1.0
+"""How long a decision waits for a revision that is on its way: it was compiled when it was checked, so that
+only its engine and the middleware's module have to start."""
+
+_ASK_AGAIN_S = 0.02
 
 
 class RunningModel(msgspec.Struct, frozen=True):
@@ -105,6 +112,7 @@ class ModelShelf:
         self._fault: AosError | None = None
         self._shelf = asyncio.Condition()
         self._newest_revision = 0
+        self._unmapped_revision = 0
         self._building = asyncio.Lock()
         self._thorough: asyncio.Task[None] | None = None
 
@@ -177,11 +185,12 @@ class ModelShelf:
     async def newest(self, running: RunningModel) -> RunningModel:
         """The running model, or its successor with the belief carried over and the old engine closed.
 
-        A successor that cannot take the belief is given up.
+        One that is on its way is waited for, but not long; one that cannot take the belief is given up.
         """
+        await self._until_made()
         async with self._shelf:
             candidate = self._ready
-            if candidate is None or await self._mapping_revision() < candidate.revision:
+            if candidate is None or not await self._is_mapped(candidate.revision):
                 return running
             if candidate.built.emitted.state_digest != running.built.emitted.state_digest:
                 log.warning("revision %d changes the state and waits for a new mission", candidate.revision)
@@ -198,6 +207,24 @@ class ModelShelf:
         await running.engine.close()
         log.info("revision %d takes over from revision %d", candidate.revision, running.revision)
         return candidate
+
+    async def _until_made(self) -> None:
+        if self._building.locked():
+            with suppress(TimeoutError):
+                async with asyncio.timeout(_PATIENCE_S), self._building:
+                    pass
+
+    async def _is_mapped(self, revision: int) -> bool:
+        """Whether the middleware runs the revision too; it is waited for once."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(_PATIENCE_S):
+                while await self._mapping_revision() < revision:
+                    if revision == self._unmapped_revision:
+                        return False
+                    await asyncio.sleep(_ASK_AGAIN_S)
+                return True
+        self._unmapped_revision = revision
+        return False
 
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
         """What keeps these documents from being used now: compile errors, or another state layout."""

@@ -49,6 +49,8 @@ class Compiler(msgspec.Struct, frozen=True):
 
     def _command(self, include: str, *more: str) -> list[str]:
         common = ["-std=c++20", "-O2", "-ffp-contract=off", "-fno-math-errno", "-w"]
+        # A loop of a document that does not end shall be told, and not be left out as one that ends.
+        common += ["-fno-finite-loops"]
         if self.family == "gcc":
             own = ["-Wno-narrowing", "-fdiagnostics-column-unit=byte", "-fdiagnostics-color=never"]
             own += ["-fno-diagnostics-show-caret", "-fmax-errors=40"]
@@ -131,8 +133,9 @@ async def _examine(command: tuple[str, ...]) -> tuple[Compiler | None, str]:
             text = (await child.stdout.read()).decode(errors="replace")
             status = await child.wait()
     except TimeoutError:
-        await child.stop()
         return None, f"{name} does not answer"
+    finally:
+        await child.stop()
     if status != 0 or not text.strip():
         return None, f"{name} does not run"
     line = text.splitlines()[0].strip()
