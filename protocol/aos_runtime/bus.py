@@ -157,6 +157,8 @@ class Bus:
             payload=payload,
             attachment=_TAKEN,
             timeout=timeout_s if on_stray is None else timeout_s + STRAYS_S,
+            # Otherwise Zenoh may hold a message back for a millisecond, in case another one comes.
+            express=True,
             # Otherwise a reply is held back until every responder has finished.
             consolidation=zenoh.ConsolidationMode.NONE,
         )
@@ -312,7 +314,7 @@ class Bus:
             key = str(query.key_expr)
             try:
                 if query.attachment is not None:
-                    query.reply(query.key_expr, b"", attachment=_TAKEN)
+                    query.reply(query.key_expr, b"", attachment=_TAKEN, express=True)
                 if "*" in key:
                     raise BusError(f"a question to {key} has no one answer", code="AOS602")
                 payload = query.payload.to_bytes() if query.payload is not None else b""
@@ -329,7 +331,7 @@ class Bus:
                 self._refuse(query, BusError(text, code="AOS606", hint=f"See the log of {self.sender}"))
             else:
                 try:
-                    query.reply(query.key_expr, answer)
+                    query.reply(query.key_expr, answer, express=True)
                 except zenoh.ZError as error:
                     _log.warning("the answer on %s was not delivered: %s", key, error)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import re
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -223,7 +224,7 @@ class Evaluator:
             return self._fault("AOS401", "the code closed its worker's connection", None)
         trace = self._left_in_log()
         place = self._place_in(trace)
-        if trace.startswith("Timeout ("):
+        if status == -signal.SIGALRM:
             return self._fault("AOS403", f"this took more than {limit_s:g} s and was stopped", place)
         how = f"by signal {-status}" if status < 0 else f"with status {status}"
         return self._fault("AOS401", f"the code ended its process {how}", place)
@@ -234,7 +235,7 @@ class Evaluator:
             end = log.seek(0, 2)
             log.seek(max(self._log_start_bytes, end - _TRACEBACK_BYTES))
             text = log.read().decode(errors="replace")
-        starts = [text.rfind(head) for head in ("Timeout (", "Fatal Python error:")]
+        starts = [text.rfind(head) for head in ("Current thread 0x", "Fatal Python error:")]
         return text[max(starts) :] if max(starts) >= 0 else ""
 
     def _place_in(self, trace: str) -> Span | None:

@@ -1,8 +1,8 @@
 """The process in which mapping code runs: `python -I -m aos_middleware.worker`, started by `evaluator`.
 
 Reads questions from its input and writes answers to its output, which mapping code cannot reach: what it
-prints goes to the error output. An evaluation that takes too long ends the process with a traceback there,
-even inside a C function: that is what `faulthandler` does.
+prints goes to the error output. An evaluation that takes too long ends the process by the alarm signal, with
+a traceback there, even inside a C function: `faulthandler` writes it, and then the signal does what it does.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import copy
 import faulthandler
 import io
 import os
+import signal
 import sys
-import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -51,26 +51,21 @@ class ImportRefused(Exception):
 class LoadedMapping:
     """A mapping's module, loaded, and the local variables of the activation that runs."""
 
-    def __init__(self, load: Load, error_output: int = 2) -> None:
-        """Runs the module; whatever it raises comes through. Tracebacks go to a descriptor."""
+    def __init__(self, load: Load) -> None:
+        """Runs the module; whatever it raises comes through."""
         self._load = load
-        self._error_output = error_output
         self._lines = load.python.split("\n")
         self._values: dict[str, Any] = {}
         self._last_given: dict[str, Any] = {}
         self._assigned: dict[str, Any] = {}
         self._of_skill: dict[str, Any] = {}
-        self._watched_until_s = 0.0
         namespace: dict[str, Any] = {
             "__name__": load.file_name.removesuffix(".py"),
             "__builtins__": _builtins(load.allowed_imports),
         }
-        try:
-            with warnings.catch_warnings(), self._watched(load.load_s):
-                warnings.simplefilter("ignore", SyntaxWarning)
-                exec(compile(load.python, load.file_name, "exec", dont_inherit=True), namespace)
-        finally:
-            self._unwatch()
+        with warnings.catch_warnings(), _watched(load.load_s):
+            warnings.simplefilter("ignore", SyntaxWarning)
+            exec(compile(load.python, load.file_name, "exec", dont_inherit=True), namespace)
         self._namespace = namespace
 
     def answer(self, question: Question) -> Answer:
@@ -81,8 +76,6 @@ class LoadedMapping:
             # Also SystemExit: it ends an evaluation, not the worker.
             unset = tuple(name for name, value in self._last_given.items() if value is None)
             return raised(error, self._load.file_name, self._lines, unset, self._texts())
-        finally:
-            self._unwatch()
 
     def _answer(self, question: Question) -> Answer:
         match question:
@@ -101,7 +94,7 @@ class LoadedMapping:
         self._values = {}
         self._last_given = {}
         self._assigned = {}
-        with self._watched(self._load.evaluation_s):
+        with _watched(self._load.evaluation_s):
             named = self._with_constants(parameters)
             for path, value in low_level.items():
                 put(named, path, message_from(value))
@@ -118,7 +111,7 @@ class LoadedMapping:
         self._of_skill = {"__skill_status": status, "__skill_error": error}
         if status == "succeeded":
             self._update(self._namespace.get("RESPONSE", {}), message_from(result))
-        with self._watched(self._load.evaluation_s):
+        with _watched(self._load.evaluation_s):
             observe = self._namespace["observe"]
             takes_assign = observe.__code__.co_varnames[:1] == ("__assign",)
             response: str | None = self._call(observe, *([self._assign] if takes_assign else []))
@@ -130,7 +123,7 @@ class LoadedMapping:
 
     def _update(self, functions: Mapping[str, Function], message: Any) -> None:
         for name, function in functions.items():
-            with self._watched(self._load.evaluation_s):
+            with _watched(self._load.evaluation_s):
                 self._values[name] = self._call(function, message)
 
     def _call(self, function: Function, *message: Any) -> Any:
@@ -155,24 +148,15 @@ class LoadedMapping:
     def _texts(self) -> dict[str, str]:
         return {name: text_of(value) for name, value in self._values.items()}
 
-    @contextmanager
-    def _watched(self, deadline_s: float) -> Iterator[None]:
-        """Ends the process, with a traceback on the error output, if the block takes longer.
 
-        A watch costs a thread, up to half a millisecond. One that still has the whole deadline to go is left
-        as it is: the process is ended after the deadline, and half of it more at the latest.
-        """
-        now_s = time.monotonic()
-        if self._watched_until_s < now_s + deadline_s:
-            limit_s = 1.5 * deadline_s
-            faulthandler.dump_traceback_later(limit_s, exit=True, file=self._error_output)
-            self._watched_until_s = now_s + limit_s
+@contextmanager
+def _watched(deadline_s: float) -> Iterator[None]:
+    """Ends the process if the block takes longer. A timer of the kernel costs no thread, and next to nothing."""
+    signal.setitimer(signal.ITIMER_REAL, deadline_s)
+    try:
         yield
-
-    def _unwatch(self) -> None:
-        """Between questions nothing runs."""
-        faulthandler.cancel_dump_traceback_later()
-        self._watched_until_s = 0.0
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def raised(
@@ -261,13 +245,11 @@ def _take_over_pipes(error_output: int) -> tuple[BinaryIO, BinaryIO]:
     return questions, answers
 
 
-def _answer_of(
-    mapping: LoadedMapping | None, question: Question, error_output: int
-) -> tuple[LoadedMapping | None, bytes]:
+def _answer_of(mapping: LoadedMapping | None, question: Question) -> tuple[LoadedMapping | None, bytes]:
     """The next state of the worker and the frame to send."""
     if isinstance(question, Load) and mapping is None:
         try:
-            return LoadedMapping(question, error_output), pack(Done())
+            return LoadedMapping(question), pack(Done())
         except BaseException as error:
             return None, pack(raised(error, question.file_name, question.python.split("\n")))
     if mapping is None:
@@ -285,10 +267,11 @@ def main() -> None:
     error_output = os.dup(2)
     questions, answers = _take_over_pipes(error_output)
     faulthandler.enable(file=error_output)
+    faulthandler.register(signal.SIGALRM, file=error_output, chain=True)
     mapping: LoadedMapping | None = None
     while len(head := questions.read(4)) == 4:
         body = questions.read(int.from_bytes(head, "big"))
-        mapping, frame = _answer_of(mapping, read_question(body), error_output)
+        mapping, frame = _answer_of(mapping, read_question(body))
         answers.write(frame)
         answers.flush()
 
