@@ -216,6 +216,10 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "a frozen process is taken for dead (a dead one at once)",
             "aos_runtime.bus_config.LEASE_S", "s", "it has left the bus",
         ),
+        Row(
+            "the same for a frozen adapter",
+            "aos_runtime.bus_config.ADAPTER_LEASE_S", "s", "its skills are unavailable",
+        ),
         Row("a message on the bus", "aos_protocol.codec.MAX_BYTES", "bytes", "AOS602"),
     ),
 }  # fmt: skip

@@ -53,12 +53,20 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
     activation = {"activation_timeout_s": file.mission.activation_timeout_s}
     registry = {"watch": str(deployment.watch)} if deployment.watch else {}
     adapters = [_adapter(deployment, plan) for plan in deployment.adapters if plan.is_process]
+    middleware = project | activation | _played(deployment)
     return (
         Program(name="registry", module="aos_registry", settings=registry),
-        Program(name="middleware", module="aos_middleware", settings=project | activation),
+        Program(name="middleware", module="aos_middleware", settings=middleware),
         *adapters,
         Program(name="solver", module="aos_solver", settings=_solver_settings(deployment), stop_s=5.0),
     )
+
+
+def _played(deployment: Deployment) -> dict[str, Any]:
+    """Which skills are played by their documents, for the middleware."""
+    plans = [plan for plan in deployment.adapters if plan.kind_name == MODEL]
+    paths = [path for plan in plans for path in (*plan.bind, *(["*"] if plan.serves_others else []))]
+    return {"played": paths, "elsewhere": [path for plan in plans for path in plan.elsewhere]}
 
 
 def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:

@@ -19,7 +19,7 @@ from zenoh.handlers import Callback
 from aos_protocol.codec import decode, decode_fault, encode, encode_fault
 from aos_protocol.errors import AosError, BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
-from aos_runtime.bus_config import client_config
+from aos_runtime.bus_config import LEASE_S, client_config
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.subscription import Subscription, Undeclare
 
@@ -65,14 +65,23 @@ class Bus:
 
     @classmethod
     async def open(
-        cls, endpoint: str, *, sender: str, connect_timeout_s: float = 5.0, clock: Clock | None = None
+        cls,
+        endpoint: str,
+        *,
+        sender: str,
+        connect_timeout_s: float = 5.0,
+        clock: Clock | None = None,
+        lease_s: float = LEASE_S,
     ) -> Bus:
-        """Connects to the router, waiting for it to come up; BusError AOS605 if it does not in time."""
+        """Connects to the router, waiting for it to come up; BusError AOS605 if it does not in time.
+
+        A process that freezes has left the bus after `lease_s`.
+        """
         clock = clock or SystemClock()
         deadline_s = clock.monotonic_s() + connect_timeout_s
         while True:
             try:
-                session = await asyncio.to_thread(zenoh.open, client_config(endpoint))
+                session = await asyncio.to_thread(zenoh.open, client_config(endpoint, lease_s=lease_s))
             except zenoh.ZError as error:
                 if clock.monotonic_s() >= deadline_s:
                     raise BusError(

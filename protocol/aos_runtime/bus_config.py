@@ -14,32 +14,32 @@ import zenoh
 
 from aos_protocol.errors import BusError
 
-__all__ = ["LEASE_S", "client_config", "router_config"]
+__all__ = ["ADAPTER_LEASE_S", "LEASE_S", "client_config", "router_config"]
 
 LEASE_S = 2.0
 """A process that is silent for this long is taken for gone. One that ends is noticed at once."""
+
+ADAPTER_LEASE_S = 0.8
+"""The same for an adapter, whose skills are to be unavailable within a second. Losing one for a moment costs
+less than losing a service: its call is unknown, and the mission goes on."""
 
 _ENDPOINT = re.compile(r"(tcp|udp|tls|quic|ws|unixsock-stream)/\S+")
 
 _COMMON: dict[str, Any] = {
     # Without the delay a router waits half a second at start for peers that scouting would find.
     "scouting": {"delay": 0, "multicast": {"enabled": False}, "gossip": {"enabled": False}},
-    "transport": {
-        "link": {"tx": {"lease": int(LEASE_S * 1000)}},
-        # Shared memory would leave files behind when a process is killed.
-        "shared_memory": {"enabled": False},
-    },
     "adminspace": {"enabled": False},
 }
 
 
-def client_config(endpoint: str, *, stamps: bool = False) -> zenoh.Config:
+def client_config(endpoint: str, *, lease_s: float = LEASE_S, stamps: bool = False) -> zenoh.Config:
     """A client of the router at `endpoint`, such as `tcp/127.0.0.1:7447`. Opening it tries once.
 
-    Publishers that keep a history for late comers need `stamps`, a time on all that is sent.
+    The router takes the client for gone when it is silent for `lease_s`. Publishers that keep a history for
+    late comers need `stamps`, a time on all that is sent.
     """
     connect = {"endpoints": [_checked(endpoint)], "timeout_ms": 0}
-    return _config({"mode": "client", "connect": connect, "timestamping": {"enabled": stamps}})
+    return _config({"mode": "client", "connect": connect, "timestamping": {"enabled": stamps}}, lease_s)
 
 
 def router_config(endpoint: str) -> zenoh.Config:
@@ -47,8 +47,13 @@ def router_config(endpoint: str) -> zenoh.Config:
     return _config({"mode": "router", "listen": {"endpoints": [_checked(endpoint)]}})
 
 
-def _config(options: dict[str, Any]) -> zenoh.Config:
-    return zenoh.Config.from_json5(json.dumps(_COMMON | options))
+def _config(options: dict[str, Any], lease_s: float = LEASE_S) -> zenoh.Config:
+    transport = {
+        "link": {"tx": {"lease": int(lease_s * 1000)}},
+        # Shared memory would leave files behind when a process is killed.
+        "shared_memory": {"enabled": False},
+    }
+    return zenoh.Config.from_json5(json.dumps(_COMMON | {"transport": transport} | options))
 
 
 def _checked(endpoint: str) -> str:

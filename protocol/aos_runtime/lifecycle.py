@@ -24,6 +24,7 @@ from aos_protocol.errors import AosError, DeployError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
 from aos_runtime.bus import Bus
+from aos_runtime.bus_config import LEASE_S
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.parent import die_with_parent
 from aos_runtime.service_settings import ServiceSettings, fault_path
@@ -63,12 +64,15 @@ class Service(Generic[S]):
         _log.info("ready")
 
 
-def run_service(settings_type: type[S], serve: Callable[[Service[S]], Awaitable[None]]) -> NoReturn:
+def run_service(
+    settings_type: type[S], serve: Callable[[Service[S]], Awaitable[None]], *, lease_s: float = LEASE_S
+) -> NoReturn:
     """The whole of a service's `__main__`: runs `serve` until it returns, fails or is told to stop."""
 
     async def run(settings: S) -> None:
         clock = SystemClock()
-        async with await Bus.open(settings.endpoint, sender=settings.service, clock=clock) as bus:
+        bus = await Bus.open(settings.endpoint, sender=settings.service, clock=clock, lease_s=lease_s)
+        async with bus:
             await serve(Service(settings, bus, clock))
 
     run_process(settings_type, run)

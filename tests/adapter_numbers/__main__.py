@@ -4,6 +4,7 @@
   python -m tests.adapter_numbers latency --calls 300      solver to skill and back, on loopback
   python -m tests.adapter_numbers faults --runs 100        adapters that do everything wrong
   python -m tests.adapter_numbers load --seconds 10        200 skills, 50 topics at 100 Hz
+  python -m tests.adapter_numbers presence --runs 20       adapters that leave and come back
 
 Exit code 1: a target was missed.
 """
@@ -19,6 +20,7 @@ from .faults import measure_faults
 from .latency import measure_latency
 from .load import measure_load
 from .missions import play_missions
+from .presence import measure_presence
 
 
 def main() -> int:
@@ -41,6 +43,8 @@ def main() -> int:
     faults.add_argument("--fault", action="append", help="only this one; may be repeated")
     load = commands.add_parser("load", help="many skills and topics")
     load.add_argument("--seconds", type=float, default=10.0, metavar="S")
+    presence = commands.add_parser("presence", help="adapters that leave and come back")
+    presence.add_argument("--runs", type=int, default=20, metavar="N", help="of each way to leave")
     options = parser.parse_args()
     if options.command == "missions":
         return play_missions(
@@ -50,6 +54,8 @@ def main() -> int:
         return asyncio.run(measure_latency(options.calls))
     if options.command == "faults":
         return asyncio.run(measure_faults(options.runs, options.fault))
+    if options.command == "presence":
+        return asyncio.run(measure_presence(options.runs))
     return asyncio.run(measure_load(options.seconds))
 
 

@@ -15,6 +15,7 @@ from aos_registry.load import load_bundle
 
 BIN = Path(sys.executable).parent
 MISSION_S = 300.0
+UNDEFINED = ("", "fault", "not_started")
 
 
 def play_missions(corpus: Path, only: list[str] | None, seeds: int, simulations: int, steps: int) -> int:
@@ -31,11 +32,11 @@ def play_missions(corpus: Path, only: list[str] | None, seeds: int, simulations:
                 f"aos: 1\nrobot: played\nproject: {project.name}\nbundles: [{bundle.resolve()}]\n"
                 f"mission: {{step_limit: {steps}}}\nsolver: {{simulations: {simulations}}}\nruns: runs\n"
             )
-            played = [_played(deploy, seed) for seed in range(1, seeds + 1)]
+            played = [_played(deploy, seed, bundle.name) for seed in range(1, seeds + 1)]
         simulated = _simulated(bundle, seeds, simulations, steps)
         totals = [total for total, _ in played]
         endings = {ending for _, ending in played}
-        defined = sum(ending not in ("", "fault", "not_started") for _, ending in played)
+        defined = sum(ending not in UNDEFINED for _, ending in played)
         equal = sum(math.isclose(a, b, abs_tol=1e-6) for a, b in zip(totals, simulated, strict=True))
         z = _difference(totals, simulated)
         missed += defined < seeds or abs(z) > 2
@@ -47,7 +48,7 @@ def play_missions(corpus: Path, only: list[str] | None, seeds: int, simulations:
     return int(missed > 0)
 
 
-def _played(deploy: Path, seed: int) -> tuple[float, str]:
+def _played(deploy: Path, seed: int, name: str) -> tuple[float, str]:
     """A mission's return, by the truth that the adapter has written, and its ending."""
     command = [
         BIN / "aos-up",
@@ -64,7 +65,9 @@ def _played(deploy: Path, seed: int) -> tuple[float, str]:
     summary: dict[str, Any] = json.loads((latest / "summary.json").read_text())
     truth = latest / "model.jsonl"
     steps = truth.read_text().splitlines() if truth.exists() else []
-    sys.stderr.write(f"\r{deploy.parent.name} seed {seed}: {summary['ending']}      ")
+    sys.stderr.write(f"\r{name} seed {seed}: {summary['ending']}      ")
+    if summary["ending"] in UNDEFINED:
+        sys.stderr.write(f"\n{summary['remark']}\n")
     return sum(json.loads(step)["reward"] for step in steps), summary["ending"]
 
 

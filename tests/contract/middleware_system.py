@@ -33,7 +33,17 @@ from aos_runtime.bus import Bus
 from aos_runtime.children import PIPE, Child
 from aos_runtime.reported_state import state_when
 
-__all__ = ["SENSE", "Adapter", "Registry", "System", "answering", "hang", "running_system", "succeed"]
+__all__ = [
+    "PATIENCE_S",
+    "SENSE",
+    "Adapter",
+    "Registry",
+    "System",
+    "answering",
+    "hang",
+    "running_system",
+    "succeed",
+]
 
 PATIENCE_S = 20.0
 
@@ -203,7 +213,7 @@ class System:
 
 @asynccontextmanager
 async def running_system(
-    bus: Bus, other: Bus, keys: Keys, run_dir: Path, endpoint: str, bundle: Path
+    bus: Bus, other: Bus, keys: Keys, run_dir: Path, endpoint: str, bundle: Path, **settings: Any
 ) -> AsyncIterator[System]:
     """A middleware that has taken over the bundle's project and `SENSE`, and ends with the block."""
     project = project_in(bundle)
@@ -213,7 +223,7 @@ async def running_system(
     await other.answer(keys.project, ProjectQuery, registry.answer)
     system = System(bus, keys, run_dir, registry, Adapter(other, keys))
     try:
-        await system.start(endpoint)
+        await system.start(endpoint, **settings)
         await system.state(1)
         yield system
     finally:

@@ -16,7 +16,7 @@ import msgspec
 
 from aos_middleware.evaluator import Evaluator, MappingFault
 from aos_middleware.low_level import LowLevelValues, assigned_variables
-from aos_middleware.motion_gate import MotionGate
+from aos_middleware.motion_gate import GONE_S, MotionGate
 from aos_middleware.observed_numbers import observed_numbers
 from aos_middleware.served_paths import ServedPaths, no_adapter
 from aos_protocol.documents import AbstractionMapping, LocalSource
@@ -46,9 +46,6 @@ _REPLY_GRACE_S = 0.2
 _CANCEL_S = 0.25
 """How long an activation that is late waits for word that its skill has stopped; the next one waits on."""
 
-SURELY_NOT_STARTED_S = 0.2
-"""An adapter that is not there is known at once; one that is lost later may have moved something."""
-
 _BATCH = 256
 _QUEUE_SIZE = 4096
 
@@ -69,6 +66,7 @@ class Surroundings(NamedTuple):
 
     `published` is what had been sent on each topic when the last call ended; each activation updates it.
     `low_level` holds the values that responses have given. `on_stray` is told of replies that are not used.
+    `is_played` says whether the skill at a path is played by its document.
     """
 
     bus: Bus
@@ -79,6 +77,7 @@ class Surroundings(NamedTuple):
     served: ServedPaths
     gate: MotionGate
     on_stray: Callable[[Stray], None]
+    is_played: Callable[[str], bool]
 
 
 class _Observation(msgspec.Struct, frozen=True):
@@ -144,8 +143,7 @@ class _Activation:
 
     async def run(self) -> _Observation:
         """From the fields of the call to what is observed."""
-        constants = self._evaluator.emitted.constants
-        fields = await self._evaluator.begin(*self._low_level.arguments(self._request, constants))
+        fields = await self._fields()
         try:
             result = await self._listening_call(fields)
         except MappingFault:
@@ -165,6 +163,17 @@ class _Activation:
             assigned_variables(observed.assigned, self._request),
             observed_numbers(self._evaluator.emitted.observed, observed.local_variables),
         )
+
+    async def _fields(self) -> dict[str, Any]:
+        """The fields of the call from the parameters; none where that fails and the adapter needs none."""
+        constants = self._evaluator.emitted.constants
+        try:
+            return await self._evaluator.begin(*self._low_level.arguments(self._request, constants))
+        except MappingFault as error:
+            if not self._around.is_played(self._mapping.activation.path):
+                raise
+            _log.warning("%s is played without the fields of its call: %s", self._request.skill, error)
+            return {}
 
     async def _observed_failure(self, error: AosError) -> _Observation:
         """What the rules make of a skill that has failed; the skill's error where none of them holds."""
@@ -237,10 +246,10 @@ class _Activation:
         except LostAnswerError as error:
             raise _lost_adapter(path, self._clock.monotonic_s() - started_s) from error
         except NobodyAnswersError as error:
-            # An adapter that does not use our bus gives no receipt: then time alone tells.
+            # One that ends at once may have begun before its receipt went out.
             after_s = self._clock.monotonic_s() - started_s
-            is_surely_nobody = after_s < SURELY_NOT_STARTED_S
-            raise (no_adapter(path) if is_surely_nobody else _lost_adapter(path, after_s)) from error
+            was_there = await self._around.served.has_left(path, GONE_S)
+            raise (_lost_adapter(path, after_s) if was_there else no_adapter(path)) from error
         except SkillError as error:
             has_ended = _STATUS.get(error.code) != "unknown"
             raise

@@ -12,7 +12,7 @@ from aos_protocol.keys import Keys
 from aos_protocol.messages import ActivationId, Cancel, Cancelled
 from aos_runtime.bus import Bus
 
-__all__ = ["MotionGate"]
+__all__ = ["GONE_S", "MotionGate"]
 
 CONFIRM_S = 3.0
 """How long to wait for word that an earlier skill has stopped."""

@@ -77,6 +77,7 @@ class _Middleware:
             self._served,
             MotionGate(service.bus, service.keys, self._served),
             self._ledger.note,
+            settings.is_played,
         )
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}

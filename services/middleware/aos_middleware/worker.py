@@ -151,7 +151,7 @@ class LoadedMapping:
 
 @contextmanager
 def _watched(deadline_s: float) -> Iterator[None]:
-    """Ends the process if the block takes longer. A timer of the kernel costs no thread, and next to nothing."""
+    """Ends the process if the block takes longer. A timer of the kernel costs no thread."""
     signal.setitimer(signal.ITIMER_REAL, deadline_s)
     try:
         yield
