@@ -17,7 +17,7 @@ NAMES = Rewriting(
 
 def test_a_draw_over_a_local_vector_gives_one_of_its_values() -> None:
     code = "vector<int> values{1, 5}; n = AOS.SampleDiscrete(values, {0.5, 0.5});"
-    text, _ = rewrite(read_cpp(code), Rewriting(frozenset(), {}, containers=frozenset({"values"})), ())
+    text, _ = rewrite(read_cpp(code), Rewriting(frozenset(), {}, containers=frozenset({"values"})), {})
     assert text == "vector<int> values{1, 5}; n = values.at(AOS.SampleDiscrete(-1, {0.5, 0.5}));"
 
 
@@ -28,7 +28,7 @@ def rewritten(code: str) -> str:
 def piece_of(code: str) -> Piece:
     origins = tuple(Span("a.sd", number, 1) for number in range(10, 11 + code.count("\n")))
     snippet = Snippet(code, origins)
-    return Piece(1, snippet, *rewrite(read_cpp(code), NAMES, ()))
+    return Piece(1, snippet, *rewrite(read_cpp(code), NAMES, {}))
 
 
 @pytest.mark.parametrize(

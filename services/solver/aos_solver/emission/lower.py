@@ -10,7 +10,7 @@ import hashlib
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic
-from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill
+from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill, Snippet
 from aos_protocol.findings import Findings
 from aos_protocol.local_types import LocalType, local_type, reported_variables
 from aos_runtime.cpp_flow import STATES
@@ -18,6 +18,7 @@ from aos_runtime.document_code import absent_skills, snippets_of
 from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import read_cpp_expression
 from aos_solver.emission.cpp_library import headers_for
+from aos_solver.emission.lower_averages import averaged_draws
 from aos_solver.emission.lower_code import (
     BELIEF,
     DYNAMIC,
@@ -58,6 +59,15 @@ def lower(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     return None if findings.has_errors else program, findings.diagnostics
 
 
+def _draws_of_a_kind(project: Project) -> dict[Snippet, dict[int, str]]:
+    """The words that draws are told apart by: see `Draws` in random.hpp."""
+    kinds: dict[Snippet, dict[int, str]] = {}
+    for kind, draws in (("sensing", sensing_draws(project)), ("averaged", averaged_draws(project))):
+        for snippet, starts in draws.items():
+            kinds.setdefault(snippet, {}).update(dict.fromkeys(starts, kind))
+    return kinds
+
+
 class _Lowering:
     """One project on its way; the order of the calls is the order of the pieces' numbers."""
 
@@ -69,7 +79,7 @@ class _Lowering:
         self._types = Types(
             environment.enums, environment.compounds, member_names(project), capacities_of(project), findings
         )
-        self._pieces = Pieces(findings, sensing_draws(project))
+        self._pieces = Pieces(findings, _draws_of_a_kind(project))
         self._code = SectionLowering(
             self._types,
             self._pieces,

@@ -76,12 +76,12 @@ def skill_sections(model: SkillModel) -> Iterator[tuple[Phase, tuple[Assignment,
 class Pieces:
     """Makes pieces and numbers them; refuses code that could leave its function or cannot be replayed."""
 
-    def __init__(self, findings: Findings, sensing: Mapping[Snippet, frozenset[int]]) -> None:
-        """`sensing`: the draws that only shape what is observed."""
+    def __init__(self, findings: Findings, told_apart: Mapping[Snippet, Mapping[int, str]]) -> None:
+        """`told_apart`: draws of a kind, by where their calls start, each with the kind's word."""
         self.made: list[Piece] = []
         self.identifiers: set[str] = set()
         self._findings = findings
-        self._sensing = sensing
+        self._told_apart = told_apart
 
     def code(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
         """Statements."""
@@ -94,9 +94,7 @@ class Pieces:
     def _make(self, snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> Piece:
         self._check(snippet, cpp)
         is_safe = all(fault.kind is FaultKind.SYNTAX for fault in cpp.faults)
-        text, edits = (
-            rewrite(cpp, rewriting, self._sensing.get(snippet, frozenset())) if is_safe else ("", ())
-        )
+        text, edits = rewrite(cpp, rewriting, self._told_apart.get(snippet, {})) if is_safe else ("", ())
         piece = Piece(len(self.made) + 1, snippet, text, edits)
         self.made.append(piece)
         return piece

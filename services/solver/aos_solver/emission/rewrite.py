@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
@@ -35,15 +35,15 @@ class Rewriting(msgspec.Struct, frozen=True):
     containers: frozenset[str] = frozenset()
 
 
-def rewrite(cpp: Cpp, rewriting: Rewriting, sensing: Collection[int]) -> tuple[str, tuple[Edit, ...]]:
-    """The text to emit, and what was edited. `sensing` are the starts of draws that only shape observations.
+def rewrite(cpp: Cpp, rewriting: Rewriting, told_apart: Mapping[int, str]) -> tuple[str, tuple[Edit, ...]]:
+    """The text to emit, and what was edited. `told_apart`: the starts of draws of a kind, with its word.
 
     - a missing last `;` is put in
     - `AOSUtils::` becomes `AOSUtils.`
     - `state.<Type>Objects`, a view made on demand, gets its `()`
     - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
     - over a local vector `values` it becomes `values.at(AOS.SampleDiscrete(-1, {...}))`
-    - such a draw is told apart: `AOS.sensing().Bernoulli(p)`
+    - such a draw says so: `AOS.sensing().Bernoulli(p)`, `AOS.averaged().SampleNormal(mean, deviation)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
     - objects and containers: see `rewrite_objects` and `rewrite_containers`
@@ -58,9 +58,9 @@ def rewrite(cpp: Cpp, rewriting: Rewriting, sensing: Collection[int]) -> tuple[s
     for call in cpp.calls:
         if call not in reported:
             edits += _of_call(call, cpp.code, rewriting)
-            if call.function.start in sensing:
+            if kind := told_apart.get(call.function.start):
                 scope = _SCOPE.match(cpp.code, call.function.start)
-                edits += [(scope.end(), ".sensing()")] if scope is not None else []
+                edits += [(scope.end(), f".{kind}()")] if scope is not None else []
     # Last, since a bracket that goes to the same place has to come before it.
     edits += [(offset, ";") for offset in cpp.missing_semicolons]
     unique = list(dict.fromkeys(edits))

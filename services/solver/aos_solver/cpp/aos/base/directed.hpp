@@ -33,6 +33,10 @@ class DirectedDraws : public Draws<DirectedDraws> {
   // Whether there was such a draw until now.
   bool meets_sensing() const { return meets_sensing_; }
 
+  // For a draw that goes into the reward alone. Nobody directs draws to learn of luck.
+  AveragedDraws<DirectedDraws> averaged() { return AveragedDraws<DirectedDraws>{*this}; }
+  static bool gives_means() { return true; }
+
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ == nullptr) return ignore_number();
     sink_->take(key, distribution);

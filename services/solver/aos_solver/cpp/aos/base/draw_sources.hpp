@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "aos/base/directed.hpp"
 #include "aos/base/enumerator.hpp"
@@ -34,6 +35,7 @@ inline constexpr AnySource::Functions functions_of{
         },
     .uniform = [](void* source) { return static_cast<Source*>(source)->uniform(); },
     .skips_sensing = [](void* source) { return skips_sensing(*static_cast<Source*>(source)); },
+    .gives_means = std::is_same_v<Source, DirectedDraws>,
     .report =
         [](void* source, std::uint32_t key, const Distribution& distribution) {
           static_cast<Source*>(source)->report(key, distribution);

@@ -72,6 +72,8 @@ class Draws {
 
   // For a draw that shapes only what is observed; some sources skip these.
   Source& sensing() { return source(); }
+  // For a draw that goes into the reward alone, and linearly; some sources give its mean.
+  Source& averaged() { return source(); }
 
   void SetNull(bool& value) { value = false; }
   void Uninitialize(bool& value) { value = false; }
@@ -198,6 +200,24 @@ class SensingDraws : public Draws<SensingDraws<Source>> {
   Source& source_;
 };
 
+// The draws that go into the reward alone, and linearly, from a source that may give their means: the expectation of
+// the reward is the same.
+template <class Source>
+class AveragedDraws {
+ public:
+  explicit AveragedDraws(Source& source) : source_(source) {}
+
+  double SampleNormal(double mean, double deviation) {
+    return source_.gives_means() ? mean : source_.SampleNormal(mean, deviation);
+  }
+  double SampleUniform(double low, double high) {
+    return source_.gives_means() ? low + (high - low) / 2 : source_.SampleUniform(low, high);
+  }
+
+ private:
+  Source& source_;
+};
+
 class DirectedDraws;
 
 // A source that lives as long as this is used. What draws from it is compiled once, and not for each kind of source.
@@ -208,6 +228,7 @@ class AnySource : public Draws<AnySource> {
     int (*choose)(void* source, const double* weights, int count, double total);
     double (*uniform)(void* source);
     bool (*skips_sensing)(void* source);
+    bool gives_means;
     void (*report)(void* source, std::uint32_t key, const Distribution& distribution);
   };
 
@@ -221,6 +242,8 @@ class AnySource : public Draws<AnySource> {
   double uniform() { return functions_.uniform(source_); }
   bool skips_sensing() const { return functions_.skips_sensing(source_); }
   SensingDraws<AnySource> sensing() { return SensingDraws<AnySource>{*this}; }
+  bool gives_means() const { return functions_.gives_means; }
+  AveragedDraws<AnySource> averaged() { return AveragedDraws<AnySource>{*this}; }
   void report(std::uint32_t key, const Distribution& distribution) { functions_.report(source_, key, distribution); }
 
  private:

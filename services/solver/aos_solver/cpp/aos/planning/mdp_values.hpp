@@ -67,11 +67,11 @@ class MdpValues {
     return std::min(worth - layer(horizon)[number], 0.0);
   }
 
-  // Adds what each action is worth with many decisions to go.
-  void add_action_values(std::uint32_t number, std::vector<double>& sums) const {
+  // Adds what each action is worth with many decisions to go, times a weight.
+  void add_action_values(std::uint32_t number, std::vector<double>& sums, double weight = 1) const {
     if (number == no_state) return;
     const float* values = &action_values_[number * actions()];
-    for (std::size_t action = 0; action < actions(); ++action) sums[action] += values[action];
+    for (std::size_t action = 0; action < actions(); ++action) sums[action] += weight * values[action];
   }
 
  private:

@@ -56,7 +56,7 @@ class Planner {
       }
       default: {
         const std::uint64_t simulations = pomcp_.search(belief, budget, horizon, random, barred);
-        if (pomcp_.has_prior()) why_ += "; what states are worth is learned from simulations";
+        if (pomcp_.has_estimates()) why_ += "; what states are worth is learned from simulations";
         return simulations;
       }
     }

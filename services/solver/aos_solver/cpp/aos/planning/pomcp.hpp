@@ -102,8 +102,10 @@ class Pomcp {
     draw_towards(prior_, result, [&](const ActionEstimate& estimate) { return is_well_visited(estimate.n, most); });
     return result;
   }
-  // Whether the estimates are drawn towards an order of the actions that was learned before.
+  // Whether values are drawn towards an order of the actions that was known before the search.
   bool has_prior() const { return !prior_.empty(); }
+  // Whether what states are worth was learned from simulations.
+  bool has_estimates() const { return has_estimates_; }
 
   // How many simulations went through the root.
   std::uint64_t known_simulations() const {
@@ -148,7 +150,9 @@ class Pomcp {
     }
     prior_.clear();
     if (belief.probability_of(Ending::running) <= 0) return 0;
-    if (estimates != nullptr) prior_ = prior_of(belief, horizon, random);
+    has_estimates_ = estimates != nullptr;
+    if (has_estimates_) prior_ = estimated_prior(belief, horizon, random);
+    if (has_values && space_.leaves_out_observations()) prior_ = listed_prior(belief);
     for (const auto& tree : trees_) tree->begin(horizon, prior_, barred);
     if (has_values && steps_.prepare(space_, belief)) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
@@ -239,7 +243,7 @@ class Pomcp {
 
   // How much less each action is worth than the best one, on average over some states of the belief, each with the same
   // luck for all actions.
-  std::vector<double> prior_of(const Belief<Model>& belief, int horizon, Sampler& random) const {
+  std::vector<double> estimated_prior(const Belief<Model>& belief, int horizon, Sampler& random) const {
     std::vector<double> prior(static_cast<std::size_t>(Model::action_count()));
     const auto states = std::clamp<std::size_t>(max_prior_steps / prior.size(), 20, 500);
     for (std::size_t i = 0; i < states; ++i) {
@@ -250,9 +254,17 @@ class Pomcp {
         prior[static_cast<std::size_t>(a)] += estimates_.action_value(state, a, horizon, luck) / static_cast<double>(states);
       }
     }
-    const double best = *std::max_element(prior.begin(), prior.end());
-    for (double& worth : prior) worth = best - worth;
-    return prior;
+    return below_best(std::move(prior));
+  }
+  std::vector<double> listed_prior(const Belief<Model>& belief) const {
+    std::vector<double> prior(static_cast<std::size_t>(Model::action_count()));
+    for (const auto& [number, weight] : space_.weights_of(belief)) values_.add_action_values(number, prior, weight);
+    return below_best(std::move(prior));
+  }
+  static std::vector<double> below_best(std::vector<double> worths) {
+    const double best = *std::max_element(worths.begin(), worths.end());
+    for (double& worth : worths) worth = best - worth;
+    return worths;
   }
 
   std::vector<std::unique_ptr<Tree>> trees_;
@@ -261,6 +273,7 @@ class Pomcp {
   StepTable<Model> steps_;
   LearnedValues<Model> estimates_;
   std::vector<double> prior_;  // of the last search
+  bool has_estimates_ = false;
   double mdp_value_ = 0;
 };
 

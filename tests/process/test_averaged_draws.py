@@ -1,0 +1,69 @@
+"""Noisy rewards: planners and beliefs count them by their mean, worlds draw them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+MAPPING = """project: ward
+response: done
+response_rule: True
+module_activation: skill
+path: /{skill}
+"""
+
+EXIT = {
+    "ward.ef": """project: ward
+horizon: 30
+discount: 0.999999
+
+state_variable: bool has_left
+
+reward_code:
+if (state.has_left) __isGoalState = true;
+""",
+    "leave.sd": """project: ward
+dynamic_model:
+state__.has_left = true;
+double pay = AOS.SampleNormal(20, 5);
+__reward = pay - 1;
+__moduleResponse = done;
+""",
+    "wait.sd": """project: ward
+dynamic_model:
+__reward = -AOS.SampleUniform(-1, 1);
+__moduleResponse = done;
+""",
+    **{f"{skill}.am": MAPPING.format(skill=skill) for skill in ("leave", "wait")},
+}
+
+
+LEAVE = 0
+
+
+async def test_an_exit_of_noisy_worth_is_worth_its_mean_and_is_not_put_off(cache_dir: Path) -> None:
+    built = await built_text(EXIT, cache_dir)
+    async with engine_of(built) as engine:
+        plan = await engine.plan(simulations=2000, seed=1, planner="auto")
+        assert plan.planner == "exact"
+        leave, wait = plan.actions
+        assert leave.q == pytest.approx(19, abs=1e-9)
+        assert wait.q == pytest.approx(19 * 0.999999, abs=1e-6)
+        assert plan.best is leave
+        await engine.update("wait", "done")
+        assert (await engine.summary()).is_exact
+
+
+async def test_the_world_still_draws_the_reward(cache_dir: Path) -> None:
+    built = await built_text(EXIT, cache_dir)
+    async with engine_of(built) as engine:
+        rewards = []
+        for seed in range(200):
+            await engine.reset_world(seed)
+            rewards.append((await engine.step_world(LEAVE)).reward)
+    mean = sum(rewards) / len(rewards)
+    deviation = (sum((reward - mean) ** 2 for reward in rewards) / len(rewards)) ** 0.5
+    assert mean == pytest.approx(19, abs=4 * 5 / 200**0.5)
+    assert deviation == pytest.approx(5, rel=0.2)
