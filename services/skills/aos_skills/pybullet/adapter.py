@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import time
 from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
@@ -75,6 +76,7 @@ class PybulletAdapter:
         self._world.scene.watchers += [self._look_for_an_end, self._world.camera.watch, self._publish_in_time]
 
     def _run(self, call: Call) -> dict[str, Any]:
+        begun_s = time.thread_time()
         try:
             self._world.begin()
             answer: dict[str, Any] = self._skills[call.target](self._world, call.fields)
@@ -86,7 +88,7 @@ class PybulletAdapter:
             ) from error
         finally:
             self._world.stop()
-            self._record(call)
+            self._record(call, time.thread_time() - begun_s)
         self._publish_sensors()
         self._world.camera.save_picture(self._run_dir / "pictures" / f"step-{call.id.step:03d}.png")
         return answer
@@ -105,12 +107,13 @@ class PybulletAdapter:
         for topic, fields in self._world.sensors().items():
             self._host.publish(topic, fields)
 
-    def _record(self, call: Call) -> None:
-        """The truth about the world, for reports; the robot is not told."""
+    def _record(self, call: Call, processor_s: float) -> None:
+        """The truth about the world, and what its simulation took, for reports; the robot is not told."""
         truth = {
             "step": call.id.step,
             "path": call.target,
             "time_s": round(self._world.scene.time_s, 3),
+            "processor_s": round(processor_s, 3),
             **self._world.truth(),
             "drawn_faults": list(self._world.faults.drawn),
         }

@@ -49,11 +49,10 @@ def can_in_reach(world: Armadillo) -> str | None:
     x, y, yaw = world.robot.base.place
     foot = (x + SHOULDER_AHEAD_M * math.cos(yaw), y + SHOULDER_AHEAD_M * math.sin(yaw))
     for name in world.room.cans:
-        can_x, can_y, can_z = world.room.can_place(name)
+        can_x, can_y, _ = world.room.can_place(name)
         can = world.file.tables[name].can
         smallest, largest = GRASPABLE_RADII_M
-        is_seen = can_z > TABLE_TOP_M - 0.01 and world.room.is_standing(name)
-        is_seen = is_seen and smallest < can.radius * can.perceived_scale < largest
+        is_seen = world.room.is_to_pick(name) and smallest < can.radius * can.perceived_scale < largest
         if is_seen and math.dist(foot, (can_x, can_y)) < REACH_M:
             return name
     return None

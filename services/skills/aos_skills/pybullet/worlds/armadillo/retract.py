@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from aos_skills.pybullet.parts.arm import TUCKED
-from aos_skills.pybullet.worlds.armadillo.world import Armadillo
+from aos_skills.pybullet.worlds.armadillo.world import FOLDED_ELBOW_RAD, Armadillo
 
 __all__ = ["retract"]
-
-FOLDED_ELBOW_RAD = -2.3
-"""The elbow's angle is below this when the arm is tucked."""
 
 
 def retract(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:

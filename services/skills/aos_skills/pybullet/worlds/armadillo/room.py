@@ -45,6 +45,10 @@ class Room:
         """Whether a can stands upright, wherever that is."""
         return self._scene.uprightness(self.cans[name]) > UPRIGHT
 
+    def is_to_pick(self, name: str) -> bool:
+        """Whether a can stands on a table; a fallen one is not recognised."""
+        return self.can_place(name)[2] > TABLE_TOP_M - 0.01 and self.is_standing(name)
+
     def is_on_tray(self, name: str) -> bool:
         """Whether the person has that can."""
         x, y, z = self.can_place(name)

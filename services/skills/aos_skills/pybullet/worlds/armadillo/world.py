@@ -12,9 +12,11 @@ from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile
 from aos_skills.pybullet.worlds.armadillo.room import Room
 
-__all__ = ["Armadillo"]
+__all__ = ["FOLDED_ELBOW_RAD", "Armadillo"]
 
 EYE_M = (4.6, -5.6, 4.0)
+FOLDED_ELBOW_RAD = -2.3
+"""The elbow's angle is below this when the arm is tucked."""
 LOOKS_AT_M = (1.7, 0.0, 0.3)
 CLOSE_EYE_M = (1.1, -0.9, 0.7)
 """Of the close-up, from the hand."""
@@ -62,7 +64,30 @@ class Armadillo(World):
             "is_holding": self.is_holding,
             "is_delivered": any(room.is_on_tray(name) for name in room.cans),
             "has_injured": self.has_injured,
+            "state": self._state(),
         }
+
+    def _state(self) -> dict[str, Any]:
+        """The same in the words of the shipped documents, which do not say where a can is that is served."""
+        room = self.room
+        places = {name: self._place_of(name) for name in room.cans}
+        state: dict[str, Any] = {f"{name}_can_at": place for name, place in places.items() if place}
+        is_served = any(room.is_on_tray(name) for name in room.cans)
+        if not is_served:
+            state["holding_can"] = self.is_holding
+        return state | {
+            "arm_outstretched": self.robot.arm.angles[3] > FOLDED_ELBOW_RAD,
+            "drink_served": is_served,
+            "person_injured": self.has_injured,
+        }
+
+    def _place_of(self, name: str) -> str:
+        """Of a can; nothing where it was served."""
+        if self.room.is_on_tray(name):
+            return ""
+        if self.robot.gripper.holds(self.room.cans[name]):
+            return "RobotHand"
+        return f"{name.capitalize()}Table" if self.room.is_to_pick(name) else "Unknown"
 
     def _watch_person(self) -> None:
         """Remembers any touch of the person."""
