@@ -32,6 +32,7 @@ _COMMANDS = {
     "solve": ("solve",),
     "test": ("test",),
     "experiment": ("experiment",),
+    "calibrate": ("calibrate",),
     "bench": ("bench",),
     "gym": ("gym",),
     "machine": ("doctor", "version"),

@@ -1,0 +1,1 @@
+"""Probabilities of documents, estimated from recorded missions."""

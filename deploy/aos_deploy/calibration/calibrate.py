@@ -1,0 +1,78 @@
+"""From documents and recorded missions to estimates, and the patch that they suggest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.calibration.draws import Skipped, draws_of
+from aos_deploy.calibration.estimation import DrawEstimate, estimate
+from aos_deploy.calibration.lattice import Lattice, Layers, lattice_of
+from aos_deploy.calibration.patch import patch_of
+from aos_deploy.calibration.records import RecordedMission
+from aos_deploy.mission_run import files_of_bundle
+from aos_deploy.printing import from_here
+from aos_deploy.program import cache_dir
+from aos_protocol.errors import DocumentError
+from aos_registry.load import load_files
+from aos_solver.child.engine import Engine
+from aos_solver.hot_plug import build_project
+
+__all__ = ["Calibration", "calibrate"]
+
+
+class Calibration(msgspec.Struct, frozen=True):
+    """What came of it. `remarks` say which steps were not used, and `by_hand` what the patch leaves out."""
+
+    missions: int
+    steps: int
+    remarks: tuple[str, ...]
+    estimates: tuple[DrawEstimate, ...]
+    skipped: tuple[Skipped, ...]
+    patch: str
+    by_hand: tuple[str, ...]
+
+
+async def calibrate(
+    missions: Sequence[RecordedMission],
+    bundles: Sequence[Path],
+    *,
+    on_mission: Callable[[], None] = lambda: None,
+    on_sweep: Callable[[int, int], None] = lambda done, of: None,
+) -> Calibration:
+    """Estimates the numbers of all draws in the bundles' documents; DocumentError if they have errors."""
+    files: dict[str, bytes] = {}
+    paths: dict[str, str] = {}
+    for bundle in bundles:
+        found = files_of_bundle(bundle, ())
+        files |= found
+        paths |= {name: from_here(bundle.absolute() / name).as_posix().lstrip("/") for name in found}
+    loaded = load_files(files, name=", ".join(map(str, bundles)))
+    if loaded.project is None:
+        raise DocumentError(
+            "the documents have errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
+        )
+    draws = draws_of(loaded.project)
+    built = await build_project(draws.keeping, cache_dir(), lambda remark: None)
+    engine = await Engine.start(built, seed=1, keeps_belief=False)
+    try:
+        layers = Layers(engine, [draw.variable for draw in draws.draws])
+        lattices: list[Lattice] = []
+        for mission in missions:
+            lattices.append(await lattice_of(mission, layers))
+            on_mission()
+    finally:
+        await engine.close()
+    estimates = estimate(draws.draws, lattices, on_sweep)
+    patch, by_hand = patch_of((each for each in estimates if not each.is_inside), files, paths)
+    return Calibration(
+        missions=len(missions),
+        steps=sum(lattice.steps for lattice in lattices),
+        remarks=tuple(lattice.remark for lattice in lattices if lattice.remark),
+        estimates=estimates,
+        skipped=draws.skipped,
+        patch=patch,
+        by_hand=by_hand,
+    )

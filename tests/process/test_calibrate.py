@@ -1,0 +1,173 @@
+"""Calibration: what recorded missions of known models say about their documents' numbers."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from aos_deploy.calibration.calibrate import Calibration, calibrate
+from aos_deploy.calibration.draws import draws_of
+from aos_deploy.calibration.records import RecordedMission, read_missions
+from aos_deploy.trials.campaign import play_campaign
+from aos_deploy.trials.setting import Setting
+from aos_registry.load import load_files
+
+AOS = Path(sys.executable).parent / "aos"
+DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
+FINER, RETRACT = DEPLOY / "bundles" / "armadillo-finer", DEPLOY / "bundles" / "armadillo-retract"
+
+ENVIRONMENT = b"""project: lamp
+horizon: 3
+discount: 0.9
+
+state_variable: bool is_on
+code:
+state.is_on = false;
+
+initial_belief:
+state.is_on = AOS.Bernoulli(0.5);
+"""
+PRESS = b"""project: lamp
+
+dynamic_model:
+const double works = 0.8;
+enum Colour { Red, Green };
+if (AOS.Bernoulli(works)) state__.is_on = !state.is_on;
+double wear = 0.1;
+bool flickers = AOS.Bernoulli(1 - wear);
+for (int turn = 0; turn < 2; ++turn) flickers = flickers && AOS.Bernoulli(0.9);
+Colour colour = AOS.SampleDiscrete(Colour, {0.25, /* , */ 0.75});
+__moduleResponse = state__.is_on ? on : off;
+__reward = flickers + (colour == Green);
+"""
+MAPPING = b"""project: lamp
+
+response: on
+response_rule: True
+response: off
+response_rule: True
+
+module_activation: skill
+path: /press
+"""
+
+
+def recorded(folder: Path, deploy_file: str, first_seed: int, missions: int) -> tuple[RecordedMission, ...]:
+    """Missions of the documents' own model, from the file that an experiment keeps."""
+    setting = Setting(deploy=deploy_file, simulations=2000)
+    seeds = range(first_seed, first_seed + missions)
+    asyncio.run(play_campaign(setting, seeds, folder=DEPLOY, out=folder, jobs=1, on_trial=lambda: None))
+    return read_missions(folder)
+
+
+def covered(result: Calibration) -> list[bool]:
+    """Of each probability that was drawn: whether the interval holds the number that it was drawn with."""
+    return [
+        outcome.is_inside
+        for estimate in result.estimates
+        if estimate.count
+        for outcome in (estimate.outcomes[1:] if estimate.draw.kind == "Bernoulli" else estimate.outcomes)
+    ]
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+
+
+def test_intervals_cover_the_numbers_that_missions_were_drawn_with(tmp_path: Path) -> None:
+    held: list[bool] = []
+    for first_seed in (1, 1001):
+        missions = recorded(tmp_path / str(first_seed), "armadillo.yaml", first_seed, 40)
+        result = asyncio.run(calibrate(missions, [FINER, RETRACT]))
+        assert not result.remarks
+        assert all(estimate.is_counted for estimate in result.estimates)
+        held += covered(result)
+    # Of intervals that hold 95 % of the time, some of 16 may well miss.
+    assert len(held) == 16
+    assert held.count(False) <= 2
+
+
+def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path: Path) -> None:
+    bundles = [DEPLOY / "bundles" / "armadillo-rough-blind", RETRACT]
+    seen = recorded(tmp_path, "armadillo-rough-blind.yaml", 1, 15)
+    unseen = tuple(
+        msgspec.structs.replace(
+            mission, steps=tuple(msgspec.structs.replace(step, truth=()) for step in mission.steps)
+        )
+        for mission in seen
+    )
+    results = [asyncio.run(calibrate(missions, bundles)) for missions in (seen, unseen)]
+    picks = [next(e for e in each.estimates if e.draw.skill == "pick") for each in results]
+    widths = [pick.outcomes[0].probability.high - pick.outcomes[0].probability.low for pick in picks]
+    assert picks[0].is_counted
+    assert not picks[1].is_counted
+    assert widths[1] > widths[0]
+    assert all(covered(results[0]))
+    assert all(covered(results[1]))
+
+
+def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path, cache_dir: Path) -> None:
+    recorded(tmp_path / "missions", "armadillo.yaml", 1, 40)
+    shutil.copytree(FINER, tmp_path / "bundle")
+    pick = tmp_path / "bundle" / "pick.sd"
+    wrong = pick.read_text().replace("{0.727, 0.181, 0.09, 0.0}", "{0.2, 0.181, 0.619, 0.0}")
+    pick.write_text(wrong)
+
+    def run(*options: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [AOS, "calibrate", "missions", "bundle", "--also", RETRACT, *options],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=100,
+            env={**os.environ, "AOS_CACHE_DIR": str(cache_dir), "COLUMNS": "120"},
+        )
+
+    told = run("--write", "changes.patch")
+    assert told.returncode == 0, told.stderr
+    assert "pick.sd:13" in told.stdout
+    assert "OUTSIDE" in told.stdout
+    assert "no record" in told.stdout  # of the hard table, where the robot never picks
+    assert pick.read_text() == wrong
+    patched = subprocess.run(
+        ["patch", "-p1", "-i", "changes.patch"], cwd=tmp_path, capture_output=True, check=False
+    )
+    assert patched.returncode == 0, patched.stdout
+    result = json.loads(run("--json").stdout)
+    assert result["patch"] == ""
+
+
+def test_a_folder_without_missions_is_refused(tmp_path: Path) -> None:
+    run = subprocess.run(
+        [AOS, "calibrate", tmp_path, FINER], capture_output=True, text=True, timeout=50, check=False
+    )
+    assert run.returncode == 1
+    assert "AOS801" in run.stderr
+    assert "holds no recorded missions" in run.stderr
+
+
+def test_the_draws_of_documents_are_found_with_their_numbers() -> None:
+    files = {"lamp.ef": ENVIRONMENT, "press.sd": PRESS, "press.am": MAPPING}
+    project = load_files(files, name="lamp").project
+    assert project is not None
+    draws = draws_of(project)
+    assert [(draw.kind, draw.texts, draw.outcomes) for draw in draws.draws] == [
+        ("Bernoulli", ("0.8",), ("false", "true")),
+        ("SampleDiscrete", ("0.25", "0.75"), ("Red", "Green")),
+        ("Bernoulli", ("0.5",), ("false", "true")),
+    ]
+    # A constant stands where it is declared.
+    assert str(draws.draws[0].places[0]).startswith("press.sd:4:")
+    assert [(skipped.span.line, skipped.why) for skipped in draws.skipped] == [
+        (8, "its probability is computed, and no number of the document"),
+        (9, "it is drawn in a loop"),
+    ]
