@@ -92,13 +92,13 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         Row("particles of a sampled belief", "belief/history.hpp:particle_count", "", "drawn anew"),
         Row(
             "memory of the search trees",
-            "planning/pomcp.hpp:max_search_bytes", "bytes", "trees grow no more",
+            "planning/search_threads.hpp:max_search_bytes", "bytes", "trees grow no more",
         ),
         Row("threads of a search", "planning/budget.hpp:max_search_threads", "", "refused", "`threads`"),
         Row("states of `aos solve`", "aos_solver.offline.enumeration.MAX_STATES", "", "AOS220", "`--states`"),
         Row(
             "states of a problem file",
-            "aos_solver.formats.factored_model.MAX_STATES", "", "AOS220", "`--states`",
+            "aos_deploy.formats.factored_model.MAX_STATES", "", "AOS220", "`--states`",
         ),
         Row(
             "memory of `aos solve`",

@@ -15,7 +15,7 @@ from aos_protocol.codec import open_envelope
 from aos_protocol.errors import CODES, BusError, DeployError, PlanningError
 from aos_protocol.messages import Envelope
 from aos_registry.load import load_files
-from aos_solver.formats.explicit_model import ExplicitModel, Ragged
+from aos_solver.offline.explicit_model import ExplicitModel, Ragged
 from aos_solver.offline.solving import SolvingLimits, solve
 
 MORE_RULES = [

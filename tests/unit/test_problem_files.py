@@ -9,11 +9,11 @@ import msgspec
 import numpy as np
 import pytest
 
+from aos_deploy.formats.problem_files import read_problem
+from aos_deploy.formats.problem_writers import write_problem
+from aos_deploy.formats.sensing_by_state import with_sensing_by_state
 from aos_protocol.errors import DocumentError, ModelError, PlanningError
-from aos_solver.formats.explicit_model import ExplicitModel, Floats, Ragged
-from aos_solver.formats.problem_files import read_problem
-from aos_solver.formats.problem_writers import write_problem
-from aos_solver.formats.sensing_by_state import with_sensing_by_state
+from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from aos_protocol.errors import PlanningError
-from aos_solver.formats.explicit_model import Floats, Integers
+from aos_solver.offline.explicit_model import Floats, Integers
 
 __all__ = ["AlphaVectors", "Choice", "RegionVectors", "read_alpha_vectors"]
 

@@ -12,7 +12,7 @@ import numpy as np
 from aos_protocol.errors import IntractableError
 from aos_solver.child.answers import Listed
 from aos_solver.child.engine import Engine
-from aos_solver.formats.explicit_model import ExplicitModel, FlatModel, Integers, Ragged, read_flat
+from aos_solver.offline.explicit_model import ExplicitModel, FlatModel, Integers, Ragged, read_flat
 
 __all__ = ["ENDED", "MAX_STATES", "Enumeration", "enumerate_model"]
 

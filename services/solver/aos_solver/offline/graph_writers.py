@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from aos_protocol.errors import PlanningError
-from aos_solver.formats.symbols import symbols
 from aos_solver.offline.policy_graph import OVER, PolicyGraph
+from aos_solver.offline.symbols import symbols
 
 __all__ = ["c_header", "graphviz", "write_text"]
 

@@ -19,8 +19,8 @@ from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue
 from aos_solver.child.answers import ExportedBelief, Plan
 from aos_solver.child.engine import Engine
-from aos_solver.formats.explicit_model import Floats
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionVectors
+from aos_solver.offline.explicit_model import Floats
 from aos_solver.search import Search
 
 __all__ = ["FORMAT", "Policy", "PolicyHeader", "PolicySearch"]

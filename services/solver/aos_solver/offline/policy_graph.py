@@ -14,8 +14,8 @@ from collections.abc import Iterator
 import msgspec
 import numpy as np
 
-from aos_solver.formats.explicit_model import ExplicitModel, Floats, Integers
 from aos_solver.offline.alpha_vectors import AlphaVectors
+from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers
 
 __all__ = ["OVER", "GraphNode", "PolicyGraph", "policy_graph"]
 

@@ -12,8 +12,8 @@ import msgspec
 
 from aos_protocol.errors import ModelError, PlanningError
 from aos_runtime.children import PIPE, Child, Limits, guarded
-from aos_solver.formats.explicit_model import ExplicitModel
 from aos_solver.offline.alpha_vectors import AlphaVectors, read_alpha_vectors
+from aos_solver.offline.explicit_model import ExplicitModel
 from aos_solver.offline.solver_program import build_solver
 
 __all__ = ["Bounds", "Solution", "SolvingLimits", "solve"]

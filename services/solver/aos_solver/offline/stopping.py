@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_solver.formats.explicit_model import ExplicitModel, Ragged
+from aos_solver.offline.explicit_model import ExplicitModel, Ragged
 
 __all__ = ["STOP", "with_stopping"]
 

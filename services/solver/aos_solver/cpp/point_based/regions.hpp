@@ -14,8 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/mixed.hpp"
+#include "aos/base/number_index.hpp"
 #include "point_based/flat_model.hpp"
-#include "point_based/number_table.hpp"
 
 namespace aos::point_based {
 
@@ -99,6 +100,11 @@ class Regions {
     return worthless;
   }
 
+  // The number of a key, or `number`, which it has from now on. No two keys have the same hash.
+  static std::uint32_t number_of(NumberIndex& index, std::uint64_t key, std::uint32_t number) {
+    return index.find_or_add(mixed(0, key), number, [](std::uint32_t) { return true; });
+  }
+
   // In the order of the decisions that it takes to get there.
   void find_reached() {
     is_reached_.assign(model_.states, false);
@@ -144,22 +150,22 @@ class Regions {
   // where the robot sees everything there would be as many entries as outcomes.
   bool unite_successors() {
     bool has_united = false;
-    NumberTable of_regions;  // where an observation after an action leads
-    NumberTable of_one;
+    NumberIndex of_regions;  // where an observation after an action leads
+    NumberIndex of_one;
     for (const std::uint32_t state : reached_) {
       for (std::size_t action = 0; action < model_.actions; ++action) {
         const std::size_t row = model_.row(state, action);
         const bool is_alone = !is_united_[state];
         if (is_alone && model_.outcomes.end(row) - model_.outcomes.begin(row) < 2) continue;
         if (is_alone) of_one.clear();
-        NumberTable& successor = is_alone ? of_one : of_regions;
+        NumberIndex& successor = is_alone ? of_one : of_regions;
         const std::uint64_t first_key = std::uint64_t{root_of(state)} << 32 | (action * model_.observations);
         for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
           if (is_worthless_[outcome->next]) continue;
           const auto* last = model_.likelihoods.end(outcome->sensing);
           for (const auto* likelihood = model_.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
-            const auto [next, is_new] = successor.try_emplace(first_key + likelihood->observation, outcome->next);
-            if (!is_new && unite(next, outcome->next)) has_united = true;
+            const std::uint32_t next = number_of(successor, first_key + likelihood->observation, outcome->next);
+            if (next != outcome->next && unite(next, outcome->next)) has_united = true;
           }
         }
       }
@@ -186,7 +192,7 @@ class Regions {
     for (std::size_t action = 0; action < model_.actions; ++action) {
       Move move;
       targets_.clear();
-      sights_.clear();
+      branches_.clear();
       move.flows.first.push_back(0);
       for (const std::uint32_t state : region.states) {
         const std::size_t row = model_.row(state, action);
@@ -194,9 +200,10 @@ class Regions {
         for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
           if (is_worthless_[outcome->next]) continue;
           const std::uint64_t key = std::uint64_t{outcome->next} << 32 | outcome->sensing;
-          const auto [target, is_new] = targets_.try_emplace(key, targets_.size());
+          const std::uint32_t known = targets_.size();
+          const std::uint32_t target = number_of(targets_, key, known);
           move.flows.elements.push_back({target, outcome->probability});
-          if (is_new) add_target(move, *outcome, target);
+          if (target == known) add_target(move, *outcome, target);
         }
         move.flows.first.push_back(move.flows.elements.size());
       }
@@ -208,9 +215,10 @@ class Regions {
   void add_target(Move& move, const Outcome& outcome, std::uint32_t target) {
     const auto* last = model_.likelihoods.end(outcome.sensing);
     for (const auto* likelihood = model_.likelihoods.begin(outcome.sensing); likelihood != last; ++likelihood) {
-      const auto [observation_branch, is_new] = sights_.try_emplace(likelihood->observation, sights_.size());
-      if (is_new) move.observation_branches.push_back({likelihood->observation, region_of[outcome.next], true, {}});
-      auto& [observation, region, is_ascending, successors] = move.observation_branches[observation_branch];
+      const auto known = static_cast<std::uint32_t>(move.observation_branches.size());
+      const std::uint32_t number = number_of(branches_, likelihood->observation, known);
+      if (number == known) move.observation_branches.push_back({likelihood->observation, region_of[outcome.next], true, {}});
+      auto& [observation, region, is_ascending, successors] = move.observation_branches[number];
       const std::uint32_t local = local_of[outcome.next];
       if (!successors.empty() && successors.back().local >= local) is_ascending = false;
       successors.push_back({target, local, likelihood->probability});
@@ -223,8 +231,8 @@ class Regions {
   std::vector<bool> is_worthless_;
   std::vector<bool> is_reached_;
   std::vector<std::uint32_t> reached_;
-  NumberTable targets_;  // of an action in a region, with
-  NumberTable sights_;
+  NumberIndex targets_;  // of an action in a region, with its
+  NumberIndex branches_;
 };
 
 }  // namespace aos::point_based

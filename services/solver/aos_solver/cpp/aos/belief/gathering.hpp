@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "aos/base/number_index.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -72,21 +73,18 @@ class Gathering {
 
   // Returns the number of the state's particle.
   std::size_t add(const State& state, double weight) {
-    if (2 * particles_.size() >= places_.size()) grow();
-    const std::uint64_t hash = Model::hash(state);
-    std::size_t place = hash & (places_.size() - 1);
-    for (; places_[place].number != none; place = (place + 1) & (places_.size() - 1)) {
-      if (places_[place].hash != hash || !(particles_[places_[place].number].state == state)) continue;
-      particles_[places_[place].number].weight += weight;
-      return places_[place].number;
+    const auto is_it = [&](std::uint32_t number) { return particles_[number].state == state; };
+    const std::size_t number = numbers_.find_or_add(Model::hash(state), static_cast<std::uint32_t>(particles_.size()), is_it);
+    if (number == particles_.size()) {
+      particles_.push_back({state, weight});
+    } else {
+      particles_[number].weight += weight;
     }
-    places_[place] = {hash, static_cast<std::uint32_t>(particles_.size())};
-    particles_.push_back({state, weight});
-    return particles_.size() - 1;
+    return number;
   }
 
   void clear() {
-    places_.clear();
+    numbers_ = {};
     particles_.clear();
   }
 
@@ -114,25 +112,7 @@ class Gathering {
   }
 
  private:
-  static constexpr std::uint32_t none = 0xffffffffu;
-  struct Place {
-    std::uint64_t hash = 0;
-    std::uint32_t number = none;
-  };
-
-  // Open addressing, at most half full.
-  void grow() {
-    std::vector<Place> old(std::max<std::size_t>(2 * places_.size(), 64));
-    old.swap(places_);
-    for (const Place& entry : old) {
-      if (entry.number == none) continue;
-      std::size_t place = entry.hash & (places_.size() - 1);
-      while (places_[place].number != none) place = (place + 1) & (places_.size() - 1);
-      places_[place] = entry;
-    }
-  }
-
-  std::vector<Place> places_;
+  NumberIndex numbers_;
   std::vector<Particle<Model>> particles_;
 };
 

@@ -17,6 +17,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "aos/base/mixed.hpp"
 #include "aos/model/text.hpp"
 
 namespace aos {
@@ -182,11 +183,6 @@ template <class Stream, class Enum>
   requires std::is_enum_v<Enum> && requires { typename Stream::char_type; }
 Stream& operator<<(Stream& out, Enum value) {
   return static_cast<Stream&>(out << static_cast<int>(value));
-}
-
-inline std::uint64_t mixed(std::uint64_t hash, std::uint64_t more) {
-  hash = (hash ^ more) * 0x9e3779b97f4a7c15u;
-  return hash ^ (hash >> 32);
 }
 
 // Of so many bytes; out of line, since a state may have many arrays.

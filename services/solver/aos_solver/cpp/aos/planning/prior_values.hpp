@@ -9,14 +9,56 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/learned_values.hpp"
+#include "aos/planning/mdp_values.hpp"
+#include "aos/planning/state_space.hpp"
 
 namespace aos {
 
-// `prior` is how much less each action is worth than the best one, in the unit of the estimates. `counts(estimate)` tells
-// whose value was searched for long enough; the others are given the prior's.
+inline constexpr std::size_t max_prior_steps = 20'000;
+
+// A prior is how much less each action is worth than the best one.
+inline std::vector<double> below_best(std::vector<double> worths) {
+  const double best = *std::max_element(worths.begin(), worths.end());
+  for (double& worth : worths) worth = best - worth;
+  return worths;
+}
+
+// By the fully observable values of the next states, on average over some states of the belief and with the same luck for all
+// actions (QMDP: Littman, Cassandra and Kaelbling, 1995).
+template <class Model>
+std::vector<double> learned_prior(const LearnedValues<Model>& values, const Belief<Model>& belief, int horizon,
+                                  Sampler& random) {
+  std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));
+  const auto states = std::clamp<std::size_t>(max_prior_steps / worths.size(), 20, 500);
+  for (std::size_t i = 0; i < states; ++i) {
+    const typename Model::State& state = belief.sample(random);
+    const Sampler luck{random.bits()};
+    if (Model::ending(state) != Ending::running) continue;
+    for (int a = 0; a < Model::action_count(); ++a) {
+      worths[static_cast<std::size_t>(a)] += values.action_value(state, a, horizon, luck) / static_cast<double>(states);
+    }
+  }
+  return below_best(std::move(worths));
+}
+
+// The same by the values of listed states.
+template <class Model>
+std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpace<Model>& space, const Belief<Model>& belief) {
+  std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));
+  for (const auto& [number, weight] : space.weights_of(belief)) values.add_action_values(number, worths, weight);
+  return below_best(std::move(worths));
+}
+
+// The prior is in the unit of the estimates. `counts(estimate)` tells whose value was searched for long enough; the others
+// are given the prior's.
 template <class Counts>
 void draw_towards(const std::vector<double>& prior, std::vector<ActionEstimate>& estimates, Counts&& counts) {
   double sum = 0;

@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "aos/base/arena.hpp"
-#include "aos/model/reflection.hpp"
+#include "aos/base/mixed.hpp"
+#include "aos/base/number_index.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 
@@ -28,6 +29,7 @@ struct HistoryNode {
   double squares = 0;  // sum of its actions'
   std::uint32_t n = 0;
   std::uint32_t max_visits = 0;  // of an action
+  std::uint32_t parent = no_node;  // the action that leads here, whose other histories are a list
   std::uint32_t sibling = no_node;
   std::uint32_t first_action = no_node;
   std::uint32_t best = 0;  // the best action among the well visited ones
@@ -59,8 +61,7 @@ class SearchTree {
   void clear() {
     histories_.clear();
     actions_.clear();
-    index_.clear();
-    indexed_ = 0;
+    index_ = {};
     histories_.push_back({});
   }
 
@@ -84,7 +85,11 @@ class SearchTree {
   // The history after an action and an observation, or `no_node`.
   std::uint32_t find_child(std::uint32_t action, Observation observation) const {
     const ActionNode& parent = actions_[action];
-    if (parent.children > max_listed_children) return find_indexed(action, observation);
+    if (parent.children > max_listed_children) {
+      return index_.find(hash_of(action, observation), [&](std::uint32_t child) {
+        return histories_[child].parent == action && histories_[child].observation == observation;
+      });
+    }
     std::uint32_t child = parent.first_child;
     while (child != no_node && histories_[child].observation != observation) child = histories_[child].sibling;
     return child;
@@ -121,13 +126,9 @@ class SearchTree {
   }
 
  private:
-  struct Indexed {
-    std::uint32_t action = no_node;
-    std::uint32_t child = no_node;
-  };
-
   void hang(std::uint32_t action, std::uint32_t child) {
     ActionNode& parent = actions_[action];
+    histories_[child].parent = action;
     histories_[child].sibling = std::exchange(parent.first_child, child);
     if (++parent.children < max_listed_children + 1) return;
     if (parent.children > max_listed_children + 1) return add_to_index(action, child);
@@ -149,35 +150,18 @@ class SearchTree {
     }
   }
 
-  std::size_t slot_of(std::uint32_t action, Observation observation) const {
-    std::size_t slot = mixed(action, static_cast<std::uint64_t>(observation)) & (index_.size() - 1);
-    while (index_[slot].action != no_node &&
-           (index_[slot].action != action || histories_[index_[slot].child].observation != observation)) {
-      slot = (slot + 1) & (index_.size() - 1);
-    }
-    return slot;
+  static std::uint64_t hash_of(std::uint32_t action, Observation observation) {
+    return mixed(action, static_cast<std::uint64_t>(observation));
   }
-  std::uint32_t find_indexed(std::uint32_t action, Observation observation) const {
-    return index_[slot_of(action, observation)].child;
-  }
-  // Open addressing, at most half full.
   void add_to_index(std::uint32_t action, std::uint32_t child) {
-    if (2 * (indexed_ + 1) > index_.size()) {
-      std::vector<Indexed> before(std::max<std::size_t>(2 * index_.size(), 64));
-      before.swap(index_);
-      for (const Indexed& entry : before) {
-        if (entry.action != no_node) index_[slot_of(entry.action, histories_[entry.child].observation)] = entry;
-      }
-    }
-    ++indexed_;
-    index_[slot_of(action, histories_[child].observation)] = {action, child};
+    const auto is_new = [](std::uint32_t) { return false; };
+    index_.find_or_add(hash_of(action, histories_[child].observation), child, is_new);
   }
 
   std::uint32_t action_count_;
   Arena<HistoryNode> histories_;
   Arena<ActionNode> actions_;
-  std::vector<Indexed> index_;
-  std::size_t indexed_ = 0;
+  NumberIndex index_;
   std::vector<std::uint32_t> sources_;  // while copying: the original of each history
 };
 

@@ -9,14 +9,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <vector>
 
+#include "aos/base/number_index.hpp"
 #include "aos/model/reflection.hpp"
 
 namespace aos {
 
-inline constexpr std::uint32_t no_state = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t no_state = NumberIndex::none;
 
 template <class Model>
 class StateNumbers {
@@ -34,19 +34,17 @@ class StateNumbers {
 
   // The number of a state, which is `size()` if it is new.
   std::uint32_t add(const State& state) {
-    if (2 * states_.size() >= numbers_.size()) rehash(std::max<std::size_t>(4 * numbers_.size(), 256));
     if (!states_.empty() && !agrees_elsewhere(state)) tell_apart_by_more(state);
-    std::uint32_t& number = numbers_[slot_of(state)];
-    if (number == no_state) {
-      number = static_cast<std::uint32_t>(states_.size());
-      states_.push_back(state);
-    }
+    const auto known = static_cast<std::uint32_t>(states_.size());
+    const std::uint32_t number = numbers_.find_or_add(hash_of(state), known, is_same_as(state));
+    if (number == known) states_.push_back(state);
     return number;
   }
 
   // `no_state` for a state that has no number.
   std::uint32_t find(const State& state) const {
-    return states_.empty() || !agrees_elsewhere(state) ? no_state : numbers_[slot_of(state)];
+    if (states_.empty() || !agrees_elsewhere(state)) return no_state;
+    return numbers_.find(hash_of(state), is_same_as(state));
   }
 
  private:
@@ -72,34 +70,30 @@ class StateNumbers {
       is_hashed_[word] = true;
       hashed_.push_back(word);
     }
-    rehash(numbers_.size());
+    numbers_.clear();
+    for (std::uint32_t number = 0; number < states_.size(); ++number) {
+      numbers_.find_or_add(hash_of(states_[number]), number, is_same_as(states_[number]));
+    }
   }
 
-  // Open addressing, at most half full.
-  std::size_t slot_of(const State& state) const {
+  std::uint64_t hash_of(const State& state) const {
     std::uint64_t hash = 0;
     for (const std::size_t word : hashed_) hash = mixed(hash, word_of(state, word));
-    std::size_t slot = hash & (numbers_.size() - 1);
-    while (numbers_[slot] != no_state && !is_same(states_[numbers_[slot]], state)) slot = (slot + 1) & (numbers_.size() - 1);
-    return slot;
+    return hash;
   }
-  bool is_same(const State& left, const State& right) const {
-    std::uint64_t difference = 0;
-    for (const std::size_t word : hashed_) difference |= word_of(left, word) ^ word_of(right, word);
-    return difference == 0;
-  }
-  void rehash(std::size_t slots) {
-    numbers_.assign(slots, no_state);
-    for (std::size_t number = 0; number < states_.size(); ++number) {
-      numbers_[slot_of(states_[number])] = static_cast<std::uint32_t>(number);
-    }
+  auto is_same_as(const State& state) const {
+    return [&](std::uint32_t number) {
+      std::uint64_t difference = 0;
+      for (const std::size_t word : hashed_) difference |= word_of(states_[number], word) ^ word_of(state, word);
+      return difference == 0;
+    };
   }
 
   std::vector<std::uint64_t> mask_;
   std::vector<bool> is_hashed_;
   std::vector<std::size_t> hashed_;  // words in which any two states differ
   std::vector<State> states_;
-  std::vector<std::uint32_t> numbers_;
+  NumberIndex numbers_;
 };
 
 }  // namespace aos

@@ -1,10 +1,13 @@
-// One thread's search: simulations from the root of a tree, by upper confidence bounds (see pomcp.hpp for the whole).
+// POMCP's simulations (Silver and Veness, 2010) in the tree of one thread: read from `simulate` down.
 //
-// Letters: s state, a action, o observation, r reward, n visits, q value of an action, v value of a history.
+// A simulation goes down from the root by upper confidence bounds (`choose`), values the first new history it comes to by a
+// rollout or the values of states (`SimulatedState::leaf`), and takes the return back up (`back_up`). Where that departs from
+// the paper, the name that is called has its reason where it is defined; docs/planning.md lists all of them.
+//
+// Letters: n visits, q value of an action, v value of a history.
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,23 +17,16 @@
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/exploration.hpp"
 #include "aos/planning/observation_cells.hpp"
+#include "aos/planning/root_record.hpp"
 #include "aos/planning/search_tree.hpp"
 
 namespace aos {
 
-inline constexpr double prior_visits = 4;  // what a spread seen elsewhere counts for, in an action's own
-inline constexpr std::uint32_t settled_visits = 16;
-inline constexpr std::uint32_t well_visited_share = 4;  // at least 1/4 of the most visited action's visits
 inline constexpr std::uint64_t turns = 8;
-inline constexpr double even_share = 0.1;  // of the exploration, that does not follow the rollout policy
-inline constexpr double usual_share = 0.9;  // of an action that rollouts prefer no less than others, but for rounding
-
-// Whether an action was simulated often enough beside the most visited one for its value to be believed.
-inline bool is_well_visited(std::uint32_t n, std::uint32_t most) {
-  return static_cast<std::uint64_t>(n) * well_visited_share >= most && n > 0;
-}
 
 template <class Model>
 class TreeSearch {
@@ -47,9 +43,7 @@ class TreeSearch {
     horizon_ = horizon;
     barred_ = barred;
     prior_ = prior;
-    rewards_.assign(action_count(), {});
-    lowest_ = std::numeric_limits<double>::infinity();
-    highest_ = -lowest_;
+    record_ = RootRecord{action_count()};
   }
 
   // One simulation from a running state, as of simulated_state.hpp, which goes on with it. `first` is the first action; -1
@@ -57,17 +51,12 @@ class TreeSearch {
   template <class SimulatedState>
   void simulate(SimulatedState& state, int first, Sampler& random) {
     if (!give_actions(0, state, random)) return;
-    if (++simulations_ % renewal == 0 || simulations_ == settled_visits) renew_spread();
-    if (first < 0 && simulations_ % turns == 0) {
-      first = static_cast<int>(simulations_ / turns % static_cast<std::uint64_t>(Model::action_count()));
-      if (barred_.has(static_cast<std::size_t>(first))) first = -1;
-    }
+    const HistoryNode& root = tree_.history(0);
+    spread_.count(tree_.actions(root)[root.best]);
+    if (first < 0) first = turn();
     const double seen = descend(state, first < 0 ? choose(0) : static_cast<std::uint32_t>(first), random);
-    lowest_ = std::min(lowest_, seen);
-    highest_ = std::max(highest_, seen);
-    const double deviation = seen - mean_;
-    mean_ += deviation / static_cast<double>(simulations_);
-    squares_ += deviation * (seen - mean_);
+    record_.add_return(seen);
+    spread_.add(seen);
   }
 
   // What is known about a root action: value, simulations, and the variance of one. Values are relative to those of the
@@ -79,53 +68,37 @@ class TreeSearch {
     double reward = 0;  // earned at once, in this decision's simulations
   };
   Known known(int action) const {
-    if (tree_.history(0).first_action == no_node) return {};
+    if (!has_actions()) return {};
     const ActionNode& node = tree_.actions(tree_.history(0))[action];
-    const auto& [sum, n] = rewards_[static_cast<std::size_t>(action)];
-    return {node.q, node.n, node.n > 1 ? std::max(node.squares / (node.n - 1), 0.0) : 0, n > 0 ? sum / n : 0};
+    const double variance = node.n > 1 ? std::max(node.squares / (node.n - 1), 0.0) : 0;
+    return {node.q, node.n, variance, record_.mean_reward(static_cast<std::size_t>(action))};
   }
-
   std::uint32_t known_simulations() const { return tree_.history(0).n; }
-
-  // Whether so many more simulations of any other action could not lift its value, and of the best one not lower it, to
-  // where they meet, were they as good and as bad as the extremes seen.
+  // Whether `more` simulations could not change the choice.
   bool is_decided(double more) const {
     const HistoryNode& root = tree_.history(0);
-    if (root.first_action == no_node || root.n < settled_visits || barred_.has(root.best)) return false;
-    const ActionNode* const actions = tree_.actions(root);
-    const auto moved = [&](const ActionNode& node, double to) { return (node.n * node.q + more * to) / (node.n + more); };
-    const double least = moved(actions[root.best], lowest_);
-    for (std::uint32_t a = 0; a < action_count(); ++a) {
-      if (a != root.best && !barred_.has(a) && moved(actions[a], highest_) >= least) return false;
-    }
-    return true;
+    return has_actions() && record_.is_decided(root, tree_.actions(root), barred_, more);
   }
 
   // Keeps what is known below the action and observation; nothing where that was never simulated, or where numbers were
   // observed, whose cell says less than they do.
   void move_to(int action, Observation observation) {
-    if (reports_numbers_) return forget();
-    const HistoryNode& root = tree_.history(0);
-    const std::uint32_t kept =
-        root.first_action == no_node
-            ? no_node
-            : tree_.find_child(root.first_action + static_cast<std::uint32_t>(action), observation);
+    if (reports_numbers_ || !has_actions()) return forget();
+    const std::uint32_t taken = tree_.history(0).first_action + static_cast<std::uint32_t>(action);
+    const std::uint32_t kept = tree_.find_child(taken, observation);
     if (kept == no_node) return forget();
     spare_.copy_subtree(tree_, kept);
     std::swap(tree_, spare_);
     spare_.clear();
-    forget_spread();
+    spread_ = {};
   }
-
   void forget() {
     tree_.clear();
     cells_.clear();
-    forget_spread();
+    spread_ = {};
   }
 
  private:
-  static constexpr std::uint64_t renewal = 256;
-
   struct Visit {
     std::uint32_t history;
     std::uint32_t action;
@@ -133,20 +106,7 @@ class TreeSearch {
   };
 
   static std::uint32_t action_count() { return static_cast<std::uint32_t>(Model::action_count()); }
-
-  void forget_spread() {
-    simulations_ = 0;
-    mean_ = 0;
-    squares_ = 0;
-    spread_ = 0;
-  }
-
-  // The variance of the best root action's returns, or of all returns while that is unknown.
-  void renew_spread() {
-    const HistoryNode& root = tree_.history(0);
-    const ActionNode& best = tree_.actions(root)[root.best];
-    spread_ = best.n >= settled_visits ? best.squares / best.n : squares_ / static_cast<double>(simulations_);
-  }
+  bool has_actions() const { return tree_.history(0).first_action != no_node; }
 
   // Goes down to a history that is new, or to an end, and back up. Returns the discounted return.
   template <class SimulatedState>
@@ -160,7 +120,7 @@ class TreeSearch {
     ObservationCells::Drawn drawn{random};
     while (true) {
       const Step step = step_of(state, static_cast<int>(a), random, drawn);
-      if (visits_.empty()) add_reward(a, step.reward);
+      if (visits_.empty()) record_.add_reward(a, step.reward);
       const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
       value = goes_on ? state.value(left) : 0;
@@ -187,36 +147,23 @@ class TreeSearch {
     return later;
   }
 
-  // What the step reports is drawn, too.
-  template <class SimulatedState>
-  Step step_of(SimulatedState& state, int action, Sampler& random, ObservationCells::Drawn& drawn) const {
-    if (!reports_numbers_) return state.step(action, random);
-    drawn.clear();
-    const ReportingTo reporting{random, drawn};
-    return state.step(action, random);
-  }
-
-  // With a prior a history stays a leaf until it has been visited as often as there are actions. What states are worth to
-  // somebody who sees them is too much, and less so the deeper the tree: few visits below each of many actions would
-  // tell them apart by how deep these happened to go.
-  bool stays_leaf(std::uint32_t number) const {
+  // The highest upper confidence bound.
+  [[gnu::always_inline]] std::uint32_t choose(std::uint32_t number) const {
     const HistoryNode& history = tree_.history(number);
-    return !prior_.empty() && history.first_action == no_node && history.n < action_count();
-  }
-
-  // Returns false where there is no room for them. Where play-outs value new histories, actions that these would take from
-  // the state have most of the exploration: the others are not to use up the few visits of a history.
-  template <class SimulatedState>
-  bool give_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
-    const bool is_new = tree_.history(number).first_action == no_node;
-    if (!tree_.give_actions(number)) return false;
-    odds_.resize(action_count());
-    if (!is_new || !state.rollout_odds(odds_.data(), random)) return true;
-    ActionNode* const actions = tree_.actions(tree_.history(number));
+    const ActionNode* const actions = tree_.actions(history);
+    const ExplorationBonus bonus{history, spread_.variance()};
+    std::uint32_t best = 0;
+    double best_bound = -std::numeric_limits<double>::infinity();
     for (std::uint32_t a = 0; a < action_count(); ++a) {
-      actions[a].share = even_share + (1 - even_share) * odds_[a] * action_count();
+      if (number == 0 && barred_.has(a)) continue;
+      if (comes_first(actions[a], number == 0)) return a;
+      const double bound = value_of(actions[a], a, history) + bonus.of(actions[a]);
+      if (bound > best_bound) {
+        best_bound = bound;
+        best = a;
+      }
     }
-    return true;
+    return best;
   }
 
   // Of a history without actions. Returns the change of n * v.
@@ -242,7 +189,7 @@ class TreeSearch {
     node.squares += square;
     parent.squares += square;
     parent.max_visits = std::max(parent.max_visits, node.n);
-    renew_best(parent, actions, visit.action, node.q < q_before);
+    renew_best(parent, actions, action_count(), visit.action, node.q < q_before);
 
     const double before = parent.n * parent.v;
     ++parent.n;
@@ -250,52 +197,47 @@ class TreeSearch {
     return parent.n * parent.v - before;
   }
 
-  // After a change of one action.
-  static void renew_best(HistoryNode& parent, const ActionNode* actions, std::uint32_t changed, bool has_fallen) {
-    const bool is_best = changed == parent.best;
-    if ((is_best && has_fallen) || !is_well_visited(actions[parent.best].n, parent.max_visits)) {
-      parent.best = changed;
-      for (std::uint32_t a = 0; a < action_count(); ++a) take_better(parent, actions, a);
-    } else if (!is_best) {
-      take_better(parent, actions, changed);
-    }
+  // Without a prior every action with a usual share comes once before the bounds decide, at the root every action.
+  bool comes_first(const ActionNode& action, bool is_root) const {
+    return action.n == 0 && prior_.empty() && (action.share >= usual_share || is_root);
   }
-  static void take_better(HistoryNode& parent, const ActionNode* actions, std::uint32_t a) {
-    const bool is_better = actions[a].q > actions[parent.best].q || !is_well_visited(actions[parent.best].n, parent.max_visits);
-    if (is_better && is_well_visited(actions[a].n, parent.max_visits)) parent.best = a;
+  // What was never tried counts as what its history is worth, less what the prior says.
+  double value_of(const ActionNode& action, std::uint32_t a, const HistoryNode& history) const {
+    return action.n > 0 ? action.q : history.v - (prior_.empty() ? 0 : prior_[a]);
   }
 
-  void add_reward(std::uint32_t a, double reward) {
-    auto& [sum, n] = rewards_[a];
-    sum += reward;
-    n += 1;
+  // The root's actions take every eighth simulation in turn, so that the values of all of them are worth reading.
+  int turn() const {
+    if (spread_.simulations() % turns != 0) return -1;
+    const auto next = static_cast<int>(spread_.simulations() / turns % action_count());
+    return barred_.has(static_cast<std::size_t>(next)) ? -1 : next;
   }
 
-  // The highest upper confidence bound. Without a prior, every action with a usual share comes once first, at the root every
-  // one. An action's spread is its own, and as if `prior_visits` more had the spread of all actions here, which is in
-  // the same way filled up with the root's. What was never tried counts as what its history is worth, less what the
-  // prior says, seen once.
-  [[gnu::always_inline]] std::uint32_t choose(std::uint32_t number) const {
+  // What the step reports is drawn, too.
+  template <class SimulatedState>
+  Step step_of(SimulatedState& state, int action, Sampler& random, ObservationCells::Drawn& drawn) const {
+    if (!reports_numbers_) return state.step(action, random);
+    drawn.clear();
+    const ReportingTo reporting{random, drawn};
+    return state.step(action, random);
+  }
+
+  // With a prior a history stays a leaf until it has been visited as often as there are actions. The fully observable value
+  // of states is too high, and less so the deeper the tree: few visits below each of many actions would tell them apart by
+  // how deep these happened to go.
+  bool stays_leaf(std::uint32_t number) const {
     const HistoryNode& history = tree_.history(number);
-    const ActionNode* const actions = tree_.actions(history);
-    const double root_n = std::sqrt(static_cast<double>(history.n) + 1);
-    const double prior = prior_visits * (history.squares + prior_visits * spread_) / (history.n + prior_visits);
-    std::uint32_t best = 0;
-    double best_bound = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t a = 0; a < action_count(); ++a) {
-      const ActionNode& node = actions[a];
-      if (number == 0 && barred_.has(a)) continue;
-      if (node.n == 0 && prior_.empty() && (node.share >= usual_share || number == 0)) return a;
-      const double n = std::max<double>(node.n, 1);
-      const double squares = (node.squares + prior) * node.share;
-      const double value = node.n > 0 ? node.q : history.v - (prior_.empty() ? 0 : prior_[a]);
-      const double bound = value + std::sqrt(squares * root_n / ((n + prior_visits) * n));
-      if (bound > best_bound) {
-        best_bound = bound;
-        best = a;
-      }
-    }
-    return best;
+    return !prior_.empty() && history.first_action == no_node && history.n < action_count();
+  }
+
+  // Returns false where there is no room for them.
+  template <class SimulatedState>
+  bool give_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
+    const bool is_new = tree_.history(number).first_action == no_node;
+    if (!tree_.give_actions(number)) return false;
+    odds_.resize(action_count());
+    if (is_new && state.rollout_odds(odds_.data(), random)) share_exploration(tree_.actions(tree_.history(number)), odds_);
+    return true;
   }
 
   SearchTree tree_;
@@ -304,16 +246,11 @@ class TreeSearch {
   ObservationCells cells_;
   int horizon_ = 0;
   BarredActions barred_;
-  std::vector<Visit> visits_;
-  std::vector<double> odds_;
   std::vector<double> prior_;
-  std::vector<std::pair<double, double>> rewards_;  // of the root's actions in this decision: their sum, and how many
-  std::uint64_t simulations_ = 0;
-  double mean_ = 0;  // of all returns, with their
-  double squares_ = 0;
-  double spread_ = 0;
-  double lowest_ = 0;
-  double highest_ = 0;
+  RootRecord record_;
+  RootSpread spread_;
+  std::vector<Visit> visits_;  // of the simulation that runs
+  std::vector<double> odds_;
 };
 
 }  // namespace aos

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from aos_solver.formats.explicit_model import ExplicitModel, Integers, Ragged, StartBelief
+from aos_solver.offline.explicit_model import ExplicitModel, Integers, Ragged, StartBelief
 
 __all__ = ["SensingByState", "with_sensing_by_state"]
 

@@ -9,7 +9,7 @@ from itertools import chain
 import msgspec
 import numpy as np
 
-from aos_solver.formats.explicit_model import Floats, Integers
+from aos_solver.offline.explicit_model import Floats, Integers
 
 __all__ = ["ANY", "EACH", "DenseFactor", "Entry", "Factor", "SparseFactor", "Table", "Variable"]
 

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import msgspec
 import numpy as np
 
+from aos_deploy.formats.factors import Factor, Table, Variable
 from aos_protocol.errors import DocumentError, IntractableError
-from aos_solver.formats.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
-from aos_solver.formats.factors import Factor, Table, Variable
+from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers, Ragged, StartBelief
 
 __all__ = ["MAX_STATES", "FactoredModel", "StateVariable", "flatten"]
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from aos_deploy.formats.pomdp_rewards import RewardRules
+from aos_deploy.formats.pomdp_statements import Statement, statements_of
+from aos_deploy.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
 from aos_protocol.errors import DocumentError
-from aos_solver.formats.explicit_model import ExplicitModel, Ragged, StartBelief
-from aos_solver.formats.pomdp_rewards import RewardRules
-from aos_solver.formats.pomdp_statements import Statement, statements_of
-from aos_solver.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
+from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
 
 __all__ = ["read_pomdp"]
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterable, Mapping
 
+from aos_deploy.formats.factored_model import FactoredModel, StateVariable
+from aos_deploy.formats.factors import Table, Variable
+from aos_deploy.formats.pomdpx_tables import read_table
+from aos_deploy.formats.problem_text import ProblemFindings, TooManyFindingsError
+from aos_deploy.formats.xml_text import Element, read_xml
 from aos_protocol.errors import DocumentError
-from aos_solver.formats.factored_model import FactoredModel, StateVariable
-from aos_solver.formats.factors import Table, Variable
-from aos_solver.formats.pomdpx_tables import read_table
-from aos_solver.formats.problem_text import ProblemFindings, TooManyFindingsError
-from aos_solver.formats.xml_text import Element, read_xml
 
 __all__ = ["read_pomdpx"]
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import msgspec
 
-from aos_solver.formats.problem_text import ProblemFindings, Word
+from aos_deploy.formats.problem_text import ProblemFindings, Word
 
 __all__ = ["Statement", "statements_of"]
 

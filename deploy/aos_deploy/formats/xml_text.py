@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from xml.parsers import expat
 
-from aos_solver.formats.problem_text import ProblemFindings, Word, words_of
+from aos_deploy.formats.problem_text import ProblemFindings, Word, words_of
 
 __all__ = ["Element", "read_xml"]
 

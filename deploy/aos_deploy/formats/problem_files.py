@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from aos_deploy.formats.factored_model import MAX_STATES, flatten
+from aos_deploy.formats.pomdp_reader import read_pomdp
+from aos_deploy.formats.pomdpx_reader import read_pomdpx
 from aos_protocol.errors import DocumentError
-from aos_solver.formats.explicit_model import ExplicitModel
-from aos_solver.formats.factored_model import MAX_STATES, flatten
-from aos_solver.formats.pomdp_reader import read_pomdp
-from aos_solver.formats.pomdpx_reader import read_pomdpx
+from aos_solver.offline.explicit_model import ExplicitModel
 
 __all__ = ["PROBLEM_ENDINGS", "read_problem"]
 

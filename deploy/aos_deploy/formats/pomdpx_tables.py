@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from aos_solver.formats.explicit_model import Floats
-from aos_solver.formats.factors import ANY, EACH, Entry, Table, Variable
-from aos_solver.formats.problem_text import ProblemFindings, Word
-from aos_solver.formats.xml_text import Element
+from aos_deploy.formats.factors import ANY, EACH, Entry, Table, Variable
+from aos_deploy.formats.problem_text import ProblemFindings, Word
+from aos_deploy.formats.xml_text import Element
+from aos_solver.offline.explicit_model import Floats
 
 __all__ = ["read_table"]
 

@@ -1,0 +1,69 @@
+// Numbers of things that lie elsewhere, found again by hashes of these things.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace aos {
+
+// Open addressing, at most half full. Whoever asks brings `is_it(number)`, which tells whether the thing with this number is
+// the one that is sought; it is asked only of numbers with the same hash. A hash needs its lower bits well mixed.
+class NumberIndex {
+ public:
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  template <class IsIt>
+  std::uint32_t find(std::uint64_t hash, IsIt&& is_it) const {
+    return entries_.empty() ? none : entries_[slot_of(hash, is_it)].number;
+  }
+
+  // The number that was there, or `number`, which is there from now on.
+  template <class IsIt>
+  std::uint32_t find_or_add(std::uint64_t hash, std::uint32_t number, IsIt&& is_it) {
+    if (2 * size_ >= entries_.size()) grow();
+    Entry& entry = entries_[slot_of(hash, is_it)];
+    if (entry.number == none) {
+      entry = {hash, number};
+      ++size_;
+    }
+    return entry.number;
+  }
+
+  std::uint32_t size() const { return size_; }
+
+  // Keeps its memory.
+  void clear() {
+    if (size_ > 0) std::fill(entries_.begin(), entries_.end(), Entry{});
+    size_ = 0;
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t hash = 0;
+    std::uint32_t number = none;
+  };
+
+  template <class IsIt>
+  std::size_t slot_of(std::uint64_t hash, IsIt&& is_it) const {
+    std::size_t slot = hash & (entries_.size() - 1);
+    while (entries_[slot].number != none && (entries_[slot].hash != hash || !is_it(entries_[slot].number))) {
+      slot = (slot + 1) & (entries_.size() - 1);
+    }
+    return slot;
+  }
+
+  void grow() {
+    std::vector<Entry> before(std::max<std::size_t>(2 * entries_.size(), 64));
+    before.swap(entries_);
+    for (const Entry& entry : before) {
+      if (entry.number != none) entries_[slot_of(entry.hash, [](std::uint32_t) { return false; })] = entry;
+    }
+  }
+
+  std::vector<Entry> entries_;
+  std::uint32_t size_ = 0;
+};
+
+}  // namespace aos

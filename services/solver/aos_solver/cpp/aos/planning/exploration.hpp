@@ -1,0 +1,78 @@
+// How much a search explores: the bonus of an action in its upper confidence bound.
+//
+// POMCP's paper adds c * sqrt(log(N) / n), with one constant for all actions. Here c is the spread of the action's own
+// returns: immediate rewards say little about it, and a constant that is too small is the commonest way for POMCP to fail.
+// The bonus falls polynomially and not logarithmically, as values need that drift while the tree below them grows (Shah, Xie
+// and Xu, 2020).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "aos/planning/best_action.hpp"
+#include "aos/planning/search_tree.hpp"
+
+namespace aos {
+
+inline constexpr double prior_visits = 4;   // what a spread seen elsewhere counts for, in an action's own
+inline constexpr double even_share = 0.1;   // of the exploration, that does not follow the rollout policy
+inline constexpr double usual_share = 0.9;  // of an action that rollouts prefer no less than others, but for rounding
+
+// Of the actions of one history. A spread is the action's own, and as if `prior_visits` more had the spread of all actions
+// there, which is filled up with the root's in the same way.
+class ExplorationBonus {
+ public:
+  ExplorationBonus(const HistoryNode& history, double root_spread)
+      : root_n_(std::sqrt(static_cast<double>(history.n) + 1)),
+        prior_(prior_visits * (history.squares + prior_visits * root_spread) / (history.n + prior_visits)) {}
+
+  double of(const ActionNode& action) const {
+    const double n = std::max<double>(action.n, 1);
+    const double squares = (action.squares + prior_) * action.share;
+    return std::sqrt(squares * root_n_ / ((n + prior_visits) * n));
+  }
+
+ private:
+  double root_n_;
+  double prior_;
+};
+
+// The variance of the best root action's returns, or of all returns while that is unknown.
+class RootSpread {
+ public:
+  // Begins a simulation.
+  void count(const ActionNode& best) {
+    if (++simulations_ % renewal != 0 && simulations_ != settled_visits) return;
+    variance_ = best.n >= settled_visits ? best.squares / best.n : squares_ / static_cast<double>(simulations_);
+  }
+  // Ends it.
+  void add(double seen) {
+    const double deviation = seen - mean_;
+    mean_ += deviation / static_cast<double>(simulations_);
+    squares_ += deviation * (seen - mean_);
+  }
+  std::uint64_t simulations() const { return simulations_; }
+  double variance() const { return variance_; }
+
+ private:
+  static constexpr std::uint64_t renewal = 256;
+
+  std::uint64_t simulations_ = 0;
+  double mean_ = 0;  // of all returns, with their
+  double squares_ = 0;
+  double variance_ = 0;
+};
+
+// Where rollouts value new histories, the actions that a rollout would take have most of the exploration: the others are not
+// to use up the few visits of a history. POMCP's paper gives them visits and values that the document's author would have to
+// know.
+inline void share_exploration(ActionNode* actions, const std::vector<double>& rollout_odds) {
+  const auto count = static_cast<double>(rollout_odds.size());
+  for (std::size_t a = 0; a < rollout_odds.size(); ++a) {
+    actions[a].share = even_share + (1 - even_share) * rollout_odds[a] * count;
+  }
+}
+
+}  // namespace aos

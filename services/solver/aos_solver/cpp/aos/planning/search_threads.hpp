@@ -1,0 +1,117 @@
+// One search by several threads, each in a tree of its own, whose values are merged by visits.
+//
+// POMCP's paper has one tree. Of a budget in simulations each thread has a fixed share here, so that a seed gives the same
+// result however the threads are scheduled.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "aos/base/clock.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/planning/budget.hpp"
+#include "aos/planning/tree_search.hpp"
+
+namespace aos {
+
+inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
+inline constexpr double least_time_share = 0.1;  // of a budget in time that is always used
+
+template <class Model>
+class SearchThreads {
+ public:
+  using Tree = TreeSearch<Model>;
+
+  // As many trees as the budget has threads.
+  void prepare(int threads) {
+    const auto count = static_cast<std::size_t>(threads);
+    if (trees_.size() == count) return;
+    trees_.clear();
+    for (std::size_t i = 0; i < count; ++i) trees_.push_back(std::make_unique<Tree>(max_search_bytes / count));
+  }
+  const std::vector<std::unique_ptr<Tree>>& trees() const { return trees_; }
+
+  // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or `is_over()`. Returns
+  // how many simulations that took. `first` is as of TreeSearch.
+  template <class StartState, class IsOver>
+  std::uint64_t simulate(StartState&& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
+                         int first, IsOver&& is_over) {
+    std::vector<Work> works(trees_.size());
+    {
+      std::vector<std::jthread> others;
+      for (std::size_t i = 1; i < trees_.size(); ++i) {
+        const std::uint64_t seed = random.bits();
+        others.emplace_back([&, i, seed] {
+          blame::use_line(static_cast<int>(i));
+          Sampler own{seed};
+          works[i] = work(*trees_[i], start_state, share(budget, i), start, own, first, is_over);
+        });
+      }
+      works[0] = work(*trees_[0], start_state, share(budget, 0), start, random, first, is_over);
+    }
+    std::uint64_t simulations = 0;
+    for (const Work& done : works) {
+      if (done.fault) {
+        blame::at(done.piece);
+        std::rethrow_exception(done.fault);
+      }
+      simulations += done.simulations;
+    }
+    return simulations;
+  }
+
+ private:
+  // What one thread has done; a fault of model code with the piece that ran.
+  struct Work {
+    std::uint64_t simulations = 0;
+    std::exception_ptr fault;
+    std::uint32_t piece = 0;
+  };
+
+  static Budget share(Budget budget, std::size_t thread) {
+    const auto threads = static_cast<std::uint64_t>(budget.threads);
+    if (budget.simulations > 0) budget.simulations = budget.simulations / threads + (thread < budget.simulations % threads);
+    return budget;
+  }
+
+  template <class StartState, class IsOver>
+  static Work work(Tree& tree, const StartState& start_state, Budget budget, PlanningClock::time_point start,
+                   Sampler& random, int first, IsOver&& is_over) {
+    constexpr std::uint64_t between_looks = 64;
+    Work done;
+    try {
+      const bool has_limit = budget.simulations > 0 || budget.seconds <= 0;
+      while (!has_limit || done.simulations < budget.simulations) {
+        if (done.simulations % between_looks == 0) {
+          if (is_over() || (budget.seconds > 0 && is_enough(tree, budget.seconds, start, done.simulations, first))) break;
+        }
+        ++done.simulations;
+        auto state = start_state(random);
+        if (!state.has_ended()) tree.simulate(state, first, random);
+      }
+    } catch (...) {
+      done.fault = std::current_exception();
+      done.piece = blame::piece();
+    }
+    blame::at(0);
+    return done;
+  }
+
+  static bool is_enough(const Tree& tree, double seconds, PlanningClock::time_point start, std::uint64_t simulations,
+                        int first) {
+    const double spent = std::chrono::duration<double>(PlanningClock::now() - start).count();
+    if (spent >= seconds) return true;
+    if (first >= 0 || spent < least_time_share * seconds) return false;
+    return tree.is_decided(static_cast<double>(simulations) * (seconds / spent - 1));
+  }
+
+  std::vector<std::unique_ptr<Tree>> trees_;
+};
+
+}  // namespace aos
