@@ -39,8 +39,8 @@ struct OnlineSarsop::Solver {
   }
   bool is_closed() const { return sarsop.upper() - sarsop.lower() <= precision(); }
 
-  double above() const { return outlook.above(sarsop.least()); }
-  double below() const { return outlook.below(sarsop.most()); }
+  double above() const { return outlook.above(sarsop.min_value()); }
+  double below() const { return outlook.below(sarsop.max_value()); }
 
   // `trial` returns whether there is more to find out.
   template <class Trial>

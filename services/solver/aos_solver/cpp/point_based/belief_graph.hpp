@@ -100,9 +100,9 @@ class BeliefGraph {
     lower_[region].add(std::move(vector));
   }
   // No state is worth more, or 0.
-  double most() const { return std::max(0.0, *std::max_element(informed_.back().begin(), informed_.back().end())); }
+  double max_value() const { return std::max(0.0, *std::max_element(informed_.back().begin(), informed_.back().end())); }
   // Some policy gives no less, wherever it begins; or 0.
-  double least() const { return least_; }
+  double min_value() const { return min_value_; }
   // No alpha vector has one that is further from 0.
   double largest_value() const { return largest_value_; }
 
@@ -265,15 +265,15 @@ class BeliefGraph {
   void add_tails(const std::vector<ActionValues>& blind) {
     double power = 1;
     for (const ActionValues& values : blind) {
-      least_ = -std::numeric_limits<double>::infinity();
+      min_value_ = -std::numeric_limits<double>::infinity();
       for (std::size_t action = 0; action < model_.actions; ++action) {
-        double least = 0;
+        double lowest = 0;
         for (std::size_t state = 0; state < model_.states; ++state) {
-          least = std::min(least, values[model_.row(state, action)]);
+          lowest = std::min(lowest, values[model_.row(state, action)]);
         }
-        least_ = std::max(least_, least);
+        min_value_ = std::max(min_value_, lowest);
       }
-      tails_.push_back(is_endless() ? 0 : least_);
+      tails_.push_back(is_endless() ? 0 : min_value_);
       if (tails_.back() < 0) is_free_ = false;
       powers_.push_back(power);
       power *= model_.discount * (1 + 2 * ulp);
@@ -366,7 +366,7 @@ class BeliefGraph {
   std::vector<double> powers_;          // of the discount
   bool is_free_ = true;
   double largest_value_ = 0;
-  double least_ = 0;
+  double min_value_ = 0;
   std::vector<LowerBound> lower_;                   // by region
   std::vector<std::unique_ptr<UpperBound>> upper_;  // by layer and region; those that were asked for
   std::deque<Node> nodes_;

@@ -1,5 +1,5 @@
-// Plans of somebody who takes one state for granted, goes on to the state that is then likeliest by what is observed,
-// and always does what is best for somebody who sees that state (certainty equivalence).
+// Plans that take one state for granted, go on to the state that is then likeliest by what is observed, and always do what
+// has the highest fully observable value in it (certainty equivalence).
 //
 // For every pair of a state that is taken for granted and one that is true, this is what such a plan gives: alpha vectors
 // to begin with. They are far above those of always doing the same action wherever a belief is nearly certain, so that

@@ -44,7 +44,7 @@ class InitialBounds {
         sum += outcome->probability;
         likelihoods_ += static_cast<double>(model.likelihoods.end(outcome->sensing) - model.likelihoods.begin(outcome->sensing));
       }
-      most_probable_ = std::max(most_probable_, sum * (1 + rounding));
+      max_row_sum_ = std::max(max_row_sum_, sum * (1 + rounding));
     }
     if (model.horizon > 0) {
       if (model.horizon > max_layer_entries / (model.states * model.actions + 1)) {
@@ -65,7 +65,7 @@ class InitialBounds {
   // Work for one kind of bound; large models get so many sweeps at least.
   static constexpr double operations_ = 1e7;
   static constexpr double layer_operations_ = 4e8;
-  static constexpr double least_sweeps_ = 30;
+  static constexpr double min_sweeps_ = 30;
   // It is enough when values are known to this share of the largest reward.
   static constexpr double settled_ = 1e-6;
 
@@ -114,7 +114,7 @@ class InitialBounds {
       }
       rows.first.push_back(rows.elements.size());
       const std::vector<double> same = settled_values(rows);
-      const double shift = shift_of(same, rows).least;
+      const double shift = shift_of(same, rows).min;
       for (const std::uint32_t state : states_) {
         const double value = same[state] + shift;
         values[model_.row(state, action)] =
@@ -124,8 +124,8 @@ class InitialBounds {
     return values;
   }
 
-  // Of somebody who sees the state after the next step (fast informed bound: Hauskrecht, 2000), begun with the values of
-  // somebody who sees it always.
+  // Values where the state is observed after the next step (fast informed bound: Hauskrecht, 2000). They begin as the fully
+  // observable values.
   ActionValues endless_informed_values() const {
     const std::vector<double> values = endless_mdp_values();
     ActionValues above(model_.states * model_.actions, 0.0);
@@ -154,11 +154,11 @@ class InitialBounds {
     return above;
   }
 
-  // Of somebody who always sees the state.
+  // Fully observable values.
   std::vector<double> endless_mdp_values() const {
     const Rows<std::uint32_t> choices = different_rows();
     std::vector<double> values = settled_values(choices);
-    const double shift = shift_of(values, choices).most;
+    const double shift = shift_of(values, choices).max;
     for (const std::uint32_t state : states_) {
       const double value = values[state] + shift + 4 * ulp * (std::abs(values[state]) + std::abs(shift));
       values[state] = std::min(value, summed_up(highest_));
@@ -173,13 +173,13 @@ class InitialBounds {
     for (const std::uint32_t row : choices.elements) {
       outcomes += static_cast<double>(model_.outcomes.end(row) - model_.outcomes.begin(row));
     }
-    const double sweeps = std::max(operations_ / (outcomes + 1), least_sweeps_);
+    const double sweeps = std::max(operations_ / (outcomes + 1), min_sweeps_);
     double next_look = 4;
     for (double done = 1; done <= sweeps; ++done) {
       if (sweep(values, choices) <= 1e-13 * scale_) break;
       if (done < next_look) continue;
       const Shift shift = shift_of(values, choices);
-      if (shift.most - shift.least <= settled_ * scale_) break;
+      if (shift.max - shift.min <= settled_ * scale_) break;
       next_look *= 1.5;
     }
     return values;
@@ -187,10 +187,10 @@ class InitialBounds {
 
   // Between which numbers the one lies that is to be added to the value of every state. Where one more decision by a row
   // adds d to a state's value, and the mission goes on with probability p, values that are d / (1 - discount p) higher
-  // would stay as they are; with the most of all rows' none rises, with the least of all states' best rows none falls.
+  // would stay as they are; with the highest of all rows' none rises, with the lowest of all states' best rows none falls.
   struct Shift {
-    double least = std::numeric_limits<double>::infinity();
-    double most = -std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
+    double max = -std::numeric_limits<double>::infinity();
   };
 
   Shift shift_of(const std::vector<double>& values, const Rows<std::uint32_t>& choices) const {
@@ -205,10 +205,10 @@ class InitialBounds {
         const auto divided = [&](double by, int direction) {
           return by / (share - direction * (by < 0 ? -1 : 1) * rounding_) * (1 + direction * (by < 0 ? -1 : 1) * 4 * ulp);
         };
-        shift.most = std::max(shift.most, divided(added + error, 1));
+        shift.max = std::max(shift.max, divided(added + error, 1));
         best = std::max(best, divided(added - error, -1));
       }
-      shift.least = std::min(shift.least, best);
+      shift.min = std::min(shift.min, best);
     }
     return states_.empty() ? Shift{0, 0} : shift;
   }
@@ -223,7 +223,7 @@ class InitialBounds {
 
   // What so much at every decision adds up to, and a little more in size.
   double summed_up(double reward) const {
-    return reward * (1 + 8 * ulp) / (1 - model_.discount * most_probable_ - 4 * ulp);
+    return reward * (1 + 8 * ulp) / (1 - model_.discount * max_row_sum_ - 4 * ulp);
   }
 
   // The rows of each of `states_`, less those that do the same as one before, as looking here and looking there.
@@ -301,7 +301,7 @@ class InitialBounds {
     return {model_.rewards[row] + model_.discount * later, rounding_ * (std::abs(model_.rewards[row]) + size)};
   }
 
-  // What the next actions are worth after each observation, with room that is used again.
+  // What the next actions are worth after each observation; its memory is used again.
   struct Gathered {
     std::vector<std::size_t> slot_of;
     std::vector<std::uint32_t> seen;
@@ -360,7 +360,7 @@ class InitialBounds {
   double likelihoods_ = 0;  // of all outcomes
   double highest_ = 0;
   double scale_ = 1e-300;
-  double most_probable_ = 1;  // the largest sum of a row's probabilities
+  double max_row_sum_ = 1;  // of probabilities
 };
 
 }  // namespace aos::point_based

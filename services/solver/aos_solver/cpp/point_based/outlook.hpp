@@ -32,10 +32,10 @@ class Outlook {
     model.discount = 1 - loss;
   }
 
-  // By so much values as asked for may be above and below those of the search, where no state is worth more than `most`
-  // and some policy never gives less than `least` (at most 0).
-  double above(double least) const { return above_ - left_behind_ * least; }
-  double below(double most) const { return below_ + left_behind_ * most; }
+  // By so much values as asked for may be above and below those of the search, where no state is worth more than `max_value`
+  // and some policy never gives less than `min_value` (at most 0).
+  double above(double min_value) const { return above_ - left_behind_ * min_value; }
+  double below(double max_value) const { return below_ + left_behind_ * max_value; }
 
  private:
   static constexpr double next_to_nothing_ = 0.01;
@@ -54,8 +54,8 @@ class Outlook {
     below_ *= rounded_up;
   }
 
-  // One more decision for the best, or the worst, of all plans of somebody who sees the state. Returns the furthest value
-  // on that side of 0.
+  // One more decision for the best, or the worst, fully observable value of each state. Returns the furthest value on that
+  // side of 0.
   template <bool is_best>
   static double renew(const FlatModel& model, std::vector<double>& values, std::vector<double>& now) {
     double furthest = 0;

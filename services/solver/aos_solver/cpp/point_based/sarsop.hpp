@@ -41,9 +41,9 @@ class Sarsop {
   double lower() const { return over_roots(&Node::lower, -1); }
   double upper() const { return over_roots(&Node::upper, 1); }
   // No state is worth more, or 0.
-  double most() const { return graph_.most(); }
+  double max_value() const { return graph_.max_value(); }
   // Some policy gives no less, wherever it begins; or 0.
-  double least() const { return graph_.least(); }
+  double min_value() const { return graph_.min_value(); }
   // Bounds that are so near, beside the values themselves, are as near as numbers tell.
   double noise() const { return graph_.noise(); }
   // Numbers that were multiplied so far.

@@ -70,14 +70,14 @@ class Belief {
       State state{};
       Enumerator draws;
       double gone = 0;
-      const std::size_t most = max_states(Source::enumeration);
+      const std::size_t limit = max_states(Source::enumeration);
       const auto add = [&](Enumerator& path) {
         Model::initial(state, path);
         gathering.add(state, path.probability());
-        if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
+        if (gathering.size() > 2 * limit) gone += gathering.reduce(limit, random);
       };
       gone += draws.for_nearly_each_path(add, max_initial_paths);
-      gone += gathering.reduce(most, random);
+      gone += gathering.reduce(limit, random);
       return Belief{gathering, gone, Source::enumeration};
     } catch (const NotEnumerable&) {
       return drawn(random);
@@ -253,15 +253,15 @@ class Belief {
   std::pair<Belief, double> enumerated_or_drawn(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
     try {
       Gathering<Model> gathering;
-      const std::size_t most = max_states(source_);
+      const std::size_t limit = max_states(source_);
       double gone = 0;
       const auto add = [&](const State& next, Observation seen, double weight) {
         if ((step.is_observed && seen != step.observation) || weight <= 0) return;
         gathering.add(next, weight);
-        if (gathering.size() > 2 * most) gone += gathering.reduce(most, random);
+        if (gathering.size() > 2 * limit) gone += gathering.reduce(limit, random);
       };
       gone += enumerate_outcomes<Model>(particles_, step.action, numbers, max_enumerated_paths, add);
-      gone += gathering.reduce(most, random);
+      gone += gathering.reduce(limit, random);
       const double probability = gathering.total();
       const bool is_unbounded = numbers.weighs() && error_bound_ + gone > 0;
       const double error_bound = probability > 0 ? (is_unbounded ? probability : error_bound_ + gone) / probability : 0;

@@ -171,11 +171,11 @@ class Marginals {
 
   void choose_reported() {
     const std::size_t share = max_reported_in_all / std::max<std::size_t>(variables_.size(), 1);
-    const std::size_t most = std::clamp<std::size_t>(share, 1, max_reported_values);
+    const std::size_t max_values = std::clamp<std::size_t>(share, 1, max_reported_values);
     for (Variable& variable : variables_) {
       std::stable_sort(variable.values.begin(), variable.values.end(),
                        [](const Value& left, const Value& right) { return left.weight > right.weight; });
-      variable.texts.resize(std::min(most, variable.values.size()));
+      variable.texts.resize(std::min(max_values, variable.values.size()));
     }
   }
 

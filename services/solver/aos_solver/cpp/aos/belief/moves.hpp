@@ -27,7 +27,7 @@ inline constexpr std::size_t max_moving_steps = 600'000;  // of one update
 inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
 inline constexpr std::size_t proposals_that_tell = 500;
-inline constexpr std::size_t least_accepted = 1;          // of them; else there is little to be gained
+inline constexpr std::size_t min_accepted = 1;          // of them; else there is little to be gained
 
 template <class Model>
 class Moves {
@@ -46,7 +46,7 @@ class Moves {
     while (steps_ < max_moving_steps) {
       for (Copy& copy : copies_) {
         accepted += move(copy) ? 1 : 0;
-        if (++proposed == proposals_that_tell && accepted < least_accepted) return cloud;
+        if (++proposed == proposals_that_tell && accepted < min_accepted) return cloud;
         if (steps_ >= max_moving_steps) break;
       }
     }

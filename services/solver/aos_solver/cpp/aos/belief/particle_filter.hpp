@@ -252,10 +252,10 @@ class ParticleFilter {
     std::size_t covered = sorted.size();
     while (covered > 0 && (light -= sorted[covered - 1]) > 0) --covered;
     covered = std::min(covered, static_cast<std::size_t>(max_covering_runs / price));
-    const double least = covered > 0 ? sorted[covered - 1] : 1;
+    const double min_share = covered > 0 ? sorted[covered - 1] : 1;
     const double runs = max_guided_runs * wanted(before) / particle_count;
     const double all = std::min(runs / price, wanted(before) * price_count / outcomes);
-    for (double& share : shares) share = std::max(all * share, share >= least ? 1.0 : 0.0);
+    for (double& share : shares) share = std::max(all * share, share >= min_share ? 1.0 : 0.0);
     return shares;
   }
 

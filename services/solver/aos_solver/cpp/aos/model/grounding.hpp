@@ -114,11 +114,11 @@ struct FixedDraws {
   template <class Weights>
   static int likeliest(const Weights& weights) {
     int best = 0;
-    double most = -1;
+    double max_weight = -1;
     int index = 0;
     for (const double weight : weights) {
-      if (weight > most) {
-        most = weight;
+      if (weight > max_weight) {
+        max_weight = weight;
         best = index;
       }
       ++index;

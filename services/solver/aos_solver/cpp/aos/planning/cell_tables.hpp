@@ -205,7 +205,7 @@ class CellTables {
 
   // The table that explains most: of one variable, of two where all pairs can be tried, or one that is there and one more
   // variable.
-  void add_table(double least) {
+  void add_table(double min_gain) {
     const auto count = static_cast<std::uint32_t>(cells_.size());
     const bool tries_pairs = count <= max_pairs_of;
     const std::size_t candidates = count * (1 + tables_.size() + (tries_pairs ? count / 2 : 0));
@@ -214,12 +214,12 @@ class CellTables {
     for (const double left : left_) squares += left * left;
     const double variance = squares / static_cast<double>(left_.size());
     Table best;
-    double most = least / static_cast<double>(stride);
+    double max_gain = min_gain / static_cast<double>(stride);
     const auto consider = [&](const Table& table) {
       if (table.size > max_cells || is_there(table)) return;
       const double found = gain(table, variance, stride);
-      if (found <= most) return;
-      most = found;
+      if (found <= max_gain) return;
+      max_gain = found;
       best = table;
     };
     for (std::uint32_t a = 0; a < count; ++a) {

@@ -31,7 +31,7 @@
 namespace aos {
 
 inline constexpr std::size_t max_scenarios = 500;
-inline constexpr std::size_t fewest_scenarios = 30;
+inline constexpr std::size_t min_scenarios = 30;
 inline constexpr double share_of_first_look = 0.2;  // of the budget, for all actions at the root
 inline constexpr double gap_share = 0.95;           // of the root's gap, that a node's share of it may keep
 inline constexpr double penalty_in_deviations = 1;
@@ -128,7 +128,7 @@ class Despot {
     const double running = belief.probability_of(Ending::running);
     if (running <= 0) return false;
     evaluation_.start(random.bits());
-    draw_scenarios(belief, fewest_scenarios, running, random);
+    draw_scenarios(belief, min_scenarios, running, random);
     const PlanningClock::time_point start = PlanningClock::now();
     evaluation_.bounds(outcomes_, 0);
     const PlanningClock::duration spent = PlanningClock::now() - start;
@@ -159,7 +159,7 @@ class Despot {
   std::size_t affordable_scenarios(PlanningClock::duration spent) const {
     double share = 1;  // of the most
     const auto affordable_share = [&](double budget, double spent_on_fewest) {
-      return share_of_first_look * budget * fewest_scenarios / (spent_on_fewest * action_count() * max_evaluated);
+      return share_of_first_look * budget * min_scenarios / (spent_on_fewest * action_count() * max_evaluated);
     };
     if (budget_.simulations > 0) {
       const double budget = static_cast<double>(budget_.simulations) * horizon_;
@@ -169,7 +169,7 @@ class Despot {
     }
     const auto affordable = static_cast<std::size_t>(std::min(share, 1.0) * max_scenarios);
     const std::size_t room = std::min(max_node_bytes / sizeof(Node), max_scenario_bytes / scenario_bytes());
-    return std::clamp(room / (2 * action_count()), std::size_t{1}, std::max(affordable, fewest_scenarios));
+    return std::clamp(room / (2 * action_count()), std::size_t{1}, std::max(affordable, min_scenarios));
   }
 
   // --- the tree --------------------------------------------------------------------------------------
@@ -311,10 +311,10 @@ class Despot {
     if (best == no_node) return no_node;
     ++actions_[best].trials;
     std::uint32_t chosen = no_node;
-    double most = -std::numeric_limits<double>::infinity();
+    double max_excess = -std::numeric_limits<double>::infinity();
     for (std::uint32_t child = actions_[best].first_child; child != no_node; child = nodes_[child].sibling) {
-      if (excess(child) <= most) continue;
-      most = excess(child);
+      if (excess(child) <= max_excess) continue;
+      max_excess = excess(child);
       chosen = child;
     }
     return chosen;

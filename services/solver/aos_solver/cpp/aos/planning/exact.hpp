@@ -2,8 +2,8 @@
 // the best there is where it fits the budget.
 //
 // A belief is a sorted list of (state number, weight) without its ended part, which is worth nothing; equal beliefs at
-// equal depth are evaluated once. Below the root, an action is left out where even somebody who sees the state could not
-// do better with it than another action does. Of actions that are worth the same the one that earns sooner is better:
+// equal depth are evaluated once. Below the root, an action is left out whose fully observable value is no higher than what
+// another action is worth. Of actions that are worth the same the one that earns sooner is better:
 // otherwise a free exit could be put off for ever.
 #pragma once
 

@@ -38,7 +38,7 @@ class NumberCells {
     max = std::min(max, max_likelihoods / std::max<std::size_t>(reports.reports().size(), 1));
     std::set<std::vector<std::uint32_t>> sets;
     for (const auto& report : reports.reports()) sets.insert(gauges_of(reports, report));
-    most_ = 1;
+    max_cells_ = 1;
     for (const auto& gauges : sets) {
       while (combinations(gauges) > max) {
         NumberGrid* const next = next_to_merge(gauges);
@@ -49,13 +49,13 @@ class NumberCells {
         next->merge();
       }
     }
-    for (const auto& gauges : sets) most_ = std::max(most_, combinations(gauges));
+    for (const auto& gauges : sets) max_cells_ = std::max(max_cells_, combinations(gauges));
     expand(reports);
     return {};
   }
 
-  // Of a report, at most.
-  std::size_t most() const { return most_; }
+  // Of a report.
+  std::size_t max_cells() const { return max_cells_; }
   std::size_t observations() const { return observations_; }
 
   // The same likelihoods with cells in place of reports.
@@ -111,15 +111,15 @@ class NumberCells {
   // The grid that loses least by what a merge takes off the combinations. None where all have two cells.
   NumberGrid* next_to_merge(const std::vector<std::uint32_t>& gauges) {
     NumberGrid* next = nullptr;
-    double least = std::numeric_limits<double>::infinity();
+    double min_loss = std::numeric_limits<double>::infinity();
     for (const std::uint32_t gauge : gauges) {
       NumberGrid& grid = grids_[gauge];
       if (grid.cells() <= 2) continue;
       const auto cells = static_cast<double>(grid.cells());
       const double loss = grid.next_loss() / std::log(cells / (cells - 1));
-      if (next != nullptr && loss >= least) continue;
+      if (next != nullptr && loss >= min_loss) continue;
       next = &grid;
-      least = loss;
+      min_loss = loss;
     }
     return next;
   }
@@ -142,7 +142,7 @@ class NumberCells {
       std::vector<point_based::Likelihood> cells{{0, 1.0}};
       for (const std::uint32_t part : report.parts) cells = multiplied(cells, probabilities[part]);
       for (point_based::Likelihood& cell : cells) cell.observation += entry->second;
-      cells_of_.push_back(without_the_least(std::move(cells)));
+      cells_of_.push_back(without_the_unlikeliest(std::move(cells)));
     }
   }
 
@@ -159,11 +159,11 @@ class NumberCells {
   }
 
   // What is not above the error of what is likely goes to the likeliest.
-  static std::vector<point_based::Likelihood> without_the_least(std::vector<point_based::Likelihood> cells) {
-    constexpr double least = error / (4 * static_cast<double>(max_combinations));
+  static std::vector<point_based::Likelihood> without_the_unlikeliest(std::vector<point_based::Likelihood> cells) {
+    constexpr double min_probability = error / (4 * static_cast<double>(max_combinations));
     double left_out = 0;
     std::erase_if(cells, [&](const point_based::Likelihood& cell) {
-      if (cell.probability > least) return false;
+      if (cell.probability > min_probability) return false;
       left_out += cell.probability;
       return true;
     });
@@ -175,7 +175,7 @@ class NumberCells {
   std::vector<NumberGrid> grids_;                             // by gauge
   std::vector<std::vector<point_based::Likelihood>> cells_of_;  // by report
   std::size_t observations_ = 0;
-  std::size_t most_ = 1;
+  std::size_t max_cells_ = 1;
 };
 
 }  // namespace aos

@@ -61,11 +61,11 @@ class ObservationCells {
     Place& place = places_[mixed(mixed(0, action), static_cast<std::uint64_t>(response))];
     ++place.visits;
     const Cell* nearest = nullptr;
-    double least = std::numeric_limits<double>::infinity();
+    double min_distance = std::numeric_limits<double>::infinity();
     for (const Cell& cell : place.cells) {
-      const double distance = squared_distance(cell, drawn, least);
-      if (distance >= least) continue;
-      least = distance;
+      const double distance = squared_distance(cell, drawn, min_distance);
+      if (distance >= min_distance) continue;
+      min_distance = distance;
       nearest = &cell;
     }
     const double wanted = cells_of_one_visit * std::pow(static_cast<double>(place.visits), widening);

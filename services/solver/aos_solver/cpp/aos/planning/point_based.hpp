@@ -51,7 +51,7 @@ class PointBased {
   // Whether the search tells observed numbers by cells only: upper bounds are then none.
   bool tells_by_cells() const { return Model::reports_numbers(); }
   // Of an observation, at most.
-  std::size_t cells() const { return cells_.most(); }
+  std::size_t cells() const { return cells_.max_cells(); }
   // Whether values are of missions without end: the discount leaves next to nothing of what comes after the horizon, or
   // there are too many states to tell them apart by the decisions to go.
   bool is_endless() const { return is_endless_; }

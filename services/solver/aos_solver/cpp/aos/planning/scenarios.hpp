@@ -135,7 +135,7 @@ class ScenarioEvaluation {
       best_ = !has_values_ || (has_rollouts() && by_rollouts.mean() > by_average.mean()) ? by_rollouts : by_average;
       for (std::size_t i = first; i < last; ++i) {
         bounds_[i].lower = best_.mean();
-        bounds_[i].upper = has_values_ ? 0 : best_.mean_of_most();
+        bounds_[i].upper = has_values_ ? 0 : best_.mean_of_upper();
       }
     });
     return bounds_;
@@ -149,21 +149,21 @@ class ScenarioEvaluation {
   // What scenarios earn on average, and at most where that was looked for.
   class Earnings {
    public:
-    void add(double earned, double most = 0) {
+    void add(double earned, double upper = 0) {
       ++count_;
       sum_ += earned;
       squares_ += earned * earned;
-      sum_of_most_ += most;
+      sum_of_upper_ += upper;
     }
     double mean() const { return sum_ / count_; }
-    double mean_of_most() const { return sum_of_most_ / count_; }
+    double mean_of_upper() const { return sum_of_upper_ / count_; }
     double deviation() const { return std::sqrt(std::max(squares_ / count_ - mean() * mean(), 0.0)); }
 
    private:
     double count_ = 0;
     double sum_ = 0;
     double squares_ = 0;
-    double sum_of_most_ = 0;
+    double sum_of_upper_ = 0;
   };
 
   struct Follower : Observed<Model> {
@@ -179,17 +179,17 @@ class ScenarioEvaluation {
   void roll_out(const Scenario<Model>& scenario, int depth, Earnings& earnings) {
     const int count = has_values_ ? 1 : rollouts_per_scenario;
     double sum = 0;
-    double most = -std::numeric_limits<double>::infinity();
+    double highest = -std::numeric_limits<double>::infinity();
     Sampler random = draws(scenario.number, depth + horizon_);
     steps_ += static_cast<std::uint64_t>(count) * static_cast<std::uint64_t>(horizon_ - depth);
     for (int i = 0; i < count; ++i) {
       State state = scenario.state;
       const double found = Model::rollout(state, horizon_ - depth, random);
       sum += found;
-      most = std::max(most, found);
+      highest = std::max(highest, found);
     }
     const double origin = has_values_ ? values_.value(scenario.seen, horizon_ - depth) : 0;
-    earnings.add(sum / count - origin, most);
+    earnings.add(sum / count - origin, highest);
   }
 
   // The followers from `first` to `last` part by what they have observed last.

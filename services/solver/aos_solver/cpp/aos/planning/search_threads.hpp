@@ -21,7 +21,7 @@
 namespace aos {
 
 inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
-inline constexpr double least_time_share = 0.1;  // of a budget in time that is always used
+inline constexpr double min_time_share = 0.1;  // of a budget in time that is always used
 
 template <class Model>
 class SearchThreads {
@@ -107,7 +107,7 @@ class SearchThreads {
                         int first) {
     const double spent = std::chrono::duration<double>(PlanningClock::now() - start).count();
     if (spent >= seconds) return true;
-    if (first >= 0 || spent < least_time_share * seconds) return false;
+    if (first >= 0 || spent < min_time_share * seconds) return false;
     return tree.is_decided(static_cast<double>(simulations) * (seconds / spent - 1));
   }
 
