@@ -68,7 +68,7 @@ TEST("The probabilities of cells sum to 1, and are those of draws") {
   }
   NumberCells cells;
   EXPECT_EQUAL(cells.choose(reports), "");
-  EXPECT(cells.most() > 16 && cells.most() <= NumberCells::max_combinations);
+  EXPECT(cells.max_cells() > 16 && cells.max_cells() <= NumberCells::max_combinations);
   const auto rows = cells.by_cells(each(reports));
   for (std::size_t row = 0; row < 3; ++row) EXPECT_NEAR(sum_of(rows, row), 1.0, NumberCells::error);
 }
@@ -83,7 +83,7 @@ TEST("The grid of two coins is the coins, and their cells have the probabilities
   }
   NumberCells cells;
   EXPECT_EQUAL(cells.choose(reports), "");
-  EXPECT_EQUAL(cells.most(), 4u);
+  EXPECT_EQUAL(cells.max_cells(), 4u);
   const auto rows = cells.by_cells(each(reports));
   EXPECT_EQUAL(rows.elements.size(), 8u);
   EXPECT_NEAR(rows.begin(0)[0].probability, 0.9 * 0.95, 1e-15);
@@ -96,7 +96,7 @@ TEST("A number that tells nothing has one cell") {
   normal(reports, 1, 2, 1);
   NumberCells cells;
   EXPECT_EQUAL(cells.choose(reports), "");
-  EXPECT_EQUAL(cells.most(), 1u);
+  EXPECT_EQUAL(cells.max_cells(), 1u);
   EXPECT_EQUAL(cells.observations(), 2u);
 }
 
@@ -135,7 +135,7 @@ double value_over_cells(std::size_t max) {
   point_based::FlatModel model = doors(reports);
   NumberCells cells;
   EXPECT_EQUAL(cells.choose(reports, max), "");
-  EXPECT(cells.most() <= max);
+  EXPECT(cells.max_cells() <= max);
   model.likelihoods = cells.by_cells(model.likelihoods);
   model.observations = cells.observations();
   point_based::OnlineSarsop search{model};

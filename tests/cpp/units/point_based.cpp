@@ -1,4 +1,4 @@
-// Point-based search on tables: regions, bounds and trials, number_table.hpp, alias.hpp.
+// Point-based search on tables: regions, bounds and trials, alias.hpp.
 #include <map>
 
 #include "aos/base/alias.hpp"
@@ -6,7 +6,6 @@
 #include "aos/belief/belief.hpp"
 #include "aos/planning/state_space.hpp"
 #include "check.hpp"
-#include "point_based/number_table.hpp"
 #include "point_based/online.hpp"
 #include "point_based/regions.hpp"
 #include "worlds.hpp"
@@ -114,22 +113,6 @@ TEST("States that the robot always tells apart are in regions of their own, wort
     EXPECT_EQUAL(regions.is_worthless(state), regions.region_of[state] == point_based::nowhere);
   }
   EXPECT_EQUAL(worthless, 1);
-}
-
-TEST("Numbers are found by their keys, new keys are told, and clearing forgets them") {
-  point_based::NumberTable table;
-  for (std::uint32_t i = 0; i < 3000; ++i) {
-    const auto [number, is_new] = table.try_emplace(std::uint64_t{i} * 0x100000001u, i);
-    EXPECT(is_new && number == i);
-  }
-  EXPECT_EQUAL(table.size(), 3000u);
-  for (std::uint32_t i = 0; i < 3000; i += 7) {
-    const auto [number, is_new] = table.try_emplace(std::uint64_t{i} * 0x100000001u, 99999);
-    EXPECT(!is_new && number == i);
-  }
-  table.clear();
-  EXPECT_EQUAL(table.size(), 0u);
-  EXPECT(table.try_emplace(0, 5).second);
 }
 
 TEST("Draws by columns have the weights that the columns were made of") {
