@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from aos_protocol.diagnostics import Diagnostic, Severity
+from aos_protocol.diagnostics import Diagnostic, Mend, Severity, Span
 from aos_protocol.errors import CODES
 
 __all__ = ["sarif_log"]
@@ -36,19 +36,33 @@ def _result(diagnostic: Diagnostic, rule: int, folder: str) -> dict[str, Any]:
     text = diagnostic.message
     if diagnostic.hint:
         text = f"{text.rstrip('.')}. {diagnostic.hint}"
-    return {
+    result: dict[str, Any] = {
         "ruleId": diagnostic.code,
         "ruleIndex": rule,
         "level": _LEVELS[diagnostic.severity],
         "message": {"text": text},
         "locations": [{"physicalLocation": _location(diagnostic, folder)}],
     }
+    if diagnostic.mend is not None:
+        result["fixes"] = [_fix(diagnostic.hint, diagnostic.mend, folder)]
+    return result
+
+
+def _fix(hint: str, mend: Mend, folder: str) -> dict[str, Any]:
+    span = mend.span
+    region = {"startLine": span.line, "startColumn": span.column, "endColumn": span.column + mend.length}
+    replacement = {"deletedRegion": region, "insertedContent": {"text": mend.text}}
+    change = {"artifactLocation": _artifact(span, folder), "replacements": [replacement]}
+    return {"description": {"text": hint}, "artifactChanges": [change]}
+
+
+def _artifact(span: Span, folder: str) -> dict[str, str]:
+    return {"uri": f"{folder.rstrip('/')}/{span.file}".replace(" ", "%20")}
 
 
 def _location(diagnostic: Diagnostic, folder: str) -> dict[str, Any]:
     span = diagnostic.span
-    uri = f"{folder.rstrip('/')}/{span.file}".replace(" ", "%20")
-    location: dict[str, Any] = {"artifactLocation": {"uri": uri}}
+    location: dict[str, Any] = {"artifactLocation": _artifact(span, folder)}
     if span.line:
         region: dict[str, Any] = {"startLine": span.line}
         if span.column:

@@ -65,7 +65,7 @@ async def test_holding_is_decided_from_the_published_gap_and_forces(system: Syst
 
 
 async def test_an_unknown_skill_is_refused_with_the_nearest_name(system: System) -> None:
-    with pytest.raises(SkillError, match="did you mean navigate") as refusal:
+    with pytest.raises(SkillError, match="Did you mean `navigate`") as refusal:
         await system.activate("navigat")
     assert refusal.value.code == "AOS501"
 

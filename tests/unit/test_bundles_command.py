@@ -63,6 +63,13 @@ def test_lint_gives_sarif_with_rules_and_regions(app: typer.Typer, broken: Path)
     assert place["artifactLocation"]["uri"] == f"{broken}/serve.sd"
     assert place["region"]["startLine"] == 12
     assert place["region"]["startColumn"] == 41
+    (fix,) = found["fixes"]
+    assert fix["description"]["text"] == "Did you mean `delivered`?"
+    (change,) = fix["artifactChanges"]
+    assert change["artifactLocation"] == place["artifactLocation"]
+    (replacement,) = change["replacements"]
+    assert replacement["insertedContent"] == {"text": "delivered"}
+    assert replacement["deletedRegion"] == {"startLine": 12, "startColumn": 41, "endColumn": 49}
 
 
 def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(app: typer.Typer, broken: Path) -> None:

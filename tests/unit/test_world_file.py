@@ -22,7 +22,7 @@ def test_the_shipped_world_has_an_easy_and_a_hard_can(root: Path) -> None:
     [
         ("pose_noise_m", "pose_noise", "pose_noise"),
         ("x: 0.0, y: -2.0", "x: zero, y: -2.0", "robot.x"),
-        ("kind: armadillo", "kind: armadilo", "no world of the kind armadilo. Did you mean armadillo"),
+        ("kind: armadillo", "kind: armadilo", "no world of the kind armadilo. Did you mean `armadillo`"),
         ("kind: armadillo", "", "has no `kind`. Give one of armadillo"),
     ],
 )

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from aos_deploy.commands.documents import Folder, refusal
 from aos_deploy.exit_codes import ExitCode
-from aos_deploy.living_runs import living_run
-from aos_deploy.options import AsJson, Connect, Robot, Run, Runs
+from aos_deploy.options import AsJson
 from aos_deploy.printing import print_diagnostics, print_json
+from aos_deploy.running_system import System, on_system
 from aos_protocol.diagnostics import has_errors
-from aos_protocol.errors import DeployError, DocumentError
+from aos_protocol.errors import DocumentError
 from aos_protocol.messages import (
     BundleReport,
     Catalogue,
@@ -39,8 +38,6 @@ ANSWER_TIMEOUT_S = 5.0
 PUSH_TIMEOUT_S = 200.0
 """The registry lets the solver compile a new model before it accepts it."""
 
-T = TypeVar("T")
-
 bundle_app = typer.Typer(no_args_is_help=True, help="Send documents to a running system, or list them.")
 
 
@@ -53,12 +50,10 @@ def register(app: typer.Typer) -> None:
 
 
 @bundle_app.command(epilog="Example: aos bundle push deploy/bundles/armadillo-finer")
+@on_system
 def push(
+    system: System,
     path: Folder,
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Send a bundle to the registry.
@@ -80,7 +75,7 @@ def push(
         bundle = PushBundle(files, str(path))
         return await client.bus.ask(client.keys.push_bundle, bundle, BundleReport, timeout_s=PUSH_TIMEOUT_S)
 
-    report = _with_client(_System(connect, robot, run, runs), send)
+    report = system.do(send)
     if as_json:
         print_json(report)
     else:
@@ -91,11 +86,9 @@ def push(
 
 
 @bundle_app.command("list", epilog="Example: aos bundle list")
+@on_system
 def list_projects(
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
+    system: System,
     as_json: AsJson = False,
 ) -> None:
     """List the projects that the registry holds, with their skills."""
@@ -104,7 +97,7 @@ def list_projects(
         key = client.keys.catalogue
         return await client.bus.ask(key, CatalogueQuery(), Catalogue, timeout_s=ANSWER_TIMEOUT_S)
 
-    catalogue = _with_client(_System(connect, robot, run, runs), ask)
+    catalogue = system.do(ask)
     if as_json:
         print_json(catalogue)
         return
@@ -117,15 +110,13 @@ def list_projects(
 
 
 @bundle_app.command(epilog="Example: aos bundle show armadillo")
+@on_system
 def show(
+    system: System,
     project: OneProject = "",
     number: Annotated[
         int, typer.Option("--revision", min=0, help="An older revision; 0 is the current one")
     ] = 0,
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Print a project's documents as the registry holds them."""
@@ -134,7 +125,7 @@ def show(
         key, query = client.keys.project, ProjectQuery(project, number)
         return await client.bus.ask(key, query, ProjectRevision, timeout_s=ANSWER_TIMEOUT_S)
 
-    revision = _with_client(_System(connect, robot, run, runs), ask)
+    revision = system.do(ask)
     if as_json:
         print_json(revision)
         return
@@ -143,12 +134,10 @@ def show(
 
 
 @bundle_app.command(epilog="Example: aos bundle history armadillo")
+@on_system
 def history(
+    system: System,
     project: OneProject = "",
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """List a project's revisions.
@@ -160,7 +149,7 @@ def history(
         key, query = client.keys.bundle_history, RevisionsQuery(project)
         return await client.bus.ask(key, query, Revisions, timeout_s=ANSWER_TIMEOUT_S)
 
-    found = _with_client(_System(connect, robot, run, runs), ask)
+    found = system.do(ask)
     if as_json:
         print_json(found)
         return
@@ -173,13 +162,11 @@ def history(
 
 
 @bundle_app.command("rm", epilog="Example: aos bundle rm armadillo observe_holding")
+@on_system
 def remove(
+    system: System,
     project: Annotated[str, typer.Argument(help="The project")],
     skill: Annotated[str, typer.Argument(help="Only this skill; else the whole project")] = "",
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Take a skill, or a whole project, out of the catalogue.
@@ -193,7 +180,7 @@ def remove(
         key = client.keys.remove_bundle
         return await client.bus.ask(key, request, BundleReport, timeout_s=PUSH_TIMEOUT_S)
 
-    report = _with_client(_System(connect, robot, run, runs), ask)
+    report = system.do(ask)
     if as_json:
         print_json(report)
     else:
@@ -203,35 +190,6 @@ def remove(
             typer.echo("A mission that runs goes on with the documents it has.")
     if not report.is_accepted:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
-
-
-class _System(NamedTuple):
-    """Which system is meant, as the options say it."""
-
-    connect: str
-    robot: str
-    run: Path | None
-    runs: Path | None
-
-
-def _with_client(system: _System, ask: Callable[[AosClient], Awaitable[T]]) -> T:
-    """The answer of the system at an endpoint, or of the mission that runs; AosError if there is none."""
-    connect, robot = system.connect, system.robot
-    if connect and not robot:
-        raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
-    if not connect:
-        record = living_run(system.run, system.runs).read_record()
-        connect, robot = record.endpoint, robot or record.robot
-
-    import asyncio  # Only here, as the client: the commands that need no bus start quicker.
-
-    from aos_runtime.client import AosClient
-
-    async def answer() -> T:
-        async with AosClient.connect(connect, robot) as client:
-            return await ask(client)
-
-    return asyncio.run(answer())
 
 
 def _with_version(name: str, versions: dict[str, str]) -> str:

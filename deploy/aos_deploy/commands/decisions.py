@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
 
 from aos_deploy.living_runs import chosen_run
-from aos_deploy.options import Connect, Robot, Run, Runs
 from aos_deploy.run_directory import RunDirectory
+from aos_deploy.running_system import System, on_system
 from aos_deploy.views.lines import lines_of
-from aos_protocol.errors import DeployError, StorageError
+from aos_protocol.errors import StorageError
 from aos_protocol.messages import DecisionRecord, History, HistoryQuery, MissionState
+
+if TYPE_CHECKING:
+    from aos_runtime.client import AosClient
 
 __all__ = ["register"]
 
@@ -27,11 +30,9 @@ def register(app: typer.Typer) -> None:
     app.command(epilog="Example: aos decisions --json | jq .action")(decisions)
 
 
+@on_system
 def decisions(
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
+    system: System,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON decision record a line")] = False,
     follow: Annotated[bool, typer.Option(help="Go on until the mission ends")] = True,
 ) -> None:
@@ -49,21 +50,15 @@ def decisions(
         else:
             typer.echo("\n".join([*lines_of(event), *_reason(event)]))
 
-    if connect and not robot:
-        raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
-    directory = None
-    if not connect:
-        directory = chosen_run(run, runs)
-    if directory is not None and not directory.is_running:
-        for event in _journaled(directory):
-            show(event)
-        return
-    if directory is not None:
+    if not system.is_at_endpoint:
+        directory = chosen_run(system.run, system.runs)
+        if not directory.is_running:
+            for event in _journaled(directory):
+                show(event)
+            return
         record = directory.read_record()
-        connect, robot = record.endpoint, record.robot
-    import asyncio  # Only here, as the bus below: help and finished runs do without.
-
-    asyncio.run(_stream(connect, robot, show, is_following=follow))
+        system = System(record.endpoint, record.robot)
+    system.do(lambda aos: _stream(aos, show, is_following=follow))
 
 
 def _reason(event: DecisionRecord | MissionState) -> list[str]:
@@ -91,18 +86,13 @@ def _journaled(directory: RunDirectory) -> list[DecisionRecord | MissionState]:
     return events
 
 
-async def _stream(connect: str, robot: str, show: Show, *, is_following: bool) -> None:
-    from aos_runtime.client import AosClient
-
-    async with AosClient.connect(connect, robot) as aos:
-        if not is_following:
-            key = aos.keys.decision_history
-            history = await aos.bus.ask(key, HistoryQuery(), History, timeout_s=_ANSWER_TIMEOUT_S)
-            for record in history.records:
-                show(record)
-            return
-        async for event in aos.follow():
-            if isinstance(event, DecisionRecord) or (
-                isinstance(event, MissionState) and event.phase == "ended"
-            ):
-                show(event)
+async def _stream(aos: AosClient, show: Show, *, is_following: bool) -> None:
+    if not is_following:
+        key = aos.keys.decision_history
+        history = await aos.bus.ask(key, HistoryQuery(), History, timeout_s=_ANSWER_TIMEOUT_S)
+        for record in history.records:
+            show(record)
+        return
+    async for event in aos.follow():
+        if isinstance(event, DecisionRecord) or (isinstance(event, MissionState) and event.phase == "ended"):
+            show(event)

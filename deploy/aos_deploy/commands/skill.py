@@ -5,14 +5,13 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import Awaitable, Callable
 from typing import Annotated, Any
 
 import msgspec
 import typer
 
-from aos_deploy.living_runs import living_run
-from aos_deploy.options import AsJson, Connect, Robot, Run, Runs
+from aos_deploy.options import AsJson
+from aos_deploy.running_system import System, on_system
 from aos_protocol.documents import LocalSource, Project
 from aos_protocol.errors import AosError, DeployError, SkillError
 from aos_protocol.keys import Serving
@@ -47,9 +46,8 @@ def register(app: typer.Typer) -> None:
 
 
 @skill_app.command("list", epilog="Example: aos skill list --json")
-def list_skills(
-    connect: Connect = "", robot: Robot = "", run: Run = None, runs: Runs = None, as_json: AsJson = False
-) -> None:
+@on_system
+def list_skills(system: System, as_json: AsJson = False) -> None:
     """List the skills with their paths, and who serves them."""
 
     async def show(aos: AosClient) -> None:
@@ -62,16 +60,14 @@ def list_skills(
             served = ", ".join(row["served_by"]) or row["unavailable"]
             typer.echo(f"{row['skill']:24} {row['path']:24} {served}")
 
-    _with_system(connect, robot, run, runs, show)
+    system.do(show)
 
 
 @skill_app.command(epilog="Example: aos skill info pick")
+@on_system
 def info(
+    system: System,
     name: Annotated[str, typer.Argument(help="The skill, or its path")],
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Tell what a skill's call takes, and what its mapping reads."""
@@ -93,19 +89,17 @@ def info(
         }
         typer.echo(json.dumps(row, indent=2) if as_json else _lines(row))
 
-    _with_system(connect, robot, run, runs, show)
+    system.do(show)
 
 
 @skill_app.command(epilog="Example: aos skill call /navigate x=1.5 y=0 yaw=0 --anyway")
+@on_system
 def call(
+    system: System,
     path: Annotated[str, typer.Argument(help="The path that an adapter serves")],
     fields: Annotated[list[str] | None, typer.Argument(help="NAME=VALUE; values are JSON, or texts")] = None,
     deadline: Annotated[float, typer.Option(min=0.1, help="Seconds that it may take")] = 60.0,
     anyway: Annotated[bool, typer.Option("--anyway", help="Also while the mission moves the robot")] = False,
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
     as_json: AsJson = False,
 ) -> None:
     """Call a skill by hand, past mapping and mission; Ctrl-C cancels it.
@@ -132,16 +126,14 @@ def call(
                 telling.cancel()
         typer.echo(json.dumps(result.fields, indent=None if as_json else 2))
 
-    _with_system(connect, robot, run, runs, work)
+    system.do(work)
 
 
 @skill_app.command(epilog="Example: aos skill cancel")
+@on_system
 def cancel(
+    system: System,
     path: Annotated[str, typer.Argument(help="Only what runs there; else whatever moves")] = "",
-    connect: Connect = "",
-    robot: Robot = "",
-    run: Run = None,
-    runs: Runs = None,
 ) -> None:
     """Stop what moves; the mission goes on with that outcome."""
 
@@ -154,10 +146,11 @@ def cancel(
             if isinstance(each, AosError) and path:
                 raise each
 
-    _with_system(connect, robot, run, runs, work)
+    system.do(work)
 
 
-def resume(connect: Connect = "", robot: Robot = "", run: Run = None, runs: Runs = None) -> None:
+@on_system
+def resume(system: System) -> None:
     """Go on with a mission that holds, after what it holds for was looked after."""
 
     async def work(aos: AosClient) -> None:
@@ -167,26 +160,10 @@ def resume(connect: Connect = "", robot: Robot = "", run: Run = None, runs: Runs
             "the mission goes on" if before.phase == "holding" else f"it does not hold: {before.phase}"
         )
 
-    _with_system(connect, robot, run, runs, work)
+    system.do(work)
 
 
 # --- what they share ---------------------------------------------------------------------------------
-
-
-def _with_system(
-    connect: str, robot: str, run: Any, runs: Any, work: Callable[[AosClient], Awaitable[None]]
-) -> None:
-    if connect and not robot:
-        raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
-    if not connect:
-        record = living_run(run, runs).read_record()
-        connect, robot = record.endpoint, record.robot
-
-    async def inside() -> None:
-        async with AosClient.connect(connect, robot) as aos:
-            await work(aos)
-
-    asyncio.run(inside())
 
 
 async def _known(aos: AosClient) -> tuple[Project, MappingState, list[Serving]]:

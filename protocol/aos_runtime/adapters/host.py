@@ -7,7 +7,6 @@ each call and for its cancellation, presence of each path that is served.
 from __future__ import annotations
 
 import asyncio
-import difflib
 import importlib
 import logging
 import os
@@ -30,6 +29,7 @@ from aos_protocol.messages import (
     SkillResult,
     TopicMessage,
 )
+from aos_protocol.spelling import did_you_mean
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, Observed
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.ledger import Ledger
@@ -125,11 +125,10 @@ class Host:
         for path, binding in self.bound.items():
             target = str(binding.target if binding.target is not None else path)
             if target.strip("/") not in targets:
-                near = difflib.get_close_matches(target, targets.values(), 1)
                 has = f"It has {', '.join(sorted(targets.values())) or 'none'}"
                 raise DeployError(
                     f"the adapter {self.name} has no skill at {target}",
-                    hint=f"Did you mean {near[0]}? {has}" if near else has,
+                    hint=f"{did_you_mean(target, targets.values())} {has}".strip(),
                 )
         return [*self.bound, *(path for path in targets.values() if self.wants(path))]
 

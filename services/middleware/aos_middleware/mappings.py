@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
-from difflib import get_close_matches
 from pathlib import Path
 
 from aos_middleware.emit import EmittedMapping, emit_mapping
@@ -19,6 +18,7 @@ from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, SkillError
 from aos_protocol.messages import MappingState, ProjectRevision
+from aos_protocol.spelling import did_you_mean
 
 __all__ = ["Mappings", "emit_project"]
 
@@ -87,8 +87,7 @@ class Mappings:
             return mappings[skill]
         if not self._kept and self._refusal is not None:
             raise self._refusal
-        near = get_close_matches(skill, mappings, n=1)
-        known = f"did you mean {near[0]}?" if near else f"Known are: {', '.join(sorted(mappings)) or 'none'}"
+        known = did_you_mean(skill, mappings) or f"Known are: {', '.join(sorted(mappings)) or 'none'}"
         raise SkillError(f"there is no skill {skill}", code="AOS501", hint=known)
 
     async def adopt(self, announced: ProjectRevision) -> None:

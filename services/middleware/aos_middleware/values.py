@@ -8,11 +8,12 @@ the framework's class cannot be imported, and `plain_from` turns both, and the r
 from __future__ import annotations
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from enum import Enum
 from typing import Any
 
 import msgspec
+
+from aos_protocol.spelling import nearest
 
 __all__ = ["Message", "low_level_type", "message_from", "plain_from", "put", "stand_in", "text_of"]
 
@@ -27,8 +28,8 @@ class Message:
 
     def __getattr__(self, name: str) -> Any:
         known = list(self.__dict__)
-        near = get_close_matches(name, known, n=1)
-        has = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(known) or 'no fields'}"
+        near = nearest(name, known)
+        has = f"did you mean {near!r}?" if near else f"it has {', '.join(known) or 'no fields'}"
         raise AttributeError(f"no field {name!r}; {has}", name=name)
 
     def __eq__(self, other: object) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import pkgutil
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from aos_protocol.errors import DeployError
+from aos_protocol.spelling import did_you_mean
 from aos_skills.pybullet import worlds
 from aos_skills.pybullet.parts.world import World, WorldKind
 
@@ -63,6 +63,5 @@ def _kind(path: Path, data: Any) -> WorldKind[Any, Any]:
         return kind
     if name is None:
         raise DeployError(f"{path}: has no `kind`", hint=f"Give one of {', '.join(known)}")
-    near = difflib.get_close_matches(str(name), known, 1)
-    hint = f"Did you mean {near[0]}?" if near else f"Known are {', '.join(known)}"
+    hint = did_you_mean(str(name), known) or f"Known are {', '.join(known)}"
     raise DeployError(f"{path}: there is no world of the kind {name}", hint=hint)

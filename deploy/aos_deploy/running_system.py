@@ -1,0 +1,73 @@
+"""Commands on a running system: which one is meant, and a client of its bus."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, get_type_hints
+
+from aos_deploy.living_runs import living_run
+from aos_deploy.options import Connect, Robot, Run, Runs
+from aos_protocol.errors import DeployError
+
+if TYPE_CHECKING:
+    from aos_runtime.client import AosClient
+
+__all__ = ["System", "on_system"]
+
+T = TypeVar("T")
+
+
+class System(NamedTuple):
+    """The system at an endpoint, or the mission that runs, as the options of a command say."""
+
+    connect: Connect = ""
+    robot: Robot = ""
+    run: Run = None
+    runs: Runs = None
+
+    @property
+    def is_at_endpoint(self) -> bool:
+        """Whether an endpoint was named; AosError where the robot there was not."""
+        if self.connect and not self.robot:
+            raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
+        return bool(self.connect)
+
+    def do(self, work: Callable[[AosClient], Awaitable[T]]) -> T:
+        """What `work` makes of the system; AosError if there is none."""
+        connect, robot = self.connect, self.robot
+        if not self.is_at_endpoint:
+            record = living_run(self.run, self.runs).read_record()
+            connect, robot = record.endpoint, robot or record.robot
+
+        import asyncio  # Only here, as the client: the commands that need no bus start quicker.
+
+        from aos_runtime.client import AosClient
+
+        async def inside() -> T:
+            async with AosClient.connect(connect, robot) as client:
+                return await work(client)
+
+        return asyncio.run(inside())
+
+
+def on_system(command: Callable[..., None]) -> Callable[..., None]:
+    """A command with the options of `System` in place of its parameter `system`."""
+    hints = get_type_hints(System, include_extras=True)
+    options = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hints[name])
+        for name, default in System._field_defaults.items()
+    ]
+
+    @functools.wraps(command)
+    def with_options(**given: Any) -> None:
+        system = System(**{option.name: given.pop(option.name) for option in options})
+        command(system=system, **given)
+
+    parameters: list[inspect.Parameter] = []
+    signature = inspect.signature(command, eval_str=True)
+    for own in signature.parameters.values():
+        parameters += options if own.name == "system" else [own.replace(kind=inspect.Parameter.KEYWORD_ONLY)]
+    with_options.__dict__["__signature__"] = signature.replace(parameters=parameters)
+    return with_options
