@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
 import typer
 
+from aos_deploy.constraints import constrained
 from aos_deploy.program import cache_dir
 from aos_protocol.diagnostics import Severity, render
+from aos_protocol.documents import Constraint
 from aos_protocol.errors import DocumentError, ModelError
 from aos_registry.load import load_bundle, read_bundle_files, with_excerpts
 from aos_solver.building.build import BuildKind
@@ -20,8 +22,10 @@ __all__ = ["engine_of_bundle"]
 
 
 @asynccontextmanager
-async def engine_of_bundle(bundle: Path, seed: int, *, kind: BuildKind = "quick") -> AsyncIterator[Engine]:
-    """The engine of a bundle, compiled if need be.
+async def engine_of_bundle(
+    bundle: Path, seed: int, *, kind: BuildKind = "quick", constraints: Sequence[Constraint] = ()
+) -> AsyncIterator[Engine]:
+    """The engine of a bundle, compiled if need be, for missions with these constraints.
 
     The bundle's mistakes come as one DocumentError; faults of its model show the line of the document.
     """
@@ -35,7 +39,7 @@ async def engine_of_bundle(bundle: Path, seed: int, *, kind: BuildKind = "quick"
         typer.echo(render(diagnostic), err=True)
     try:
         built = await build_project(
-            loaded.project,
+            constrained(loaded.project, constraints),
             cache_dir(),
             lambda remark: typer.echo(f"aos: {remark}", err=True),
             kind=kind,

@@ -14,9 +14,11 @@ from typing import Annotated, Any, Literal
 import msgspec
 
 from aos_deploy.adapters import AdapterPlan, read_adapters
+from aos_deploy.constraints import snippet_of
 from aos_deploy.typed import known_names, read_structure
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
 from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Constraint
 from aos_protocol.errors import DeployError
 from aos_protocol.findings import Findings
 from aos_registry.archive import is_archive_name
@@ -25,6 +27,7 @@ from aos_registry.reading import skills_of_files
 
 __all__ = [
     "BusPart",
+    "ConstraintPart",
     "DeployFile",
     "Deployment",
     "MissionPart",
@@ -49,11 +52,23 @@ class BusPart(msgspec.Struct, frozen=True, kw_only=True):
     listen: str = "tcp/127.0.0.1:7447"
 
 
-class MissionPart(msgspec.Struct, frozen=True, kw_only=True):
+class ConstraintPart(msgspec.Struct, frozen=True, kw_only=True):
+    """The event `never` has at most this `probability` in a mission; see docs/constraints.md.
+
+    It is an expression of the documents' language over `state`, `state__` and the names of skills. Searches
+    count `cost` less for a step that violates it.
+    """
+
+    never: str
+    probability: Annotated[float, msgspec.Meta(ge=0, lt=1)]
+    cost: Annotated[float, msgspec.Meta(ge=0)] = 0.0
+
+
+class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """When a mission ends. `stop_below_value` is an expected return; without one nothing is too poor.
 
     It ends when `failure_limit` activations in a row brought no observation. It holds for `hold_s` at most,
-    for somebody or for adapters that have left.
+    for somebody or for adapters that have left. `constraints` are what it must hardly ever do.
     """
 
     goal_probability: Probability = 0.9
@@ -62,6 +77,7 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True):
     activation_timeout_s: Seconds = 120.0
     failure_limit: Count = 3
     hold_s: Seconds = 600.0
+    constraints: tuple[ConstraintPart, ...] = ()
 
 
 class SkillPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -77,7 +93,7 @@ class SkillPart(msgspec.Struct, frozen=True, kw_only=True):
     on_failure: Literal["observe", "retry", "hold", "end"] = "observe"
 
 
-class SolverPart(msgspec.Struct, frozen=True, kw_only=True):
+class SolverPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """The budget of one decision, in simulations or in time, and what makes it reproducible.
 
     Without a horizon the environment document's holds. With the planner `auto` the model, the belief and the
@@ -134,6 +150,7 @@ class Deployment(msgspec.Struct, frozen=True, kw_only=True):
     world: Path | None
     adapters: tuple[AdapterPlan, ...]
     policy: Path | None
+    constraints: tuple[Constraint, ...]
     watch: Path | None
     runs: Path
 
@@ -196,8 +213,33 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         world=world,
         adapters=read_adapters(node, findings, str(world) if world else ""),
         policy=policy,
+        constraints=_constraints(path, file, node),
         watch=folder / file.watch if file.watch is not None else None,
         runs=(folder / file.runs).resolve(),
+    )
+
+
+def _constraints(path: Path, file: DeployFile, node: YamlMap) -> tuple[Constraint, ...]:
+    """The mission's constraints with their places; what they name is checked with the bundles' documents."""
+    mission = node.entries.get("mission")
+    listed = mission.entries.get("constraints") if isinstance(mission, YamlMap) else None
+    places = [
+        item.entries["never"]
+        for item in (listed.items if isinstance(listed, YamlList) else ())
+        if isinstance(item, YamlMap) and isinstance(item.entries.get("never"), YamlScalar)
+    ]
+    return tuple(
+        Constraint(
+            snippet_of(
+                part.never.rstrip(),
+                msgspec.structs.replace(place.text_span, file=str(path)),
+                is_block=place.is_block,
+            ),
+            part.probability,
+            part.cost,
+        )
+        for part, place in zip(file.mission.constraints, places, strict=False)
+        if isinstance(place, YamlScalar)
     )
 
 

@@ -21,6 +21,7 @@ class ExitCode(IntEnum):
     FAULT = 7
     MISSION_OVER = 8
     SKILLS_FAILED = 9
+    TOO_RISKY = 10
     INTERRUPTED = 130
 
 
@@ -35,6 +36,7 @@ _MEANINGS = {
     ExitCode.FAULT: "a fault while the mission ran",
     ExitCode.MISSION_OVER: "the mission ended with neither its goal nor a failure",
     ExitCode.SKILLS_FAILED: "skills kept failing",
+    ExitCode.TOO_RISKY: "every action risked more than the mission's constraints allow",
     ExitCode.INTERRUPTED: "interrupted",
 }
 
@@ -47,6 +49,7 @@ _BY_ENDING = {
     "nothing_worthwhile": ExitCode.NOTHING_WORTHWHILE,
     "step_limit": ExitCode.STEP_LIMIT,
     "skills_failed": ExitCode.SKILLS_FAILED,
+    "too_risky": ExitCode.TOO_RISKY,
     "cancelled": ExitCode.INTERRUPTED,
     "fault": ExitCode.FAULT,
 }

@@ -11,6 +11,7 @@ from typing import Protocol
 
 import msgspec
 
+from aos_deploy.bundle_files import check_constraints_of, files_of_bundle
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, Told
@@ -21,7 +22,7 @@ from aos_deploy.program import programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.supervisor import Supervisor, supervised
-from aos_protocol.diagnostics import Diagnostic, has_errors
+from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import AosError, DeployError, DocumentError
 from aos_protocol.messages import (
     BundleReport,
@@ -30,8 +31,6 @@ from aos_protocol.messages import (
     PushBundle,
     StartMission,
 )
-from aos_registry.load import read_bundle_files
-from aos_registry.reading import skills_of_files
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
@@ -109,6 +108,7 @@ class MissionRun:
             robot=deployment.file.robot, service="", endpoint=endpoint, run_dir=str(run.path)
         )
         programs = programs_of_deployment(deployment)
+        await asyncio.to_thread(check_constraints_of, deployment)
         try:
             async with supervised(programs, base, run, self._report, self._clock) as supervisor:
                 self._supervisor = supervisor
@@ -257,13 +257,3 @@ def _with_folder(diagnostic: Diagnostic, bundle: Path) -> Diagnostic:
     """The diagnostic with a file name that leads to the file from here."""
     span = msgspec.structs.replace(diagnostic.span, file=str(from_here(bundle) / diagnostic.span.file))
     return msgspec.structs.replace(diagnostic, span=span)
-
-
-def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
-    """The documents in a bundle's folder or archive by name, without those of skills that are left out."""
-    files, remarks = read_bundle_files(bundle)
-    if has_errors(remarks):
-        found = tuple(each for each in remarks if each.is_error)
-        raise DocumentError(f"the bundle {bundle} cannot be read", code=found[0].code, diagnostics=found)
-    skills = skills_of_files(files) if leave_out else {}
-    return {name: data for name, data in files.items() if skills.get(name) not in leave_out}

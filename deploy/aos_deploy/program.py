@@ -106,6 +106,7 @@ def _solver_settings(deployment: Deployment) -> dict[str, Any]:
         **budget,
         "policy": str(deployment.policy or ""),
         **msgspec.structs.asdict(file.mission),
+        "constraints": msgspec.to_builtins(deployment.constraints),
         "skills": {name: msgspec.structs.asdict(part) for name, part in file.skills.items()},
     }
 

@@ -21,10 +21,22 @@ __all__ = ["YamlList", "YamlMap", "YamlNode", "YamlScalar", "read_yaml"]
 
 
 class YamlScalar(msgspec.Struct, frozen=True):
-    """A number, text, bool or None."""
+    """A number, text, bool or None. `style` is the sign that its text begins with, empty for plain text."""
 
     value: int | float | bool | str | None
     span: Span
+    style: str = ""
+
+    @property
+    def is_block(self) -> bool:
+        """Whether its text begins in the line below."""
+        return self.style in ("|", ">")
+
+    @property
+    def text_span(self) -> Span:
+        """Where its text begins: of one in quotes, behind the first."""
+        quote = len(self.style) if not self.is_block else 0
+        return Span(self.span.file, self.span.line, self.span.column + quote)
 
 
 class YamlList(msgspec.Struct, frozen=True):
@@ -104,12 +116,13 @@ class _Reader:
             return self.map(node)
         if isinstance(node, SequenceNode):
             return YamlList(tuple(self._node(item) for item in node.value), where)
-        return self._scalar(str(node.value), str(node.tag), where)
+        style = str(getattr(node, "style", "") or "")
+        return self._scalar(str(node.value), str(node.tag), where, style)
 
-    def _scalar(self, text: str, tag: str, where: Span) -> YamlScalar:
+    def _scalar(self, text: str, tag: str, where: Span, style: str) -> YamlScalar:
         match tag.rpartition(":")[2]:
             case "str":
-                return YamlScalar(text, where)
+                return YamlScalar(text, where, style)
             case "null":
                 return YamlScalar(None, where)
             case "bool":

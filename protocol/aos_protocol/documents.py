@@ -21,6 +21,7 @@ __all__ = [
     "ActivationField",
     "Assignment",
     "CompoundType",
+    "Constraint",
     "EnumType",
     "Environment",
     "Field",
@@ -358,8 +359,26 @@ class LowLevelDocument(msgspec.Struct, frozen=True):
     constants: tuple[LowLevelConstant, ...] = ()
 
 
+# --- missions ------------------------------------------------------------------------------------------
+
+
+class Constraint(msgspec.Struct, frozen=True):
+    """Whatever a mission does, the event `never` comes to pass in it with at most this `probability`.
+
+    `never` is an expression over `state`, before a step, `state__`, after it, and the action: a skill's name
+    stands for a pointer to the action's parameters, null where the action is of another skill. A step where
+    it holds violates the constraint, and earns `cost` less in the model.
+    """
+
+    never: Snippet
+    probability: float
+    cost: float = 0.0
+
+
 class Project(msgspec.Struct, frozen=True):
     """Everything about one robot and task: what the registry publishes and the generators read.
+
+    `constraints` are the mission's and not the documents': the solver adds them.
 
     Skills are sorted by name, so that grounded actions have the same numbers whatever the file names are.
     """
@@ -368,6 +387,7 @@ class Project(msgspec.Struct, frozen=True):
     environment: Environment
     skills: tuple[Skill, ...]
     low_level: LowLevelDocument | None = None
+    constraints: tuple[Constraint, ...] = ()
 
     def skill(self, name: str) -> Skill:
         """The skill of that name; KeyError if there is none."""

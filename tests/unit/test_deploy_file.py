@@ -8,8 +8,8 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from aos_deploy.bundle_files import files_of_bundle
 from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file
-from aos_deploy.mission_run import files_of_bundle
 from aos_deploy.program import programs_of_deployment
 from aos_protocol.errors import DeployError
 from aos_runtime.adapters import AdapterSettings, Binding

@@ -12,13 +12,17 @@ import msgspec
 import typer
 
 from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.constraints import constraint_of_option
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
+from aos_deploy.views.lines import risk_text
 from aos_deploy.views.tables import print_runs, print_values
-from aos_protocol.messages import ActionValue
+from aos_protocol.errors import PlanningError
+from aos_protocol.messages import ActionValue, ConstraintRisk
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.endings import MissionLimits
+from aos_solver.risk import RiskBudget
 from aos_solver.search import Search
 from aos_solver.simulation import SimulatedRun, simulate_mission
 
@@ -42,6 +46,10 @@ PlannerName = Annotated[
     Planner, typer.Option("--planner", help="How to search; with auto what fits the model and the budget")
 ]
 Threads = Annotated[int, typer.Option(min=1, max=32, help="Threads that search; for POMCP")]
+Never = Annotated[
+    list[str] | None,
+    typer.Option("--never", metavar="P:EXPRESSION", help="A constraint: no more probable than P; repeatable"),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 
 
@@ -61,6 +69,8 @@ class Decision(msgspec.Struct):
     actions: list[ActionValue]
     planner: str = ""
     why: str = ""
+    constraints: list[ConstraintRisk] = []
+    forbidden: list[str] = []
 
 
 def plan(
@@ -72,6 +82,7 @@ def plan(
     planner: PlannerName = "auto",
     threads: Threads = 1,
     policy: PolicyFile = None,
+    never: Never = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
     as_json: AsJson = False,
 ) -> None:
@@ -91,12 +102,24 @@ def plan(
         if exact:
             values = (await engine.exact(horizon)).actions
             return _decision([ActionValue(value.action, value.q, 0, 0.0) for value in values], 0)
-        found = await search.run(engine, 1)
+        budget = RiskBudget(engine.bounds)
+        risks = await engine.risks(search.seed_of(1)) if budget else None
+        forbidden = budget.forbidden(risks) if risks is not None else ()
+        if risks is not None and len(forbidden) == len(risks.actions):
+            raise PlanningError(budget.remark(risks), code="AOS303")
+        found = await search.run(engine, 1, sorted(forbidden))
         decision = _decision(list(found.actions), found.simulations)
-        chosen = {"action": found.best.action, "value": found.best.q}
-        return msgspec.structs.replace(decision, planner=found.planner, why=found.why, **chosen)
+        return msgspec.structs.replace(
+            decision,
+            action=found.best.action,
+            value=found.best.q,
+            planner=found.planner,
+            why=found.why,
+            constraints=list(budget.spend(risks, found.index)) if risks is not None else [],
+            forbidden=[found.actions[number].action for number in sorted(forbidden)],
+        )
 
-    decision = _with_engine(bundle, seed, decide)
+    decision = _with_engine(bundle, seed, decide, never=never)
     if as_json:
         print_json(decision)
     else:
@@ -104,6 +127,10 @@ def plan(
         print_values(decision.actions, decision.simulations, title)
         if decision.planner:
             print(f"{decision.planner}: {decision.why}")
+        for constraint in decision.constraints:
+            print(f"{decision.action}: {risk_text(constraint)}")
+        if decision.forbidden:
+            print(f"too risky: {', '.join(decision.forbidden)}")
 
 
 def _decision(values: list[ActionValue], simulations: int) -> Decision:
@@ -128,6 +155,7 @@ def simulate(
     planner: PlannerName = "auto",
     threads: Threads = 1,
     policy: PolicyFile = None,
+    never: Never = None,
     goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
     step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
     stop_below_value: Annotated[
@@ -161,7 +189,7 @@ def simulate(
                 done.append(await simulate_mission(engine, of_run, limits, with_states=states))
         return done
 
-    missions = _with_engine(bundle, seed, run_all)
+    missions = _with_engine(bundle, seed, run_all, never=never)
     if as_json:
         print_json(Campaign(missions, _summary(missions)))
     else:
@@ -179,6 +207,10 @@ def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
         "mean_discounted_return": statistics.fmean(returns),
         "stderr": statistics.stdev(returns) / len(runs) ** 0.5 if len(runs) > 1 else 0.0,
         "mean_steps": statistics.fmean(run.steps for run in runs),
+        **{
+            f"violation_rate of {never}": sum(never in run.violated for run in runs) / len(runs)
+            for never in runs[0].risked
+        },
     }
 
 
@@ -224,10 +256,17 @@ def rate(
 
 
 def _with_engine(
-    bundle: Path, seed: int, ask: Callable[[Engine], Awaitable[T]], *, kind: BuildKind = "quick"
+    bundle: Path,
+    seed: int,
+    ask: Callable[[Engine], Awaitable[T]],
+    *,
+    kind: BuildKind = "quick",
+    never: list[str] | None = None,
 ) -> T:
+    constraints = [constraint_of_option(text) for text in never or ()]
+
     async def run() -> T:
-        async with engine_of_bundle(bundle, seed, kind=kind) as engine:
+        async with engine_of_bundle(bundle, seed, kind=kind, constraints=constraints) as engine:
             return await ask(engine)
 
     return asyncio.run(run())

@@ -10,8 +10,8 @@ from typing import Protocol
 
 import msgspec
 
+from aos_deploy.bundle_files import files_of_bundle
 from aos_deploy.deploy_file import Deployment
-from aos_deploy.mission_run import files_of_bundle
 from aos_deploy.trials.model_player import ModelPlayer
 from aos_deploy.trials.setting import Setting, deployment_of
 from aos_deploy.trials.system_player import SystemPlayer

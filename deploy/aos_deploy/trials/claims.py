@@ -58,7 +58,8 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     `first` and `last` are the first and the last step. `some` step was taken, `never` another one. Steps of
     `order` were taken in this order, and those of `never_order` were not. `actions` are all actions, in full.
     `endings` are the allowed ones. `goal` says whether the goal was reached. `never_state` names texts of the
-    world's truth that no state holds. With `surely`, the interval's lower end has to reach the share.
+    world's truth that no state holds, `some_state` such that some state holds. With `surely`, the interval's
+    lower end has to reach the share.
     """
 
     says: str
@@ -78,6 +79,7 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     endings: tuple[str, ...] = ()
     goal: bool | None = None
     never_state: str | None = None
+    some_state: str | None = None
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -165,9 +167,12 @@ def _counts(count: Count, trial: Trial) -> bool:
 
 def _never_holds(pattern: str, trial: Trial) -> bool:
     """Without states nothing is known, so that nothing is claimed of them either."""
-    known = len(trial.states) >= len(trial.actions)
+    return len(trial.states) >= len(trial.actions) and not _somewhere_holds(pattern, trial)
+
+
+def _somewhere_holds(pattern: str, trial: Trial) -> bool:
     wanted = [each.strip() for each in pattern.split(" | ")]
-    return known and not any(each in state for state in trial.states for each in wanted)
+    return any(each in state for state in trial.states for each in wanted)
 
 
 _CHECKS: dict[str, Callable[[Any, Trial], bool]] = {
@@ -183,4 +188,5 @@ _CHECKS: dict[str, Callable[[Any, Trial], bool]] = {
     "endings": lambda claim, trial: trial.ending in claim.endings,
     "goal": lambda claim, trial: trial.goal == claim.goal,
     "never_state": lambda claim, trial: _never_holds(claim.never_state, trial),
+    "some_state": lambda claim, trial: _somewhere_holds(claim.some_state, trial),
 }

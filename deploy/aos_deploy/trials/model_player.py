@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import time
 
+from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import Deployment
-from aos_deploy.mission_run import files_of_bundle
 from aos_deploy.program import cache_dir
 from aos_deploy.trials.trial import Trial
-from aos_protocol.errors import DocumentError
-from aos_registry.load import load_files
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.endings import Ending, MissionLimits
@@ -33,17 +31,7 @@ class ModelPlayer:
     @classmethod
     async def prepared(cls, deployment: Deployment) -> ModelPlayer:
         """Reads the documents and compiles the model; DocumentError with all that is wrong with them."""
-        files: dict[str, bytes] = {}
-        for bundle in deployment.bundles:
-            files |= files_of_bundle(bundle, deployment.file.leave_out)
-        loaded = load_files(files, name=deployment.path.name)
-        if loaded.project is None:
-            raise DocumentError(
-                f"the bundles of {deployment.path.name} have errors",
-                hint="Mend the places named above",
-                diagnostics=loaded.diagnostics,
-            )
-        model = await build_project(loaded.project, cache_dir(), lambda remark: None)
+        model = await build_project(project_of(deployment), cache_dir(), lambda remark: None)
         return cls(deployment, model)
 
     async def play(self, seed: int) -> Trial:

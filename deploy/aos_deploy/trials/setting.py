@@ -22,7 +22,8 @@ adapters or by the model."""
 class Setting(msgspec.Struct, frozen=True, kw_only=True):
     """`bundles` stand in place of the deploy file's; `simulations` and `step_limit` too.
 
-    `faults` are values for the world file's `faults`, for a simulated world.
+    `unconstrained` leaves out the deploy file's constraints. `faults` are values for the world file's
+    `faults`, for a simulated world.
     """
 
     deploy: str
@@ -30,6 +31,7 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     bundles: tuple[str, ...] = ()
     simulations: int | None = None
     step_limit: int | None = None
+    unconstrained: bool = False
     faults: dict[str, float] = {}
 
 
@@ -46,6 +48,9 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
     if setting.step_limit is not None:
         mission = msgspec.structs.replace(file.mission, step_limit=setting.step_limit)
         file = msgspec.structs.replace(file, mission=mission)
+    if setting.unconstrained:
+        file = msgspec.structs.replace(file, mission=msgspec.structs.replace(file.mission, constraints=()))
+        deployment = msgspec.structs.replace(deployment, constraints=())
     if setting.bundles:
         bundles = tuple((folder / bundle).resolve() for bundle in setting.bundles)
         for bundle in bundles:

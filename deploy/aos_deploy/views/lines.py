@@ -8,9 +8,9 @@ from typing import Self
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
 from aos_deploy.views.observations import observation_text, value_text
 from aos_protocol.diagnostics import render
-from aos_protocol.messages import BeliefSummary, BundleReport, DecisionRecord, MissionState
+from aos_protocol.messages import BeliefSummary, BundleReport, ConstraintRisk, DecisionRecord, MissionState
 
-__all__ = ["JsonView", "PlainView", "decision_line", "effort_text", "endings_text", "lines_of"]
+__all__ = ["JsonView", "PlainView", "decision_line", "effort_text", "endings_text", "lines_of", "risk_text"]
 
 
 class PlainView:
@@ -71,7 +71,8 @@ def decision_line(record: DecisionRecord) -> str:
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
         values = ", ".join(f"{action.action} {value_text(action.q, 2)}" for action in others)
-        return f"{head}  [{values}]  {effort_text(record)}"
+        risks = "".join(f"  ({risk_text(constraint)})" for constraint in record.constraints)
+        return f"{head}  [{values}]  {effort_text(record)}{risks}"
     outcome = record.outcome
     is_observed = outcome.status == "observed"
     what = observation_text(outcome.response, outcome.numbers) if is_observed else outcome.status
@@ -89,6 +90,13 @@ def effort_text(record: DecisionRecord) -> str:
     by = f"{record.planner}, " if record.planner else ""
     threads = f" by {record.threads} threads" if record.threads > 1 else ""
     return f"{by}{record.simulations} simulations in {record.planning_s:.2f} s{threads}"
+
+
+def risk_text(constraint: ConstraintRisk) -> str:
+    """What a decision risks, and what it may."""
+    sign = "about " if constraint.is_sampled else ""
+    bound = f"{constraint.left:.3g} left of {constraint.probability:g}"
+    return f"risks {sign}{constraint.risk:.3g}, {bound}: never {constraint.never}"
 
 
 def endings_text(belief: BeliefSummary) -> str:

@@ -15,7 +15,7 @@ from rich.text import Text
 
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.terminal import console as our_console
-from aos_deploy.views.lines import effort_text, endings_text, lines_of
+from aos_deploy.views.lines import effort_text, endings_text, lines_of, risk_text
 from aos_deploy.views.panels import belief_bars, belief_lines, step_table, value_table
 from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
 
@@ -80,7 +80,8 @@ class Screen:
 
     def _mission(self, latest: DecisionRecord, width: int, rows: int) -> Iterator[RenderableType]:
         """Steps, values and belief within a number of rows; the latter two side by side where that fits."""
-        rows = max(rows - any(record.remark for record in self.steps.values()), 3 * _FEWEST_ROWS)
+        rows -= any(record.remark for record in self.steps.values()) + len(latest.constraints)
+        rows = max(rows, 3 * _FEWEST_ROWS)
         bars = belief_bars(latest.belief, rows // 2)
         is_wide = _cells(bars) + _GAP_CELLS + _cells(value_table(latest, width, rows)) <= width
         below = [] if is_wide else belief_lines(latest.belief, width, max(rows // 4, 2))
@@ -101,6 +102,8 @@ class Screen:
             yield Text()
             yield from below
         yield Text(effort_text(latest), style="dim")
+        for constraint in latest.constraints:
+            yield Text(risk_text(constraint), style="dim", no_wrap=True, overflow="ellipsis")
 
     def _headline(self) -> Text:
         text = Text(self.title, style="bold", no_wrap=True, overflow="ellipsis")

@@ -53,7 +53,8 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
     """What the search found about the actions, the best first; the last row tells how many are not shown."""
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     table.add_column("action", no_wrap=True)
-    for column in ("value", "±", "visits"):
+    risks = _risks(record)
+    for column in ("value", "±", "visits", *(["risk"] if risks else [])):
         table.add_column(column, justify="right", no_wrap=True)
     best: list[ActionValue] = sorted(record.actions, key=lambda each: -each.q)
     shown = best if len(best) <= rows else best[: max(rows - 1, 1)]
@@ -61,10 +62,23 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
     for value, name in zip(shown, names, strict=True):
         style = "bold" if value.action == record.action else ""
         numbers = (value_text(value.q, 2), f"{value.stderr:.2f}", f"{value.n:,}")
-        table.add_row(Text(name, style), *numbers, style=style)
+        risk = [risks[value.action]] if risks else []
+        table.add_row(Text(name, style), *numbers, *risk, style=style)
     if len(shown) < len(best):
         table.add_row(Text(f"and {len(best) - len(shown)} more", style="dim"))
     return table
+
+
+def _risks(record: DecisionRecord) -> dict[str, str]:
+    """For each action the most that it risks of any constraint, and whether that is too much."""
+    if not record.constraints:
+        return {}
+    told = {}
+    for number, value in enumerate(record.actions):
+        is_barred = any(each.risks[number] > each.left for each in record.constraints)
+        most = max(each.risks[number] for each in record.constraints)
+        told[value.action] = f"{most:.3g}{' too much' if is_barred else ''}"
+    return told
 
 
 def belief_bars(belief: BeliefSummary, rows: int) -> Table:

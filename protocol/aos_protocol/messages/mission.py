@@ -13,6 +13,7 @@ __all__ = [
     "ActionValue",
     "BeliefSummary",
     "CheckModel",
+    "ConstraintRisk",
     "DecisionRecord",
     "History",
     "HistoryQuery",
@@ -84,9 +85,9 @@ class MissionQuery(Message, frozen=True):
 class MissionState(Message, frozen=True):
     """Where the mission is: a `phase` of waiting, building, planning, acting, holding, ended; how it ended.
 
-    `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `step_limit`, `skills_failed`,
-    `cancelled`, `fault`, or empty while it runs. The first three are what the belief holds for sure enough:
-    how the world has really ended, nobody tells the robot. `remark` is one line for people.
+    `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `too_risky`, `step_limit`,
+    `skills_failed`, `cancelled`, `fault`, or empty while it runs. The first three are what the belief holds
+    for sure enough: how the world has really ended, nobody tells the robot. `remark` is one line for people.
     """
 
     mission: str
@@ -114,6 +115,23 @@ class PredictedObservation(Message, frozen=True):
     probability: float
 
 
+class ConstraintRisk(Message, frozen=True):
+    """How a decision stands to one constraint of the mission: `never` with more than this `probability`.
+
+    `left` is what the decisions before have left of it, and `risk` what this one takes: the probability,
+    under the belief decided on, that the chosen action's step violates the constraint. `risks` are those of
+    all actions, in the order of the record's `actions`; one that risks more than is left cannot be chosen.
+    Where steps cannot be enumerated, these are estimates (`is_sampled`).
+    """
+
+    never: str
+    probability: float
+    left: float
+    risk: float
+    risks: tuple[float, ...]
+    is_sampled: bool = False
+
+
 class DecisionRecord(Message, frozen=True):
     """One step of a mission, published twice: when decided (`outcome` is None) and when observed.
 
@@ -122,6 +140,7 @@ class DecisionRecord(Message, frozen=True):
     -log P(observation | belief, action) in nats, of a density where numbers were observed; infinite surprise
     is given as `is_impossible`. `remark` says what of the outcome could not be used for the belief. `planner`
     made the decision with so many `threads`; `why` says why it was that planner and what it has found.
+    `constraints` are the mission's, each with what the decision risks.
     """
 
     sequence: int
@@ -148,6 +167,7 @@ class DecisionRecord(Message, frozen=True):
     planner: str = ""
     why: str = ""
     threads: int = 1
+    constraints: tuple[ConstraintRisk, ...] = ()
 
 
 class HistoryQuery(Message, frozen=True):

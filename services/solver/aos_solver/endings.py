@@ -14,13 +14,15 @@ __all__ = ["Ending", "MissionLimits", "believed_ending", "ending_after_planning"
 class Ending(StrEnum):
     """How a mission ends; `SKILLS_FAILED`, `FAULT` and `CANCELLED` come from outside the belief.
 
-    `OVER` is an ending of the documents that is neither a goal nor a failure.
+    `OVER` is an ending of the documents that is neither a goal nor a failure. `TOO_RISKY` is where every
+    action risks more than the mission's constraints allow.
     """
 
     GOAL = "goal"
     OVER = "over"
     FAILURE = "failure"
     NOTHING_WORTHWHILE = "nothing_worthwhile"
+    TOO_RISKY = "too_risky"
     STEP_LIMIT = "step_limit"
     SKILLS_FAILED = "skills_failed"
     CANCELLED = "cancelled"

@@ -20,7 +20,7 @@ from pathlib import Path
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, has_errors
-from aos_protocol.documents import Project
+from aos_protocol.documents import Constraint, Project
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import ProjectRevision
 from aos_solver.building.build import BuildKind, BuiltModel, build
@@ -103,11 +103,14 @@ class ModelShelf:
         on_progress: Callable[[str], None],
         start_engine: Callable[[BuiltModel], Awaitable[Engine]],
         mapping_revision: Callable[[], Awaitable[int]],
+        constraints: tuple[Constraint, ...] = (),
     ) -> None:
+        """The models are those of the documents with the mission's `constraints`."""
         self._cache_dir = cache_dir
         self._on_progress = on_progress
         self._start_engine = start_engine
         self._mapping_revision = mapping_revision
+        self._constraints = constraints
         self._ready: RunningModel | None = None
         self._fault: AosError | None = None
         self._shelf = asyncio.Condition()
@@ -127,7 +130,7 @@ class ModelShelf:
 
     async def _make(self, revision: ProjectRevision) -> None:
         try:
-            built = await build_project(revision.project, self._cache_dir, self._on_progress)
+            built = await self._built(revision.project)
             model = RunningModel(revision.revision, built, await self._start_engine(built))
         except AosError as error:
             log.warning("revision %d is not used: %s", revision.revision, error)
@@ -138,6 +141,10 @@ class ModelShelf:
         await self._put(model)
         await self._end_thorough_build()
         self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
+
+    async def _built(self, project: Project) -> BuiltModel:
+        constrained = msgspec.structs.replace(project, constraints=self._constraints)
+        return await build_project(constrained, self._cache_dir, self._on_progress)
 
     async def _put(self, model: RunningModel) -> None:
         """On the shelf, instead of what nobody has taken."""
@@ -229,7 +236,7 @@ class ModelShelf:
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
         """What keeps these documents from being used now: compile errors, or another state layout."""
         try:
-            built = await build_project(project, self._cache_dir, self._on_progress)
+            built = await self._built(project)
         except AosError as error:
             if error.diagnostics:
                 return error.diagnostics

@@ -23,10 +23,11 @@ from aos_protocol.messages import (
     Outcome,
 )
 from aos_runtime.clock import Clock
-from aos_solver.child.answers import BeliefUpdate, Plan
+from aos_solver.child.answers import BeliefUpdate, Plan, Risks
 from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
 from aos_solver.failures import Failures
 from aos_solver.hot_plug import RunningModel
+from aos_solver.risk import RiskBudget
 from aos_solver.search import Search
 
 __all__ = ["Mission", "Ports"]
@@ -96,6 +97,8 @@ class Mission:
         self._failures = failures or Failures({}, FAILURE_LIMIT)
         self._hold_s = hold_s
         self._is_resumed = False
+        self._budget = RiskBudget(model.engine.bounds)
+        self._risks: Risks | None = None
 
     async def run(self) -> MissionState:
         """Decide and act until the mission ends; machine faults end it as `fault` with their text."""
@@ -119,7 +122,10 @@ class Mission:
         steps_taken = 0
         while not self._ends_with(ending_of_belief(belief, steps_taken, self._limits), belief):
             self._model = await self._ports.newest_model(self._model)
+            self._risks = await self._risks_at(steps_taken + 1)
             plan = await self._plan(steps_taken, belief)
+            if plan is None:
+                return
             if self._ends_with(ending_after_planning(plan.best, self._limits), belief):
                 return
             steps_taken += 1
@@ -134,9 +140,16 @@ class Mission:
             if self._failures.to_hold:
                 await self._hold(self._failures.to_hold, steps_taken, belief, lambda: False)
 
-    async def _plan(self, steps_taken: int, belief: BeliefSummary) -> Plan:
-        """The next decision: for what can be carried out now, and still can be when it is made."""
+    async def _plan(self, steps_taken: int, belief: BeliefSummary) -> Plan | None:
+        """The next decision: for what can be carried out now, and still can be when it is made.
+
+        None where every action is too risky, which ends the mission.
+        """
         while True:
+            if self._is_all_too_risky():
+                assert self._risks is not None
+                self._end(Ending.TOO_RISKY, self._budget.remark(self._risks))
+                return None
             barred = self._barred()
             retried = self._failures.to_retry
             if retried is not None and self._model.digest == retried.model_digest:
@@ -145,7 +158,8 @@ class Mission:
                     return await self._repeated(retried, index)
             if barred and not self._is_something_available():
                 why = "; ".join(sorted(set(self._ports.unavailable.values())))
-                text = f"the mission holds, for no skill can be run: {why}"
+                risky = ", and all others are too risky" if self._forbidden() else ""
+                text = f"the mission holds, for no skill can be run: {why}{risky}"
                 await self._hold(text, steps_taken, belief, self._is_something_available)
                 continue
             self._move_to("planning", steps_taken, belief)
@@ -154,10 +168,24 @@ class Mission:
                 return plan
 
     def _barred(self) -> list[int]:
-        """The numbers of the actions that nobody could carry out now."""
-        unavailable = self._ports.unavailable
+        """The numbers of the actions that nobody could carry out now, or that are too risky."""
+        unavailable, forbidden = self._ports.unavailable, self._forbidden()
         actions = self._model.engine.description.actions
-        return [number for number, action in enumerate(actions) if action.skill in unavailable]
+        return [
+            number
+            for number, action in enumerate(actions)
+            if action.skill in unavailable or number in forbidden
+        ]
+
+    async def _risks_at(self, step: int) -> Risks | None:
+        """What each action risks now, where there are constraints."""
+        return await self._model.engine.risks(self._search.seed_of(step)) if self._budget else None
+
+    def _forbidden(self) -> frozenset[int]:
+        return self._budget.forbidden(self._risks) if self._risks is not None else frozenset()
+
+    def _is_all_too_risky(self) -> bool:
+        return len(self._forbidden()) == len(self._model.engine.description.actions)
 
     def _is_something_available(self) -> bool:
         return len(self._barred()) < len(self._model.engine.description.actions)
@@ -213,6 +241,7 @@ class Mission:
             planner=plan.planner,
             why=plan.why,
             threads=plan.threads,
+            constraints=self._budget.spend(self._risks, plan.index) if self._risks is not None else (),
         )
         self._publish(record)
         return record

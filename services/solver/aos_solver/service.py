@@ -74,7 +74,11 @@ class _Solver:
         self._settings = settings
         self._journal = Journal.open(Path(settings.run_dir) / "journal.db")
         self._shelf = ModelShelf(
-            Path(settings.cache_dir), self._report_progress, self._start_engine, self._mapping_revision
+            Path(settings.cache_dir),
+            self._report_progress,
+            self._start_engine,
+            self._mapping_revision,
+            settings.constraints,
         )
         self._name = Path(settings.run_dir).name
         self._running: RunningModel | None = None

@@ -6,6 +6,7 @@ from typing import Literal
 
 import msgspec
 
+from aos_protocol.documents import Constraint
 from aos_runtime.lifecycle import ServiceSettings
 from aos_solver.failures import SkillRule
 
@@ -30,6 +31,7 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     goal_probability: float = 0.9
     step_limit: int = 30
     stop_below_value: float | None = None
+    constraints: tuple[Constraint, ...] = ()
     activation_timeout_s: float = 120.0
     failure_limit: int = 3
     hold_s: float = 600.0

@@ -16,6 +16,7 @@ from aos_solver.endings import (
     ending_after_planning,
     ending_of_belief,
 )
+from aos_solver.risk import RiskBudget
 from aos_solver.search import Search
 
 __all__ = ["SimulatedRun", "simulate_mission"]
@@ -28,7 +29,8 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
     noticed it. `world_ending` is the truth: how the world has ended, None where it has not. `believed_ending`
     is what the last belief held for sure enough. `numbers` are what was observed beside each response,
     where a model reports any. `states` are texts of the world's state before the first action and after each,
-    where they were wanted.
+    where they were wanted. `violated` are the mission's constraints that were violated in the world, and
+    `risked` is what the decisions took of each constraint's budget.
     """
 
     seed: int
@@ -42,6 +44,8 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
     world_ending: Ending | None = None
     believed_ending: Ending | None = None
     numbers: tuple[dict[str, float | list[float | None]], ...] = ()
+    violated: tuple[str, ...] = ()
+    risked: dict[str, float] = {}
 
 
 async def simulate_mission(
@@ -56,12 +60,18 @@ async def simulate_mission(
     observations: list[str] = []
     numbers: list[dict[str, float | list[float | None]]] = []
     states = [await engine.world_state()] if with_states else []
+    budget, violations = RiskBudget(engine.bounds), 0
+    risked: dict[str, float] = {bound.never: 0.0 for bound in engine.bounds}
     while True:
         ending = ending_of_belief(belief, len(actions), limits)
         if ending is None and world_ending:
             ending = Ending(world_ending)
+        risks = await engine.risks(search.seed_of(len(actions) + 1)) if ending is None and budget else None
+        forbidden = budget.forbidden(risks) if risks is not None else frozenset[int]()
+        if forbidden and len(forbidden) == len(engine.description.actions):
+            ending = Ending.TOO_RISKY
         if ending is None:
-            plan = await search.run(engine, len(actions) + 1)
+            plan = await search.run(engine, len(actions) + 1, sorted(forbidden))
             ending = ending_after_planning(plan.best, limits)
         if ending is not None:
             return SimulatedRun(
@@ -76,8 +86,13 @@ async def simulate_mission(
                 Ending(world_ending) if world_ending else None,
                 believed_ending(belief, limits),
                 tuple(numbers) if any(numbers) else (),
+                tuple(each.never for number, each in enumerate(engine.bounds) if violations >> number & 1),
+                risked,
             )
+        for spent in budget.spend(risks, plan.index) if risks is not None else ():
+            risked[spent.never] += spent.risk
         step = await engine.step_world(plan.index)
+        violations |= step.violations
         total += step.reward
         discounted += discount ** len(actions) * step.reward
         actions.append(plan.best.action)

@@ -28,7 +28,7 @@ from aos_runtime.snippets import (
     read_cpp_expression,
 )
 
-__all__ = ["check_environment_code", "check_skill_code", "read_block"]
+__all__ = ["check_block", "check_environment_code", "check_skill_code", "read_block"]
 
 _BUILT_INS = {
     "AOS": (
@@ -74,6 +74,11 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
     around = _Around(_temporary_enums(blocks), _declared_names(pieces))
     for piece in pieces:
         _BlockCheck(piece, scope, findings, around).run()
+
+
+def check_block(block: Block, scope: Scope, findings: Findings) -> None:
+    """A block that stands alone."""
+    _BlockCheck(block, scope, findings, _Around({}, frozenset())).run()
 
 
 def read_block(block: Block) -> Cpp:

@@ -22,6 +22,7 @@ __all__ = [
     "Prediction",
     "Reach",
     "ReachedAction",
+    "Risks",
     "SampleCount",
     "WorldStart",
     "WorldState",
@@ -169,6 +170,16 @@ class Prediction(msgspec.Struct, frozen=True):
     predicted: tuple[PredictedObservation, ...]
 
 
+class Risks(msgspec.Struct, frozen=True):
+    """For each action the probability that it violates each of the mission's constraints at once.
+
+    `is_sampled` says that steps could not be enumerated, so that some are estimates.
+    """
+
+    actions: tuple[tuple[float, ...], ...]
+    is_sampled: bool
+
+
 class ExportedBelief(msgspec.Struct, frozen=True):
     """A belief that another engine with the same state layout can take: weights, and states as text.
 
@@ -220,15 +231,20 @@ class EngineStep(msgspec.Struct, frozen=True):
     response: str
     ending: str
     numbers: tuple[tuple[int, int, float], ...] = ()
+    violations: int = 0
 
 
 class WorldStep(msgspec.Struct, frozen=True):
-    """One step of the simulated world; `numbers` are what was observed beside the response, by name."""
+    """One step of the simulated world; `numbers` are what was observed beside the response, by name.
+
+    `violations` has a bit for each of the mission's constraints that the step violated.
+    """
 
     reward: float
     response: str
     ending: str
     numbers: dict[str, float | list[float | None]] = {}
+    violations: int = 0
 
 
 class Worlds(msgspec.Struct, frozen=True):

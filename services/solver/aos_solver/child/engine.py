@@ -31,6 +31,7 @@ from aos_solver.child.answers import (
     Plan,
     Prediction,
     Reach,
+    Risks,
     SampleCount,
     Worlds,
     WorldStart,
@@ -51,6 +52,7 @@ from aos_solver.child.local_values import UnusableLocals, local_values_line
 from aos_solver.child.observed_numbers import numbers_by_name, numbers_field
 from aos_solver.child.replay import at_its_statement
 from aos_solver.child.shared_memory import SharedMemory
+from aos_solver.emission.emit import Bound
 from aos_solver.emission.program import Observed
 
 __all__ = ["Engine", "ImpossiblePolicy", "Planner", "Stepping"]
@@ -135,6 +137,11 @@ class Engine:
     def observed(self) -> Mapping[str, tuple[Observed, ...]]:
         """The numbers that skills report beside their responses, for those that do."""
         return self._built.emitted.observed
+
+    @property
+    def bounds(self) -> tuple[Bound, ...]:
+        """The mission's constraints."""
+        return self._built.emitted.bounds
 
     @property
     def pid(self) -> int | None:
@@ -223,6 +230,10 @@ class Engine:
         """Writes what is listed (`cpp/point_based/flat_file.hpp`), and the texts of states, one a line."""
         command = command_line("write_listing", model=model, states=states)
         return await self._ask(command, WrittenListing, deadline_s=LISTING_DEADLINE_S)
+
+    async def risks(self, seed: int) -> Risks:
+        """What each action risks of the mission's constraints; the seed is for what has to be sampled."""
+        return await self._ask(command_line("risks", seed=seed), Risks)
 
     async def predict(self, index: int) -> Prediction:
         """What may be observed after an action."""
@@ -331,7 +342,8 @@ class Engine:
         step = await self._ask(command, EngineStep)
         self._world.append(command)
         observed = self.observed.get(self.description.actions[index].skill, ())
-        return WorldStep(step.reward, step.response, step.ending, numbers_by_name(observed, step.numbers))
+        numbers = numbers_by_name(observed, step.numbers)
+        return WorldStep(step.reward, step.response, step.ending, numbers, step.violations)
 
     async def world_state(self) -> str:
         """The hidden state as text for people."""

@@ -19,7 +19,7 @@ from aos_protocol import __version__
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.program import Local, ObjectList, Observed, Piece, Program, Skill, Variable
 
-__all__ = ["MODEL_FILE", "EmittedModel", "Origin", "emit"]
+__all__ = ["MODEL_FILE", "Bound", "EmittedModel", "Origin", "emit"]
 
 MODEL_FILE = "model.cpp"
 """The name that the emitted file has for itself in its #line directives."""
@@ -45,13 +45,21 @@ class Origin(msgspec.Struct, frozen=True):
     line: int
 
 
+class Bound(msgspec.Struct, frozen=True):
+    """A constraint of the mission: its event as it is written, and how probable it may be at most."""
+
+    never: str
+    probability: float
+
+
 class EmittedModel(msgspec.Struct, frozen=True):
     """The file with what leads back from it. `snippets[n - 1]` is where document code of number n starts.
 
     `state_digest` is that of the declared state: models with the same can take over each other's beliefs.
     `locals` are the local variables that the engine wants with a real observation, for each skill whose
     observations correct the belief; `observed` are the numbers that a skill reports. `choosing_skills` are
-    those whose parameters stand for state variables.
+    those whose parameters stand for state variables. `bounds` are the mission's constraints, in the order of
+    the model's.
     """
 
     project: str
@@ -64,6 +72,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
     locals: dict[str, tuple[Local, ...]] = {}
     observed: dict[str, tuple[Observed, ...]] = {}
     choosing_skills: frozenset[str] = frozenset()
+    bounds: tuple[Bound, ...] = ()
 
     def locate(self, line: int, byte_column: int = 1) -> Span | None:
         """The document place of a place in the file; None for code that no document gave."""
@@ -80,6 +89,27 @@ class EmittedModel(msgspec.Struct, frozen=True):
 
 def emit(program: Program) -> EmittedModel:
     """The C++ of a program."""
+    cpp, origins = _laid_out(program)
+    # Constraints without a cost leave the model what it is: what was solved for it goes on to fit.
+    without = msgspec.structs.replace(program, constraints=())
+    is_itself = not program.constraints or any(constraint.cost for constraint in program.constraints)
+    return EmittedModel(
+        project=program.project,
+        cpp=cpp,
+        digest=_sha256(cpp if is_itself else _laid_out(without)[0]),
+        state_digest=_state_digest(program),
+        snippets=tuple(piece.snippet.span for piece in program.pieces),
+        pieces=program.pieces,
+        origins=origins,
+        locals={skill.name: skill.locals for skill in program.skills if skill.is_corrected},
+        observed={skill.name: skill.observed for skill in program.skills if skill.observed},
+        choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
+        bounds=tuple(Bound(each.never.snippet.code, each.probability) for each in program.constraints),
+    )
+
+
+def _laid_out(program: Program) -> tuple[str, dict[int, tuple[Origin, ...]]]:
+    """The file, and where each line of a piece went."""
     own_names = _own_names(program)
     text = _templates().get_template("model.cpp.jinja").render(
         program=program,
@@ -92,6 +122,8 @@ def emit(program: Program) -> EmittedModel:
         has_rollout_policy=any(skill.rollout_policy for skill in program.skills),
         draws_enums=any("AOS.SampleDiscrete(-1, " in piece.text for piece in program.pieces),
         has_corrections=any(skill.is_corrected for skill in program.skills),
+        has_costs=any(constraint.cost for constraint in program.constraints),
+        looks_ahead=any(constraint.looks_ahead for constraint in program.constraints),
         special_states=[state for state in program.special_states if state.condition or state.section],
         watched_skills=_watched_skills(program),
         saved_variables=_saved_variables(program),
@@ -100,19 +132,7 @@ def emit(program: Program) -> EmittedModel:
         MARK=_MARK,
         END=_END,
     )  # fmt: skip
-    cpp, origins = _put_code(re.sub(r"\n{3,}", "\n\n", text), program.pieces)
-    return EmittedModel(
-        project=program.project,
-        cpp=cpp,
-        digest=_sha256(cpp),
-        state_digest=_state_digest(program),
-        snippets=tuple(piece.snippet.span for piece in program.pieces),
-        pieces=program.pieces,
-        origins=origins,
-        locals={skill.name: skill.locals for skill in program.skills if skill.is_corrected},
-        observed={skill.name: skill.observed for skill in program.skills if skill.observed},
-        choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
-    )
+    return _put_code(re.sub(r"\n{3,}", "\n\n", text), program.pieces)
 
 
 @cache

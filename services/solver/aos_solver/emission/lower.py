@@ -11,6 +11,7 @@ import msgspec
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill, Snippet
+from aos_protocol.documents import Constraint as DocumentedConstraint
 from aos_protocol.findings import Findings
 from aos_protocol.local_types import LocalType, local_type, reported_variables
 from aos_runtime.cpp_flow import STATES
@@ -41,7 +42,7 @@ from aos_solver.emission.lower_state import (
 )
 from aos_solver.emission.lower_types import Types, lower_enum
 from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
-from aos_solver.emission.program import Local, Observed, Parameter, Program, SpecialState
+from aos_solver.emission.program import Constraint, Local, Observed, Parameter, Program, SpecialState
 from aos_solver.emission.program import Skill as LoweredSkill
 
 __all__ = ["lower"]
@@ -107,6 +108,7 @@ class _Lowering:
         state_heuristic = code.section(LOOKING, environment.state_heuristic)
         print_state = code.section(LOOKING, environment.print_state)
         skills = tuple(self._skill(skill) for skill in project.skills)
+        constraints = tuple(self._constraint(constraint) for constraint in project.constraints)
         names = frozenset(self._pieces.identifiers)
         headers = headers_for(names)
         constants = project.low_level.constants if project.low_level is not None else ()
@@ -134,6 +136,17 @@ class _Lowering:
             skills=skills,
             standard_headers=headers,
             pieces=tuple(self._pieces.made),
+            constraints=constraints,
+        )
+
+    def _constraint(self, constraint: DocumentedConstraint) -> Constraint:
+        mentioned = {mention.path[0] for mention in read_cpp_expression(constraint.never.code).mentions}
+        return Constraint(
+            self._pieces.expression(constraint.never, self._code.outside),
+            constraint.probability,
+            constraint.cost,
+            tuple(skill.name for skill in self._project.skills if skill.name in mentioned),
+            "state__" in mentioned,
         )
 
     def _special_states(self, environment: Environment) -> tuple[SpecialState, ...]:

@@ -33,6 +33,9 @@ def irrelevant_variables(project: Project) -> frozenset[str]:
     reading = _Influence(environment)
     for code in _sections(project):
         reading.read(code)
+    for constraint in project.constraints:
+        if constraint.cost:
+            reading.use_expression(constraint.never.code)
     return variables - reading.relevant()
 
 
@@ -93,7 +96,7 @@ class _Influence:
         self._section = 0
         for special in environment.special_states:
             if special.condition is not None:
-                self._use_all_mentioned(special.condition.code)
+                self.use_expression(special.condition.code)
         for variable in environment.variables:
             if variable.default_code is not None:
                 self._read_snippet(variable.default_code.code)
@@ -111,7 +114,7 @@ class _Influence:
                 # The item may be any variable of its type.
                 self._use(Name(name, is_of_state=True) for name in self._of_type(loop.type))
                 if loop.condition is not None:
-                    self._use_all_mentioned(loop.condition.code)
+                    self.use_expression(loop.condition.code)
         for snippet, _ in snippets_of(assignments):
             self._read_snippet(snippet.code)
         return self._section
@@ -152,7 +155,8 @@ class _Influence:
         for target in targets:
             self._sources.setdefault(target, set()).update(self._places(flow.sources))
 
-    def _use_all_mentioned(self, code: str) -> None:
+    def use_expression(self, code: str) -> None:
+        """All that an expression mentions matters."""
         cpp = read_cpp_expression(code)
         if cpp.faults:
             self._use(Name(name, is_of_state=True) for name in self._variables)

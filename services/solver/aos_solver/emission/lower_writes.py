@@ -96,6 +96,8 @@ def changes_of(project: Project) -> Changes:
     for special in environment.special_states:
         if special.condition is not None:
             changes.read(read_cpp_expression(special.condition.code), frozenset())
+    for constraint in project.constraints:
+        changes.read(read_cpp_expression(constraint.never.code), frozenset())
     drawn = frozenset(drawing_defaults(environment))
     is_drawn = False
     for variable in environment.variables:

@@ -15,6 +15,7 @@ from aos_protocol.local_types import LocalType
 __all__ = [
     "Axis",
     "Compound",
+    "Constraint",
     "DeclaredVariable",
     "Edit",
     "Enum",
@@ -266,6 +267,16 @@ class Skill(msgspec.Struct, frozen=True):
         )
 
 
+class Constraint(msgspec.Struct, frozen=True):
+    """An event of a step, with its bound for a mission; `skills` are those that it names."""
+
+    never: Piece
+    probability: float
+    cost: float
+    skills: tuple[str, ...]
+    looks_ahead: bool
+
+
 class Program(msgspec.Struct, frozen=True):
     """A whole model. `pieces[n - 1]` is the piece of number n; `digest` is that of the documents."""
 
@@ -291,6 +302,7 @@ class Program(msgspec.Struct, frozen=True):
     skills: tuple[Skill, ...]
     standard_headers: tuple[str, ...]
     pieces: tuple[Piece, ...]
+    constraints: tuple[Constraint, ...] = ()
 
     @property
     def particle(self) -> tuple[Variable, ...]:

@@ -10,6 +10,7 @@
 #include "aos/child/command.hpp"
 #include "aos/child/planning_commands.hpp"
 #include "aos/child/rates.hpp"
+#include "aos/child/risk_commands.hpp"
 #include "aos/child/world_commands.hpp"
 #include "aos/planning/planner.hpp"
 
@@ -53,6 +54,7 @@ class Commands {
     if (name == "export_belief") return beliefs_.export_belief(json, command);
     if (name == "import_belief") return beliefs_.import_belief(json, command);
     if (name == "restore_belief") return beliefs_.restore(json, command);
+    if (name == "risks") return write_risks(json, command, beliefs_.belief());
     if (name == "plan") return planning_.plan(json, command);
     if (name == "ponder") return planning_.ponder(json, command);
     if (name == "count_processor_time") return planning_.count_processor_time(json, command);

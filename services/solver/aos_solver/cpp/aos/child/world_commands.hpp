@@ -10,6 +10,7 @@
 #include "aos/base/json.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
+#include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/wording.hpp"
 #include "aos/child/worlds.hpp"
@@ -31,9 +32,11 @@ class WorldCommands {
     const int action = action_of<Model>(command);
     RecordedNumbers recorded{random_};
     const ReportingTo reporting{random_, recorded};
+    const State before = hidden_;
     const Step step = Model::step(hidden_, action, random_);
     json.begin_object().member("reward", step.reward).member("response", text_of_response<Model>(action, step.observation));
     json.member("ending", ending_text(Model::ending(hidden_)));
+    json.member("violations", std::uint64_t{violations_of<Model>(before, hidden_, action)});
     write_numbers(json.key("numbers"), recorded.numbers());
     json.end_object();
   }

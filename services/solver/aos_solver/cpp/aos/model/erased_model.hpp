@@ -13,6 +13,7 @@
 #include "aos/model/model_table.hpp"
 #include "aos/model/states.hpp"
 #include "aos/model/values.hpp"
+#include "aos/model/violations.hpp"
 
 namespace aos {
 
@@ -88,6 +89,12 @@ struct ErasedModel {
   }
   static bool meets_precondition(const State& state, int action, DirectedDraws& random) {
     return compiled_model.meets_precondition(state.bytes, action, random);
+  }
+  // The mission's constraints, whether any of them looks at what a step leads to, and those that a step violates.
+  static int constraint_count() { return compiled_model.constraint_count; }
+  static bool constraints_look_ahead() { return compiled_model.constraints_look_ahead; }
+  static Violations violations(const State& before, const State& next, int action) {
+    return compiled_model.violations(before.bytes, next.bytes, action);
   }
   template <class Random>
   static void correct(const State& before, State& next, int action, Random& random) {

@@ -23,3 +23,4 @@
 #include "aos/model/text.hpp"
 #include "aos/model/trace.hpp"
 #include "aos/model/transition.hpp"
+#include "aos/model/violations.hpp"

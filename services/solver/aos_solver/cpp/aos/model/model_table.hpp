@@ -19,6 +19,7 @@
 #include "aos/model/rollout.hpp"
 #include "aos/model/state_text.hpp"
 #include "aos/model/step.hpp"
+#include "aos/model/violations.hpp"
 
 namespace aos {
 
@@ -53,6 +54,8 @@ struct ModelTable {
   std::size_t ending_offset;
   const ByteRange* irrelevant;  // parts of a state
   std::size_t irrelevant_count;
+  int constraint_count;
+  bool constraints_look_ahead;
 
   void (*prepare)();
   bool (*equal)(const void* left, const void* right);
@@ -66,6 +69,7 @@ struct ModelTable {
   DrawingFunctions<Sampler> sampling;
   DrawingFunctions<DirectedDraws> directed;
   bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
+  Violations (*violations)(const void* before, const void* next, int action);
   double (*rollout)(const void* state, int horizon, Sampler& random);
   void (*rollout_odds)(const void* state, double* odds, int count, Sampler& random);
 };
@@ -103,6 +107,7 @@ constexpr DrawingFunctions<Random> drawing_functions() {
 template <class Model>
 constexpr ModelTable table_of() {
   using State = typename Model::State;
+  constexpr bool is_constrained = requires { Model::constraint_count; };
   static_assert(std::is_trivially_copyable_v<State> && alignof(State) <= alignof(std::uint64_t));
   return {
       .size_mark = size_mark<sizeof(State)>.data(),
@@ -118,6 +123,14 @@ constexpr ModelTable table_of() {
       .ending_offset = offsetof(State, aos_ending),
       .irrelevant = Model::irrelevant.data(),
       .irrelevant_count = Model::irrelevant.size(),
+      .constraint_count = [] {
+        if constexpr (is_constrained) return Model::constraint_count;
+        return 0;
+      }(),
+      .constraints_look_ahead = [] {
+        if constexpr (is_constrained) return Model::constraints_look_ahead;
+        return false;
+      }(),
       .prepare = Model::prepare,
       .equal =
           [](const void* left, const void* right) {
@@ -142,6 +155,12 @@ constexpr ModelTable table_of() {
             blame::over();
             return meets;
           },
+      .violations = [](const void* before, const void* next, int action) -> Violations {
+        if constexpr (is_constrained) {
+          return Model::violations(*static_cast<const State*>(before), *static_cast<const State*>(next), action);
+        }
+        return 0;
+      },
       .rollout =
           [](const void* state, int horizon, Sampler& random) {
             const double value = aos::rollout<Model>(*static_cast<const State*>(state), horizon, random);

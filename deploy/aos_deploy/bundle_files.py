@@ -1,0 +1,54 @@
+"""The documents of a deployment's bundles."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from aos_deploy.constraints import constrained
+from aos_deploy.deploy_file import Deployment
+from aos_protocol.diagnostics import has_errors
+from aos_protocol.documents import Project
+from aos_protocol.errors import DocumentError
+from aos_registry.load import load_files, read_bundle_files
+from aos_registry.reading import skills_of_files
+
+__all__ = ["check_constraints_of", "files_of_bundle", "project_of"]
+
+
+def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
+    """The documents in a bundle's folder or archive by name, without those of skills that are left out."""
+    files, remarks = read_bundle_files(bundle)
+    if has_errors(remarks):
+        found = tuple(each for each in remarks if each.is_error)
+        raise DocumentError(f"the bundle {bundle} cannot be read", code=found[0].code, diagnostics=found)
+    skills = skills_of_files(files) if leave_out else {}
+    return {name: data for name, data in files.items() if skills.get(name) not in leave_out}
+
+
+def project_of(deployment: Deployment) -> Project:
+    """What all bundles make together, with the mission's constraints.
+
+    DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
+    constraints.
+    """
+    files: dict[str, bytes] = {}
+    for bundle in deployment.bundles:
+        files |= files_of_bundle(bundle, deployment.file.leave_out)
+    loaded = load_files(files, name=deployment.path.name)
+    if loaded.project is None:
+        raise DocumentError(
+            f"the bundles of {deployment.path.name} have errors",
+            hint="Mend the places named above",
+            diagnostics=loaded.diagnostics,
+        )
+    return constrained(loaded.project, deployment.constraints, [deployment.path])
+
+
+def check_constraints_of(deployment: Deployment) -> None:
+    """DeployError AOS801 with what is wrong with the constraints; the registry tells of documents."""
+    if not deployment.constraints:
+        return
+    try:
+        project_of(deployment)
+    except DocumentError:
+        return

@@ -1,0 +1,73 @@
+// How probable it is that a step violates the mission's constraints.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/model/step.hpp"
+#include "aos/model/violations.hpp"
+
+namespace aos {
+
+// Of one step; a mission that is over violates nothing any more.
+template <class Model>
+Violations violations_of(const typename Model::State& before, const typename Model::State& next, int action) {
+  if (Model::constraint_count() == 0 || Model::ending(before) != Ending::running) return 0;
+  return Model::violations(before, next, action);
+}
+
+// By constraint. Sampled are steps that cannot be enumerated.
+struct Risks {
+  std::vector<double> probabilities;
+  bool is_sampled = false;
+};
+
+inline constexpr int risk_samples = 20'000;
+
+// Of an action under a belief. What an enumeration leaves out counts as a violation.
+template <class Model>
+Risks risks_of(const Belief<Model>& belief, int action, std::size_t max_paths, Sampler& random) {
+  using State = typename Model::State;
+  const auto count = static_cast<std::size_t>(Model::constraint_count());
+  Risks risks{std::vector<double>(count)};
+  const auto add = [&](const State& before, const State& next, double weight) {
+    const Violations violations = violations_of<Model>(before, next, action);
+    for (std::size_t i = 0; i < count; ++i) {
+      if ((violations >> i & 1) != 0) risks.probabilities[i] += weight;
+    }
+  };
+  if (!Model::constraints_look_ahead()) {
+    for (const auto& [state, weight] : belief.particles()) add(state, state, weight);
+    return risks;
+  }
+  try {
+    Enumerator draws;
+    draws.report_to(&ignored_numbers);
+    std::size_t paths = 0;
+    double left_out = 0;
+    for (const auto& particle : belief.particles()) {
+      left_out += particle.weight * draws.for_nearly_each_path([&](Enumerator& path) {
+        if (++paths > max_paths) throw NotEnumerable{"too many outcomes"};
+        State next = particle.state;
+        Model::step(next, action, path);
+        add(particle.state, next, particle.weight * path.probability());
+      });
+    }
+    for (double& probability : risks.probabilities) probability += left_out;
+  } catch (const NotEnumerable&) {
+    risks = {std::vector<double>(count), true};
+    for (int i = 0; i < risk_samples; ++i) {
+      const State before = belief.sample(random);
+      State next = before;
+      Model::step(next, action, random);
+      add(before, next, 1.0 / risk_samples);
+    }
+  }
+  return risks;
+}
+
+}  // namespace aos

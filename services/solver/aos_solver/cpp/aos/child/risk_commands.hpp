@@ -1,0 +1,35 @@
+// What an engine child is asked about the mission's constraints.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "aos/base/json.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/belief/risks.hpp"
+#include "aos/child/command.hpp"
+
+namespace aos {
+
+// For each action the probabilities that it violates the constraints at once; `is_sampled` says that some are estimates.
+// The seed is that of these estimates alone.
+template <class Model>
+void write_risks(JsonWriter& json, const Command& command, const Belief<Model>& belief) {
+  Sampler random{command.number<std::uint64_t>("seed")};
+  const auto actions = static_cast<std::size_t>(Model::action_count());
+  const std::size_t max_paths = max_enumerated_paths / std::max<std::size_t>(actions, 1);
+  bool is_sampled = false;
+  json.begin_object().key("actions").begin_array();
+  for (int action = 0; action < Model::action_count(); ++action) {
+    const Risks risks = risks_of(belief, action, max_paths, random);
+    is_sampled = is_sampled || risks.is_sampled;
+    json.begin_array();
+    for (const double probability : risks.probabilities) json.value(std::clamp(probability, 0.0, 1.0));
+    json.end_array();
+  }
+  json.end_array().member("is_sampled", is_sampled).end_object();
+}
+
+}  // namespace aos

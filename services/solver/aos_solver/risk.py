@@ -1,0 +1,67 @@
+"""Chance constraints: what a mission may still risk, and which actions risk more.
+
+Each constraint is a budget of probability. A decision spends the probability, under its belief, that its step
+violates the constraint, and only actions that the budget allows can be chosen. So the sum of what is spent
+never exceeds the bound, and that sum, in expectation, is the mean number of violating steps of a mission: at
+least the probability that there is one. docs/constraints.md has the proof, and what it supposes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from aos_protocol.messages import ConstraintRisk
+from aos_solver.child.answers import Risks
+from aos_solver.emission.emit import Bound
+
+__all__ = ["RiskBudget"]
+
+_ROUNDING = 1e-12
+"""Sums of probabilities are no more exact than that."""
+
+
+class RiskBudget:
+    """What a mission's decisions have left of its constraints."""
+
+    def __init__(self, bounds: Sequence[Bound]) -> None:
+        self._bounds = tuple(bounds)
+        self._left = [bound.probability for bound in bounds]
+
+    def __bool__(self) -> bool:
+        """Whether there is any constraint."""
+        return bool(self._bounds)
+
+    def forbidden(self, risks: Risks) -> frozenset[int]:
+        """The numbers of the actions that risk more than is left of any constraint."""
+        return frozenset(
+            number
+            for number, probabilities in enumerate(risks.actions)
+            if any(risk > left + _ROUNDING for risk, left in zip(probabilities, self._left, strict=True))
+        )
+
+    def spend(self, risks: Risks, index: int) -> tuple[ConstraintRisk, ...]:
+        """Takes what the action of this number risks from the budget, and says how the decision stands."""
+        told = tuple(
+            ConstraintRisk(
+                never=bound.never,
+                probability=bound.probability,
+                left=left,
+                risk=risk,
+                risks=tuple(probabilities[number] for probabilities in risks.actions),
+                is_sampled=risks.is_sampled,
+            )
+            for number, (bound, left, risk) in enumerate(
+                zip(self._bounds, self._left, risks.actions[index], strict=True)
+            )
+        )
+        self._left = [max(each.left - each.risk, 0.0) for each in told]
+        return told
+
+    def remark(self, risks: Risks) -> str:
+        """Why no action can be chosen."""
+        told = []
+        for number, (bound, left) in enumerate(zip(self._bounds, self._left, strict=True)):
+            least = min(probabilities[number] for probabilities in risks.actions)
+            left_text = f"{left:.3g} is left of {bound.probability:g}"
+            told.append(f"never {bound.never}: {left_text}, and the least risk is {least:.3g}")
+        return f"every action risks more than is allowed ({'; '.join(told)})"
