@@ -41,9 +41,7 @@ def test_a_plan_says_what_it_risks_and_what_is_too_risky(app: typer.Typer, bundl
 
 
 def test_a_plan_for_which_nothing_is_allowed_is_an_error(app: typer.Typer, bundle: Path) -> None:
-    done = run(
-        app, "plan", bundle, "--never", "0.1: listen || open_left || state.is_left || open_right"
-    )
+    done = run(app, "plan", bundle, "--never", "0.1: listen || open_left || state.is_left || open_right")
     assert isinstance(done.exception, PlanningError)
     assert done.exception.code == "AOS303"
     assert "the least risk is 1" in done.exception.message

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import msgspec
 
+from aos_deploy.bundle_files import files_of_bundle
 from aos_deploy.calibration.draws import Skipped, draws_of
 from aos_deploy.calibration.estimation import DrawEstimate, estimate
 from aos_deploy.calibration.lattice import Lattice, Layers, lattice_of
 from aos_deploy.calibration.patch import patch_of
 from aos_deploy.calibration.records import RecordedMission
-from aos_deploy.mission_run import files_of_bundle
 from aos_deploy.printing import from_here
 from aos_deploy.program import cache_dir
 from aos_protocol.errors import DocumentError
