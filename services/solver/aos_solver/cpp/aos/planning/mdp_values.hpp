@@ -32,17 +32,14 @@ class MdpValues {
   // whose states are known.
   bool prepare(const Belief<Model>& belief, int horizon) {
     if (Model::action_count() == 0 || !space_.reach(belief)) return false;
-    if (values_of_ == space_.size() && horizon == horizon_) return true;
-    values_of_ = space_.size();
+    if (values_of_ == space_.numbering() && horizon == horizon_) return true;
+    values_of_ = space_.numbering();
     horizon_ = horizon;
-    ++iterations_;
     iterate();
     return true;
   }
 
   std::size_t states() const { return space_.size(); }
-  // How often values were worked out anew, and with them perhaps the numbers of states.
-  std::uint64_t iterations() const { return iterations_; }
 
   // Of a state; `no_state` for one that was not reckoned with, which is worth the most.
   std::uint32_t number_of(const State& state) const { return space_.find(state); }
@@ -123,9 +120,8 @@ class MdpValues {
   }
 
   StateSpace<Model>& space_;
-  std::size_t values_of_ = 0;  // states
+  Numbering values_of_;
   int horizon_ = 0;
-  std::uint64_t iterations_ = 0;
   double highest_ = 0;
   std::vector<std::vector<double>> layers_;
   std::vector<float> action_values_;

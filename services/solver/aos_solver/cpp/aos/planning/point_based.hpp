@@ -37,11 +37,11 @@ class PointBased {
     const auto entries = space_.weights_of(belief);
     running_ = belief.probability_of(Ending::running);
     if (entries.empty()) return {};
-    const bool is_known = search_ && states_ == space_.size() && horizon_ == horizon;
+    const bool is_known = search_ && numbering_ == space_.numbering() && horizon_ == horizon;
     if (is_known && search_->move_to(entries)) return {};
-    if (states_ != space_.size()) starts_.clear();
+    if (numbering_ != space_.numbering()) starts_.clear();
     starts_.push_back({1, entries});
-    states_ = space_.size();
+    numbering_ = space_.numbering();
     horizon_ = horizon;
     if (tells_by_cells()) {
       if (const std::string obstacle = cells_.choose(space_.reports()); !obstacle.empty()) return obstacle;
@@ -163,7 +163,7 @@ class PointBased {
   }
 
   const StateSpace<Model>& space_;
-  std::size_t states_ = 0;                   // of the space when the model was taken over
+  Numbering numbering_;                          // when the model was taken over
   std::vector<point_based::Start> starts_;  // one where nothing surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;
   int horizon_ = 1;  // decisions

@@ -33,6 +33,13 @@ struct SpaceLimits {
   std::size_t work = 30'000'000;  // of one call, in draws and copies of 64 bytes: one to two seconds'
 };
 
+// Which number stands for which state: the same one in two equal numberings.
+struct Numbering {
+  std::uint64_t restarts = 0;
+  std::size_t states = 0;
+  bool operator==(const Numbering&) const = default;
+};
+
 // Outcomes that end the mission are left out of the rows: ended states have no number and are worth nothing.
 template <class Model>
 class StateSpace {
@@ -73,6 +80,8 @@ class StateSpace {
   }
 
   const std::string& obstacle() const { return obstacle_; }
+  // What anybody who keeps numbers of states compares before they are used again.
+  Numbering numbering() const { return {restarts_, size()}; }
   std::size_t size() const { return numbers_.size(); }
   std::size_t actions() const { return rows_.actions; }
   const State& operator[](std::uint32_t number) const { return numbers_[number]; }
@@ -128,21 +137,25 @@ class StateSpace {
     double probability;
   };
 
+  void restart() {
+    blame::at(0);
+    const std::uint64_t restarts = restarts_ + 1;
+    *this = StateSpace{limits_};
+    restarts_ = restarts;
+  }
   // Far fewer states may be few enough.
   bool is_worth_another_try(const Belief<Model>& belief) const {
     constexpr std::size_t far_fewer = 8;
     return far_fewer * belief.particles().size() <= given_up_with_;
   }
   void leave_out_observations(std::string why) {
-    blame::at(0);
-    *this = StateSpace{limits_};
+    restart();
     skips_sensing_ = true;
     observations_obstacle_ = std::move(why);
     draws_.skip_sensing(true);
   }
   void give_up(std::string why, const Belief<Model>& belief) {
-    blame::at(0);
-    *this = StateSpace{limits_};
+    restart();
     obstacle_ = std::move(why);
     given_up_with_ = belief.particles().size();
   }
@@ -249,6 +262,7 @@ class StateSpace {
   NumberReports reports_;
   point_based::FlatModel rows_;
   std::uint32_t listed_ = 0;  // states that have their rows
+  std::uint64_t restarts_ = 0;
   bool reached_[ending_count]{};
   std::size_t work_ = 0;
   bool skips_sensing_ = false;

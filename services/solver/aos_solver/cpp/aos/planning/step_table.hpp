@@ -34,7 +34,7 @@ class StepTable {
   // Makes a table of a space in which the belief's states are listed. Returns whether the model is small enough.
   bool prepare(const StateSpace<Model>& space, const Belief<Model>& belief) {
     if (!space.lists_observations()) return false;
-    if (space.size() != listed_) list(space);
+    if (space.numbering() != numbering_) list(space);
     if (!is_small_) return false;
     std::vector<typename AliasColumns<std::uint32_t>::Weighted> starts;
     double running = 0;
@@ -48,7 +48,7 @@ class StepTable {
     return true;
   }
 
-  std::size_t size() const { return listed_; }
+  std::size_t size() const { return numbering_.states; }
 
   // A state of the belief; `ended` by the probability that it has.
   std::uint32_t start(std::uint64_t bits) const {
@@ -67,12 +67,13 @@ class StepTable {
 
   void list(const StateSpace<Model>& space) {
     const point_based::FlatModel& rows = space.rows();
-    listed_ = space.size();
+    numbering_ = space.numbering();
     actions_ = space.actions();
     rows_.clear();
     columns_.clear();
-    is_small_ = listed_ * actions_ <= max_table_rows;
-    for (std::size_t row = 0; is_small_ && row < listed_ * actions_; ++row) {
+    const std::size_t count = numbering_.states * actions_;
+    is_small_ = count <= max_table_rows;
+    for (std::size_t row = 0; is_small_ && row < count; ++row) {
       add_row(space, row);
       is_small_ = columns_.size() <= max_table_outcomes;
     }
@@ -99,7 +100,7 @@ class StepTable {
     columns_of_.append(outcomes_, total, columns_);
   }
 
-  std::size_t listed_ = 0;  // states
+  Numbering numbering_;
   std::size_t actions_ = 0;
   bool is_small_ = false;
   std::vector<Row> rows_;  // by state and action

@@ -1,0 +1,83 @@
+"""States that are listed anew: what was worked out of an earlier listing is of other states."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+from aos_solver.child.engine import Planner
+
+MAPPING = """project: vault
+module_activation: skill
+path: /{skill}
+
+local_variable: text
+type: string
+from_ros_service_response: true
+code:
+text = __input.text
+
+response_local_variable: text
+"""
+
+CELLS = 60
+
+VAULT = {
+    "vault.ef": f"""project: vault
+horizon: {CELLS + 20}
+discount: 0.99
+
+state_variable: int code
+
+state_variable: bool is_full
+
+state_variable: int cell
+
+state_variable: bool is_open
+
+initial_belief:
+state.code = AOS.SampleDiscrete(vector<double>(9000, 1.0 / 9000));
+state.is_full = AOS.Bernoulli(0.5);
+
+reward_code:
+if (state.is_open) __isGoalState = true;
+""",
+    "look.sd": """project: vault
+dynamic_model:
+__moduleResponseStr = to_string(state.code) + (state.is_full ? " full" : " empty");
+""",
+    "walk.sd": f"""project: vault
+dynamic_model:
+if (state.cell < {CELLS}) state__.cell++;
+__moduleResponseStr = "done";
+""",
+    "open.sd": f"""project: vault
+dynamic_model:
+if (state.cell == {CELLS}) {{
+    state__.is_open = true;
+    __reward = state.is_full ? 100 : -100;
+}}
+__moduleResponseStr = "done";
+""",
+    **{f"{skill}.am": MAPPING.format(skill=skill) for skill in ("look", "walk", "open")},
+}
+
+WORTH = {"7 full": 100 * 0.99**CELLS, "8 empty": 0.0, "9 full": 100 * 0.99**CELLS}
+"""After the look, with the way to go."""
+
+
+@pytest.mark.parametrize("planner", ["sarsop", "pomcp"])
+async def test_a_listing_of_as_many_other_states_is_not_taken_for_the_last_one(
+    cache_dir: Path, planner: Planner
+) -> None:
+    built = await built_text(VAULT, cache_dir)
+    async with engine_of(built) as engine:
+        for seen, worth in WORTH.items():
+            # A million states are too many to list. After a look they are 61, every time others.
+            await engine.reset_belief()
+            await engine.plan(simulations=20, seed=1, planner="auto")
+            await engine.update("look", seen)
+            plan = await engine.plan(simulations=2000, seed=1, planner=planner)
+            assert plan.best.q == pytest.approx(worth, abs=0.01), seen
