@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
+from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
 
 __all__ = ["Event", "Report", "ServiceChanged", "Told", "event_json"]
 
@@ -27,7 +27,7 @@ class Told(msgspec.Struct, frozen=True):
     text: str
 
 
-Event = ServiceChanged | Told | MissionState | DecisionRecord | BundleReport
+Event = ServiceChanged | Told | MissionState | DecisionRecord | BundleReport | SkillProgress
 Report = Callable[[Event], None]
 
 _NAMES: dict[type[Any], str] = {
@@ -36,6 +36,7 @@ _NAMES: dict[type[Any], str] = {
     MissionState: "mission",
     DecisionRecord: "decision",
     BundleReport: "bundle",
+    SkillProgress: "progress",
 }
 
 

@@ -29,6 +29,7 @@ from aos_protocol.messages import (
     DecisionRecord,
     MissionState,
     PushBundle,
+    SkillProgress,
     StartMission,
 )
 from aos_runtime.client import AosClient
@@ -166,6 +167,17 @@ class MissionRun:
             )
 
     async def _follow(self, supervisor: Supervisor) -> None:
+        async with asyncio.TaskGroup() as tasks:
+            progress = tasks.create_task(self._follow_progress(supervisor))
+            await self._follow_mission(supervisor)
+            progress.cancel()
+
+    async def _follow_progress(self, supervisor: Supervisor) -> None:
+        async with supervisor.bus.listen(supervisor.keys.all_progress, SkillProgress) as told:
+            async for _, progress in told:
+                self._report(progress)
+
+    async def _follow_mission(self, supervisor: Supervisor) -> None:
         client = AosClient(supervisor.bus, self._deployment.file.robot)
         async for event in client.follow():
             if isinstance(event, BundleReport) and event.source in self._own_pushes:

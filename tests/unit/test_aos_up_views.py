@@ -27,6 +27,7 @@ from aos_protocol.messages import (
     Marginal,
     MissionState,
     Outcome,
+    SkillProgress,
 )
 
 BELIEF = BeliefSummary((Marginal("holding_can", {"true": 0.75, "false": 0.25}),), 0.56, 0.1, 0.0, 2, True)
@@ -198,6 +199,38 @@ def test_the_screen_shows_the_skill_while_it_runs() -> None:
     screen = small_screen()
     screen.take(msgspec.structs.replace(REFUSED, is_accepted=True, diagnostics=(), source="finer"))
     assert "navigate(destination=corridor) ... 0 s" in shown(screen, 80, 24)
+
+
+@pytest.mark.parametrize(
+    ("state", "progress", "text", "expected"),
+    [
+        ("executing", 0.42, "moving", "navigate(destination=corridor) ... 0 s  ████······ 42% moving"),
+        ("executing", 1.0, "", "0 s  ██████████ 100%"),
+        ("cancelling", 0.1, "its time is over", "0 s  █········· 10% cancelling: "),
+        ("accepted", 0.0, "", "navigate(destination=corridor) ... 0 s\n"),
+        ("succeeded", 1.0, "", "navigate(destination=corridor) ... 0 s\n"),
+    ],
+)
+def test_the_screen_shows_how_far_the_skill_is(state: str, progress: float, text: str, expected: str) -> None:
+    screen = small_screen()
+    screen.take(SkillProgress(ActivationId("m", 1, 12), "/navigate", state, progress, text))
+    lines = shown(screen, 80, 24)
+    assert expected in lines
+    assert len(lines.rstrip().splitlines()) <= 24
+    assert max(map(len, lines.splitlines())) <= 80
+
+
+def test_progress_of_another_step_or_by_hand_is_not_shown_as_that_of_the_skill() -> None:
+    for mission, step in (("m", 11), ("by-hand", 12)):
+        screen = small_screen()
+        screen.take(SkillProgress(ActivationId(mission, 1, step), "/navigate", "executing", 0.5))
+        assert "50%" not in shown(screen, 80, 24)
+
+
+def test_a_long_word_about_progress_keeps_to_the_line() -> None:
+    screen = small_screen()
+    screen.take(SkillProgress(ActivationId("m", 1, 12), "/navigate", "executing", 0.5, "very " * 40))
+    assert max(map(len, shown(screen, 80, 24).splitlines())) <= 80
 
 
 def test_the_screen_that_is_left_behind_turns_no_more() -> None:

@@ -8,13 +8,20 @@ from typing import Self
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
 from aos_deploy.views.observations import observation_text, value_text
 from aos_protocol.diagnostics import render
-from aos_protocol.messages import BeliefSummary, BundleReport, ConstraintRisk, DecisionRecord, MissionState
+from aos_protocol.messages import (
+    BeliefSummary,
+    BundleReport,
+    ConstraintRisk,
+    DecisionRecord,
+    MissionState,
+    SkillProgress,
+)
 
 __all__ = ["JsonView", "PlainView", "decision_line", "effort_text", "endings_text", "lines_of", "risk_text"]
 
 
 class PlainView:
-    """Prints `lines_of` each event. A mission's state is printed when its phase or remark is news."""
+    """Prints `lines_of` each event but progress. A mission's state is printed when its remark is news."""
 
     def __init__(self) -> None:
         self._last_remark = ""
@@ -26,6 +33,8 @@ class PlainView:
         return
 
     def __call__(self, event: Event) -> None:
+        if isinstance(event, SkillProgress):
+            return
         if isinstance(event, MissionState):
             # What acts is in the decision's own line.
             if not event.remark or event.remark == self._last_remark or event.phase == "acting":
@@ -63,6 +72,8 @@ def lines_of(event: Event) -> list[str]:
             return [f"mission {event.phase}: {event.remark}" if event.remark else f"mission {event.phase}"]
         case BundleReport():
             return _report_lines(event)
+        case SkillProgress():
+            return [f"{event.path} {event.state} {event.progress:.0%} {event.text}".rstrip()]
 
 
 def decision_line(record: DecisionRecord) -> str:

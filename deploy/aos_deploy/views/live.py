@@ -16,8 +16,8 @@ from rich.text import Text
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.terminal import console as our_console
 from aos_deploy.views.lines import effort_text, endings_text, lines_of, risk_text
-from aos_deploy.views.panels import belief_bars, belief_lines, step_table, value_table
-from aos_protocol.messages import BundleReport, DecisionRecord, MissionState
+from aos_deploy.views.panels import belief_bars, belief_lines, progress_text, step_table, value_table
+from aos_protocol.messages import BundleReport, DecisionRecord, MissionState, SkillProgress
 
 __all__ = ["LiveView", "Screen"]
 
@@ -25,6 +25,8 @@ _FIXED_ROWS = 11
 """Everything but the rows of steps, values and belief."""
 _FEWEST_ROWS = 3
 _GAP_CELLS = 4
+_SPINNER_CELLS = 2
+_RUNNING = ("executing", "cancelling")
 _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow", "ended": "dim"}
 
 
@@ -43,6 +45,7 @@ class Screen:
         self.state: MissionState | None = None
         self.steps: dict[int, DecisionRecord] = {}
         self.latest: DecisionRecord | None = None
+        self.progress: SkillProgress | None = None
 
     def take(self, event: Event) -> None:
         """Brings the screen up to date."""
@@ -61,6 +64,8 @@ class Screen:
                 self._remark(event.remark or event.phase)
             case DecisionRecord():
                 self.latest = self.steps[event.step] = event
+            case SkillProgress():
+                self.progress = event
             case BundleReport():
                 # It is printed above the screen, which goes on to tell what the robot does.
                 pass
@@ -76,7 +81,7 @@ class Screen:
             yield Text()
             yield from self._mission(self.latest, console.width, console.height - _FIXED_ROWS)
         yield Text()
-        yield from self._progress()
+        yield from self._progress(console.width)
 
     def _mission(self, latest: DecisionRecord, width: int, rows: int) -> Iterator[RenderableType]:
         """Steps, values and belief within a number of rows; the latter two side by side where that fits."""
@@ -121,7 +126,7 @@ class Screen:
             text.append(", ".join(name for name, its in self.services.items() if its == state) + "   ", "dim")
         return text
 
-    def _progress(self) -> Iterator[RenderableType]:
+    def _progress(self, width: int) -> Iterator[RenderableType]:
         ending = ""
         if self.state is not None and self.state.phase == "ended":
             ending = self.state.remark
@@ -130,8 +135,17 @@ class Screen:
             yield Text("" if self.remark == ending else self.remark)
         elif self.remark != ending:
             elapsed_s = time.monotonic() - self.remark_since_s
-            text = Text(f"{self.remark} ... {elapsed_s:.0f} s", no_wrap=True, overflow="ellipsis")
+            text = Text(f"{self.remark} ... {elapsed_s:.0f} s").append_text(self._of_the_skill())
+            text.truncate(width - _SPINNER_CELLS, overflow="ellipsis")
             yield Spinner("dots", text)
+
+    def _of_the_skill(self) -> Text:
+        """How far the skill of this step is; nothing before it says so, and when it has ended."""
+        state, told = self.state, self.progress
+        if state is None or told is None or state.phase != "acting" or told.state not in _RUNNING:
+            return Text()
+        is_of_this_step = (told.id.mission, told.id.step) == (state.mission, state.step)
+        return Text("  ").append_text(progress_text(told)) if is_of_this_step else Text()
 
     def _step_remark(self, shown: list[int]) -> Iterator[Text]:
         """What the newest of the steps that has a remark has to say."""
@@ -159,6 +173,8 @@ class LiveView:
 
     def __call__(self, event: Event) -> None:
         self.screen.take(event)
+        if isinstance(event, SkillProgress):
+            return  # It can come many times a second.
         if isinstance(event, BundleReport):
             self._live.console.print("\n".join(lines_of(event)), markup=False, highlight=False)
         self._live.refresh()

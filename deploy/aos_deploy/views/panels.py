@@ -9,11 +9,12 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.views.observations import observation_text, value_text
-from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord
+from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, SkillProgress
 
-__all__ = ["belief_bars", "belief_lines", "brief_action", "step_table", "value_table"]
+__all__ = ["belief_bars", "belief_lines", "brief_action", "progress_text", "step_table", "value_table"]
 
 _BAR_CELLS = 20
+_PROGRESS_CELLS = 10
 _SHOWN_VALUES = 4
 _STEP_COLUMNS_CELLS = 36
 """Of the step table without its action and its observation."""
@@ -94,6 +95,13 @@ def belief_bars(belief: BeliefSummary, rows: int) -> Table:
     return table
 
 
+def progress_text(progress: SkillProgress) -> Text:
+    """How far a skill is, as a bar and a number, and what it does."""
+    text = _bar(progress.progress, _PROGRESS_CELLS).append(f" {progress.progress:.0%}")
+    said = ": ".join(word for word in (progress.state, progress.text) if word and word != "executing")
+    return text.append(f" {said}" if said else "")
+
+
 def belief_lines(belief: BeliefSummary, width: int, rows: int) -> list[Text]:
     """The same as text for a narrow screen, `holding_can true 0.75 false 0.25`; doubtful variables first."""
     doubtful = sorted(belief.marginals, key=lambda marginal: max(marginal.values.values(), default=1.0))
@@ -142,6 +150,6 @@ def _observation(record: DecisionRecord) -> Text:
     )
 
 
-def _bar(probability: float) -> Text:
-    filled = round(probability * _BAR_CELLS)
-    return Text("█" * filled, style="cyan").append("·" * (_BAR_CELLS - filled), style="dim")
+def _bar(share: float, cells: int = _BAR_CELLS) -> Text:
+    filled = round(share * cells)
+    return Text.assemble(("█" * filled, "cyan"), ("·" * (cells - filled), "dim"))
