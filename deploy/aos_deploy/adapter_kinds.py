@@ -83,7 +83,7 @@ _KINDS = {
         options=("python", "interfaces", "topics"),
     ),
     "class": Kind(value="class", options=None),
-    COMMAND: Kind(value="command"),
+    COMMAND: Kind(value="command", options=("host", "folder")),
     EXTERNAL: Kind(value="note"),
 }
 

@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 
 from aos_deploy.adapter_kinds import COMMAND, EXTERNAL, MODEL, Kind, adapter_kinds
+from aos_deploy.remote import HOST
 from aos_deploy.typed import known_names, plain_value
 from aos_deploy.yaml_source import YamlMap, YamlNode, YamlScalar
 from aos_protocol.diagnostics import Span
@@ -136,9 +137,21 @@ def _plan(name: str, node: YamlNode, where: Span, findings: Findings) -> Adapter
         if not (isinstance(command, list) and command and all(isinstance(word, str) for word in command)):
             findings.error("AOS106", f"adapters.{name}.command is not a list of texts", where, _HOW_TO_NAME)
             return None
+        _check_host(name, options, where, findings)
     if chosen[0] == "class":
         kind = msgspec.structs.replace(kind, adapter=str(options.pop("class", "")))
     return AdapterPlan(name=name, kind_name=chosen[0], kind=kind, options=options)
+
+
+def _check_host(name: str, options: dict[str, Any], where: Span, findings: Findings) -> None:
+    """The host that a command runs on, if it is given, and the folder there."""
+    host, folder = options.get("host", ""), options.get("folder", "")
+    if "host" in options and not (isinstance(host, str) and HOST.fullmatch(host)):
+        hint = "Write it as ssh takes it: robot@arm.local"
+        findings.error("AOS106", f"adapters.{name}.host is no host: {host!r}", where, hint)
+    if not isinstance(folder, str) or (folder and "host" not in options):
+        hint = "It is a folder on the other host; without a host the deploy file's folder is meant"
+        findings.error("AOS106", f"adapters.{name}.folder is given without a host", where, hint)
 
 
 def _bound(

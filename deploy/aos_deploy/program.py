@@ -25,7 +25,8 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL. Once it was ready it
     is started again up to `restarts` times when it ends by itself. With a `command` it is a program of the
     user's own: it gets its settings in the environment, and is ready when it serves its paths. The word
-    `python` stands for the Python that this runs in. Others may go on without an adapter.
+    `python` stands for the Python that this runs in. With a `host` it runs there, in a `folder` of that host.
+    Others may go on without an adapter.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     restarts: int = 0
     command: tuple[str, ...] = ()
     folder: str | None = None
+    host: str = ""
     is_adapter: bool = False
 
     def argv(self, settings: Path) -> list[str]:
@@ -92,9 +94,15 @@ def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:
         stop_s=kind.stop_s,
         restarts=kind.restarts,
         command=tuple(plan.options["command"]) if plan.is_command else (),
-        folder=str(folder) if plan.is_command else None,
+        folder=_folder(deployment, plan) if plan.is_command else None,
+        host=options.get("host", "") if plan.is_command else "",
         is_adapter=True,
     )
+
+
+def _folder(deployment: Deployment, plan: AdapterPlan) -> str:
+    """Where a program of the user's own is started; on another host, a folder there."""
+    return plan.options.get("folder", "") if "host" in plan.options else str(deployment.path.parent)
 
 
 def _solver_settings(deployment: Deployment) -> dict[str, Any]:

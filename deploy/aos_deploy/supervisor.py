@@ -17,12 +17,13 @@ from contextlib import asynccontextmanager
 
 from aos_deploy.events import Report, ServiceChanged
 from aos_deploy.program import Program, settings_of
+from aos_deploy.remote import check_ssh, remote_command, why_it_failed
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import AosError, DeployError, error_from_code
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Bus
-from aos_runtime.children import Child
+from aos_runtime.children import PIPE, Child, guarded
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings
 from aos_runtime.subscription import merged
@@ -164,6 +165,15 @@ class Supervisor:
             "AOS_ADAPTER": program.name,
         }
         with self._run.log(program.name).open("ab") as log:
+            if program.host:
+                check_ssh(program.name, program.host)
+                command = remote_command(
+                    program.command, program.host, program.folder or "", base.endpoint, told, settings
+                )
+                # Its input stays open: when that ends, so does the program over there.
+                return await Child.start(
+                    guarded(command), name=program.name, stdin=PIPE, stdout=log, stderr=log
+                )
             return await Child.start(
                 program.argv(settings),
                 name=program.name,
@@ -224,6 +234,9 @@ class Supervisor:
                 hint=fault.hint,
                 diagnostics=fault.diagnostics,
             )
+        host = running.program.host
+        if host and (failed := why_it_failed(name, host, status, self._run.last_log_lines(name))):
+            return failed
         code = "AOS804" if running.ready.is_set() else "AOS802"
         return DeployError(
             f"{name} ended unexpectedly: {_status_text(status)}", code=code, hint=self.look_at_log(name)
@@ -260,6 +273,9 @@ class Supervisor:
         running = self._running.get(name)
         if running is not None and running.child.returncode is None:
             self._changed(name, "stopping")
+            if running.program.host:
+                running.child.stdin.close()
+                await running.child.wait_for(running.program.stop_s)
             await running.child.stop(running.program.stop_s)
             self._changed(name, "ended")
 

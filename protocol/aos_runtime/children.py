@@ -126,6 +126,15 @@ class Child:
         """Its return code, once it has ended."""
         return await self._process.wait()
 
+    async def wait_for(self, timeout_s: float) -> bool:
+        """Whether it has ended, now or within a time."""
+        try:
+            async with asyncio.timeout(timeout_s):
+                await self.wait()
+        except TimeoutError:
+            return False
+        return True
+
     async def stop(self, grace_s: float = 2.0) -> int:
         """SIGTERM to its group, SIGKILL after `grace_s`; its return code. Stopping twice does nothing.
 
@@ -133,10 +142,7 @@ class Child:
         """
         if self.returncode is None:
             self._signal(signal.SIGTERM)
-            try:
-                async with asyncio.timeout(grace_s):
-                    await self.wait()
-            except TimeoutError:
+            if not await self.wait_for(grace_s):
                 self.kill()
         return await self.wait()
 

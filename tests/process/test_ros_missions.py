@@ -1,4 +1,4 @@
-"""Whole missions over ROS: one aos-up serves the simulated robot as ROS nodes, another one drives it."""
+"""Whole missions by foreign names: an original bundle on our robot, and over ROS 1 and ROS 2."""
 
 from __future__ import annotations
 
@@ -39,31 +39,10 @@ bool success
 }
 """The services that the original mappings call, as far as these show them."""
 
-ROBOT = """aos: 1
-robot: stand-in
-project: iros
-bundles: [{bundle}]
-bus: {{listen: tcp/127.0.0.1:0}}
-world: {root}/deploy/worlds/armadillo.yaml
-bind:
-  # The original places are those of another building.
-  /custom_actions/navigate:
-    pybullet: /navigate
-    fields:
-      x: 4.0 if goal.x < 6 else 0.0
-      y: 0.0 if goal.x < 6 else 2.0 if goal.x < 8.5 else -2.0
-      yaw: 0.0 if goal.x < 6 else 1.5708 if goal.x < 8.5 else -1.5708
-  /pick_unknown: {{pybullet: /pick, fields: {{}}, result: {{result: "'true' if success else 'false'"}}}}
-  /arm_outstretched_indicator: {{pybullet: /sense, result: {{response: "positions[3] > -2.3"}}}}
-  /object_grasp_indicator:
-    pybullet: /sense
-    fields: {{}}
-    result: {{response: "gap_m > 0.0003 and min(left_force_n, right_force_n) > 1.0"}}
-  /deliver_to_person: {{pybullet: /serve}}
+SERVED = """
 serve:
   interfaces: [interfaces]
   ros1: {{master: "{master}"}}
-runs: runs
 """
 
 MISSION = """aos: 1
@@ -118,21 +97,47 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
         path = tmp_path / "interfaces" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    values = {"root": root, "bundle": corpus / "armadillo-rough", "master": master}
-    for name, template in (("robot.yaml", ROBOT), ("mission.yaml", MISSION)):
-        (tmp_path / name).write_text(template.format(**values))
+    values = {"bundle": corpus / "armadillo-rough", "master": master}
+    stand_in = original_on_our_robot(root, corpus).replace("robot: iros", "robot: stand-in\nproject: iros")
+    (tmp_path / "robot.yaml").write_text(stand_in + SERVED.format(**values))
+    (tmp_path / "mission.yaml").write_text(MISSION.format(**values))
     with up([str(tmp_path / "robot.yaml"), "--serve", "ros1"], cache_dir) as robot:
         told = list(events_of_until(robot, "Ctrl-C stops it"))
         assert any("/pick_unknown is robotican_demos_upgrade/srv/pick_unknown" in str(one) for one in told)
         with up([str(tmp_path / "mission.yaml")], cache_dir) as mission:
             events = list(events_of(mission))
+    assert_whole_mission(events, tmp_path / "runs" / "latest")
+    assert mission.returncode in (0, 4, 5, 6)
+
+
+@pytest.mark.corpus
+def test_an_unchanged_original_bundle_runs_a_mission_on_our_robot_by_foreign_paths(
+    corpus: Path, root: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "deploy.yaml").write_text(original_on_our_robot(root, corpus))
+    with up([str(tmp_path / "deploy.yaml")], cache_dir) as mission:
+        events = list(events_of(mission))
+    assert_whole_mission(events, tmp_path / "runs" / "latest")
+    assert mission.returncode in (0, 4, 5, 6)
+    moved = [json.loads(line) for line in (tmp_path / "runs/latest/world.jsonl").read_text().splitlines()]
+    assert {step["path"] for step in moved} <= {"/navigate", "/pick", "/sense", "/serve"}
+
+
+def original_on_our_robot(root: Path, corpus: Path) -> str:
+    """The deploy file of the documentation, with the places where bundle and world are."""
+    text = (root / "docs" / "examples" / "armadillo-original.yaml").read_text()
+    text = text.replace("[armadillo-rough]", f"[{corpus / 'armadillo-rough'}]")
+    return text.replace("../../deploy", str(root / "deploy"))
+
+
+def assert_whole_mission(events: list[dict[str, Any]], run: Path) -> None:
+    """Every skill that was chosen was observed, and the mission came to an ending that is defined."""
     steps = [event for event in events if event["event"] == "decision" and event.get("outcome")]
     assert steps, events
     assert {step["outcome"]["status"] for step in steps} == {"observed"}
-    summary = json.loads((tmp_path / "runs" / "latest" / "summary.json").read_text())
+    summary = json.loads((run / "summary.json").read_text())
     assert summary["ending"] in ("goal", "failure", "nothing_worthwhile", "step_limit")
     assert any(action.startswith("navigate") for action in summary["actions"])
-    assert mission.returncode in (0, 4, 5, 6)
 
 
 def test_the_shipped_robot_serves_a_ros_2_program_of_others(

@@ -1,0 +1,124 @@
+"""Programs on other hosts: started, awaited and stopped through ssh, which also carries the bus to them.
+
+The router listens on this machine alone. ssh gives the other host a port on its own loopback that leads to it, so
+nothing of the bus is open to a network, and all that goes over one is encrypted and told who it is by ssh.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+import shlex
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+
+from aos_protocol.errors import DeployError
+
+__all__ = ["HOST", "check_ssh", "remote_command", "why_it_failed"]
+
+HOST = re.compile(r"(ssh://)?([A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9\[][A-Za-z0-9_.:\]-]*")
+"""What ssh takes for a host; nothing that it would take for an option."""
+
+_SSH_FAILED = 255
+_NOT_FOUND = 127
+_GRACE_S = 5
+_PORTS = (20_000, 32_000)
+_OPTIONS = (
+    "BatchMode=yes",  # It asks nothing: nobody is there to answer.
+    "ExitOnForwardFailure=yes",
+    "ConnectTimeout=10",
+    "ServerAliveInterval=1",
+    "ServerAliveCountMax=3",
+)
+
+# It ends the program when its own input ends, that is with the connection, however that ends.
+_SCRIPT = """\
+exec 3<&0
+cd {folder} || exit {not_found}
+command -v {program} >/dev/null || {{ echo "there is no program "{program}" in $(pwd) or on the PATH" >&2; exit {not_found}; }}
+AOS_SETTINGS=$(mktemp) && printf %s {settings} >"$AOS_SETTINGS" || exit 1
+trap 'rm -f "$AOS_SETTINGS"' EXIT
+export AOS_SETTINGS {environment}
+own_group=; target=; command -v setsid >/dev/null && {{ own_group=setsid; target=-; }}
+$own_group {command} </dev/null 3<&- & program=$!
+{{ cat <&3 >/dev/null; kill -TERM -- $target$program; sleep {grace}; kill -KILL -- $target$program; }} >/dev/null 2>&1 &
+wait $program; status=$?
+kill $! 2>/dev/null
+exit $status
+"""
+
+_HINTS = {
+    "Permission denied": "Give {host} a key of this user (ssh-copy-id {host}): aos-up types no passwords",
+    "Host key verification failed": "Connect once by hand, and look at the key that {host} shows: ssh {host}",
+    "forwarding failed": "{host} has to allow the bus's port: AllowTcpForwarding in its sshd_config",
+    "administratively prohibited": "{host} has to allow the bus's port: AllowTcpForwarding in its sshd_config",
+}
+
+
+def check_ssh(adapter: str, host: str) -> None:
+    """DeployError AOS805 if this machine has no ssh."""
+    if shutil.which("ssh") is None:
+        raise DeployError(
+            f"the adapter {adapter} is to run on {host}, and there is no program ssh here",
+            code="AOS805",
+            hint="Install an SSH client, such as Debian's openssh-client",
+        )
+
+
+def remote_command(
+    command: tuple[str, ...],
+    host: str,
+    folder: str,
+    endpoint: str,
+    told: Mapping[str, str],
+    settings: Path,
+) -> list[str]:
+    """The ssh that runs a command on a host until its input ends.
+
+    The command finds the environment `told`, with the bus's port on its own side, and the settings in a file.
+    """
+    port = random.SystemRandom().randrange(*_PORTS)
+    environment = {**told, "AOS_ENDPOINT": f"tcp/127.0.0.1:{port}"}
+    del environment["AOS_SETTINGS"]
+    program, *arguments = command
+    program = "python3" if program == "python" else program
+    script = _SCRIPT.format(
+        folder=shlex.quote(folder) if folder else '"$HOME"',
+        program=shlex.quote(program),
+        not_found=_NOT_FOUND,
+        settings=shlex.quote(settings.read_text(encoding="utf-8")),
+        environment=" ".join(f"{name}={shlex.quote(value)}" for name, value in environment.items()),
+        command=shlex.join([program, *arguments]),
+        grace=_GRACE_S,
+    )
+    options = [word for option in _OPTIONS for word in ("-o", option)]
+    here = endpoint.partition("/")[2]
+    return [
+        "ssh",
+        "-T",
+        *options,
+        "-R",
+        f"127.0.0.1:{port}:{here}",
+        host,
+        f"exec sh -c {shlex.quote(script)}",
+    ]
+
+
+def why_it_failed(name: str, host: str, status: int, said: list[str]) -> DeployError | None:
+    """The error behind the end of an ssh with the last lines that it said; None if the program itself ended."""
+    text = said[-1] if said else ""
+    if status == _NOT_FOUND:
+        return DeployError(
+            f"{name} on {host}: {text}",
+            code="AOS802",
+            hint="Name the program as that host has it, and its `folder:` there, by default the login's home",
+        )
+    if status != _SSH_FAILED:
+        return None
+    hint = next((each for sign, each in _HINTS.items() if any(sign in line for line in said)), "")
+    return DeployError(
+        f"{name}: {host} cannot be reached by ssh: {text or 'it says nothing'}",
+        code="AOS802",
+        hint=(hint or "See that it works by hand, without a password: ssh {host} true").format(host=host),
+    )
