@@ -1,7 +1,7 @@
 """Programs on other hosts: started, awaited and stopped through ssh, which also carries the bus to them.
 
-The router listens on this machine alone. ssh gives the other host a port on its own loopback that leads to it, so
-nothing of the bus is open to a network, and all that goes over one is encrypted and told who it is by ssh.
+The router listens on this machine alone. ssh gives the other host a port on its own loopback that leads to
+it: nothing of the bus is open to a network, and ssh encrypts what goes over one.
 """
 
 from __future__ import annotations
@@ -36,13 +36,21 @@ _OPTIONS = (
 _SCRIPT = """\
 exec 3<&0
 cd {folder} || exit {not_found}
-command -v {program} >/dev/null || {{ echo "there is no program "{program}" in $(pwd) or on the PATH" >&2; exit {not_found}; }}
+command -v {program} >/dev/null || {{
+    echo "there is no program "{program}" in $(pwd) or on the PATH" >&2
+    exit {not_found}
+}}
 AOS_SETTINGS=$(mktemp) && printf %s {settings} >"$AOS_SETTINGS" || exit 1
 trap 'rm -f "$AOS_SETTINGS"' EXIT
 export AOS_SETTINGS {environment}
 own_group=; target=; command -v setsid >/dev/null && {{ own_group=setsid; target=-; }}
 $own_group {command} </dev/null 3<&- & program=$!
-{{ cat <&3 >/dev/null; kill -TERM -- $target$program; sleep {grace}; kill -KILL -- $target$program; }} >/dev/null 2>&1 &
+{{
+    cat <&3
+    kill -s TERM -- $target$program
+    sleep {grace}
+    kill -s KILL -- $target$program
+}} >/dev/null 2>&1 &
 wait $program; status=$?
 kill $! 2>/dev/null
 exit $status
@@ -51,8 +59,7 @@ exit $status
 _HINTS = {
     "Permission denied": "Give {host} a key of this user (ssh-copy-id {host}): aos-up types no passwords",
     "Host key verification failed": "Connect once by hand, and look at the key that {host} shows: ssh {host}",
-    "forwarding failed": "{host} has to allow the bus's port: AllowTcpForwarding in its sshd_config",
-    "administratively prohibited": "{host} has to allow the bus's port: AllowTcpForwarding in its sshd_config",
+    "forwarding failed": "{host} has to let the bus through: AllowTcpForwarding in its sshd_config",
 }
 
 
@@ -106,7 +113,7 @@ def remote_command(
 
 
 def why_it_failed(name: str, host: str, status: int, said: list[str]) -> DeployError | None:
-    """The error behind the end of an ssh with the last lines that it said; None if the program itself ended."""
+    """The error behind the end of an ssh that said some last lines; None if the program itself ended."""
     text = said[-1] if said else ""
     if status == _NOT_FOUND:
         return DeployError(

@@ -30,6 +30,9 @@ R = TypeVar("R", bound=Message)
 
 _RETRY_S = 0.02
 _ROUND_TRIP_S = 2.0
+_ROUND_TRIPS = 5
+"""How often the router is asked: on a machine that stands still for a while a link is lost, and made anew."""
+
 _LATE_S = 0.5
 """How long after Zenoh's own deadline a question ends by ours, in case Zenoh says nothing."""
 
@@ -287,6 +290,12 @@ class Bus:
         A declaration returns before the router knows of it, and what another client sends meanwhile is lost;
         a round trip on the same link comes back after it.
         """
+        for _ in range(_ROUND_TRIPS):
+            if await self._has_gone_round():
+                return
+        raise BusError("the bus router does not answer", code="AOS605")
+
+    async def _has_gone_round(self) -> bool:
         done = self._loop.create_future()
         self._session.liveliness().get(
             "aos/round-trip",
@@ -296,8 +305,9 @@ class Bus:
         try:
             async with asyncio.timeout(_ROUND_TRIP_S + _LATE_S):
                 await done
-        except TimeoutError as error:
-            raise BusError("the bus router does not answer", code="AOS605") from error
+        except TimeoutError:
+            return False
+        return True
 
     def _start_answering(
         self,

@@ -136,6 +136,14 @@ def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:
         ),
         ("adapters: {arm: {port: 1}}", "4:12 AOS106 adapters.arm has no one kind but port"),
         ("adapters: {arm: {command: ./arm}}", "4:12 AOS106 adapters.arm.command is not a list of texts"),
+        (
+            "adapters: {arm: {command: [./arm], host: -oProxyCommand=x}}",
+            "4:12 AOS106 adapters.arm.host is no host: '-oProxyCommand=x'",
+        ),
+        (
+            "adapters: {arm: {command: [./arm], folder: /opt}}",
+            "4:12 AOS106 adapters.arm.folder is given without a host",
+        ),
         ("adapters: {solver: external}", "4:12 AOS126 'solver' is no name for an adapter"),
         ("adapters: {sim: {pybullet: a.yaml, wrld: b}}", "4:36 AOS102 unknown key adapters.sim.wrld"),
         ("bind: {/drive: command}", "1:1 AOS105 the adapter command has no command"),

@@ -1,0 +1,112 @@
+"""Adapters on another host, through an SSH server of this machine or a stand-in for one."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from ssh_host import refusing_ssh, ssh_server, stand_in
+
+BIN = Path(sys.executable).parent
+PATIENCE_S = 120.0
+
+FIRST_TIME_BAD = "test -e tried || { touch tried; exit 3; }; exec python3 fetch_robot.py"
+
+
+@pytest.fixture(autouse=True)
+def project(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A new project with an adapter that is a program."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    for command in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
+        subprocess.run([BIN / "aos", *command], check=True, capture_output=True)
+    # The Python of the other host is the one that has Zenoh.
+    monkeypatch.setenv("PATH", f"{BIN}{os.pathsep}{os.environ['PATH']}")
+
+
+@pytest.fixture(params=["stand-in", "sshd"])
+def ssh(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    """The folder of an `ssh` that reaches robot@arm."""
+    if request.param == "stand-in":
+        yield stand_in(tmp_path)
+        return
+    if not (shutil.which("sshd", path="/usr/sbin") and shutil.which("ssh") and os.getuid() == 0):
+        pytest.skip("needs an SSH server (Debian: openssh-server), and to be root to start it")
+    with ssh_server(tmp_path) as folder:
+        yield folder
+
+
+def up(ssh: str, command: str, folder: Path) -> tuple[int, str]:
+    """How a mission with this program on the other host ends, and what is said."""
+    text = Path("fetch.yaml").read_text()
+    before, _, after = text.partition("{command:")
+    adapter = f"{{command: {command}, host: robot@arm, folder: {folder}}}"
+    Path("fetch.yaml").write_text(before + adapter + after.partition("}")[2])
+    done = subprocess.run(
+        [BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"],
+        env={**os.environ, "PATH": f"{ssh}{os.pathsep}{os.environ['PATH']}"},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE_S,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+def left_behind(folder: Path) -> list[str]:
+    """The command lines of processes that work in a folder."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if (process / "cwd").readlink() == folder:
+                found.append((process / "cmdline").read_bytes().replace(b"\0", b" ").decode())
+        except OSError:
+            continue
+    return [command for command in found if "fetch_robot" in command]
+
+
+def test_a_program_on_another_host_runs_a_mission_and_nothing_of_it_stays(ssh: str, tmp_path: Path) -> None:
+    status, said = up(ssh, f"[{sys.executable}, fetch_robot.py]", tmp_path)
+    assert status == 0, said
+    assert "mission ended: the goal is reached" in said
+    assert left_behind(tmp_path) == []
+
+
+def test_a_program_that_ends_over_there_is_started_again(tmp_path: Path) -> None:
+    script = FIRST_TIME_BAD.replace("python3", sys.executable)
+    status, said = up(stand_in(tmp_path), f'[sh, -c, "{script}"]', tmp_path)
+    assert status == 0, said
+    assert "robot starting: for the 2. time" in said
+
+
+def test_a_program_that_the_other_host_does_not_have_is_named(ssh: str, tmp_path: Path) -> None:
+    status, said = up(ssh, "[arm_driver]", tmp_path)
+    assert status == 3
+    assert f"robot on robot@arm: there is no program arm_driver in {tmp_path} or on the PATH" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        (
+            "robot@arm: Permission denied (publickey).",
+            "Give robot@arm a key of this user (ssh-copy-id robot@arm)",
+        ),
+        ("Host key verification failed.", "Connect once by hand"),
+        ("ssh: connect to host arm port 22: Connection refused", "See that it works by hand"),
+        (
+            "Error: remote port forwarding failed for listen port 20001",
+            "AllowTcpForwarding in its sshd_config",
+        ),
+    ],
+)
+def test_an_ssh_that_fails_says_why_and_what_to_do(tmp_path: Path, text: str, hint: str) -> None:
+    status, said = up(refusing_ssh(tmp_path, text), "[arm_driver]", tmp_path)
+    assert status == 3
+    assert f"robot@arm cannot be reached by ssh: {text}" in said
+    assert hint in said
