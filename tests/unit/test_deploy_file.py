@@ -206,7 +206,12 @@ def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.
 
     assert list(programs) == ["registry", "middleware", "pybullet", "solver"]
     assert programs["registry"].settings == {"watch": str(folder / "drop")}
-    assert programs["middleware"].settings == {"project": "rover", "activation_timeout_s": 120.0}
+    assert programs["middleware"].settings == {
+        "project": "rover",
+        "activation_timeout_s": 120.0,
+        "played": [],
+        "elsewhere": [],
+    }
     adapter = msgspec.convert(
         programs["pybullet"].settings | {"robot": "", "service": "", "endpoint": "", "run_dir": ""},
         AdapterSettings,
@@ -218,6 +223,23 @@ def test_services_are_told_what_the_file_says(folder: Path, monkeypatch: pytest.
     assert solver["cache_dir"] == str(folder / "cache")
     assert "time_s" not in solver
     assert solver["goal_probability"] == 0.9
+
+
+def test_the_middleware_is_told_which_skills_are_played_by_their_documents(folder: Path) -> None:
+    deployment = read(folder, HEAD + 'bind: {/pick: model, /drive: external, "*": model}\n')
+    programs = {program.name: program for program in programs_of_deployment(deployment)}
+    assert programs["middleware"].settings["played"] == ["/pick", "*"]
+    assert programs["middleware"].settings["elsewhere"] == ["/drive"]
+
+
+def test_a_command_is_started_in_the_folder_of_the_deploy_file_or_of_its_host(folder: Path) -> None:
+    text = """\
+adapters: {near: {command: [./arm]}, far: {command: [./arm], host: robot@arm, folder: /opt/arm}}
+bind: {/pick: near, /place: far}
+"""
+    programs = {program.name: program for program in programs_of_deployment(read(folder, HEAD + text))}
+    assert (programs["near"].folder, programs["near"].host) == (str(folder), "")
+    assert (programs["far"].folder, programs["far"].host) == ("/opt/arm", "robot@arm")
 
 
 def test_adapters_get_their_paths_their_options_and_what_others_serve(folder: Path) -> None:
