@@ -1,8 +1,8 @@
-"""Writes what follows from the sources: errors.md, words.md, schemas, tables of protocol.md and limits.md.
+"""Writes what follows from the sources: errors.md, words.md, schemas, colours, tables of other pages.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
-not). In the latter two the text between `<!-- generated: NAME -->` and `<!-- end -->` is replaced; the rest
-is written by hand.
+not). In protocol.md and limits.md the text between `<!-- generated: NAME -->` and `<!-- end -->` is
+replaced; the rest is written by hand.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from limits_table import limits_table
+from textmate_grammar import textmate_grammar
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.language_server.meanings import BUILT_INS, SECTIONS
@@ -145,6 +146,7 @@ def pages() -> dict[Path, str]:
     return {
         DOCS / "errors.md": errors_page(),
         DOCS / "words.md": words_page(),
+        DOCS / "examples/vscode/syntaxes/aos.tmLanguage.json": textmate_grammar(),
         protocol: with_generated_parts(protocol.read_text(encoding="utf-8")),
         limits: with_generated_parts(limits.read_text(encoding="utf-8")),
         **{

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
 from aos_deploy.language_server.documents import meaning_at, outline, proposals_at
 from aos_deploy.language_server.meanings import SECTIONS
 from aos_registry.documents.sdl_sections import GRAMMARS
@@ -50,3 +57,40 @@ def test_files_that_are_no_sdl_have_no_words() -> None:
     assert meaning_at("x.json", "{}", 1, 0) is None
     assert proposals_at("x.json", "{}", 1, 0) == []
     assert outline("x.json", "{}") == ()
+
+
+@pytest.fixture(scope="module")
+def colours(root: Path) -> dict[str, Any]:
+    path = root / "docs/examples/vscode/syntaxes/aos.tmLanguage.json"
+    grammar: dict[str, Any] = json.loads(path.read_text())
+    return grammar
+
+
+def rule_at(rules: list[dict[str, Any]], line: str) -> dict[str, Any]:
+    """The rule of a grammar that opens at a line."""
+    return next(rule for rule in rules if re.search(rule.get("begin", rule.get("match", "")), line))
+
+
+@pytest.mark.parametrize(
+    ("section", "part", "scope"),
+    [
+        ("dynamic_model:", None, "meta.embedded.cpp"),
+        ("  reward_code: state.n = 1;", None, "meta.embedded.cpp"),
+        ("code:", None, "meta.embedded.cpp"),
+        ("local_variable: depth", "code:", "meta.embedded.python"),
+        ("response: taken", "response_rule: success", "meta.embedded.python"),
+        ("module_activation: skill", "path: /take", None),
+        ("project: fetch", None, None),
+    ],
+)
+def test_a_grammar_for_editors_knows_which_language_a_section_holds(
+    colours: dict[str, Any], section: str, part: str | None, scope: str | None
+) -> None:
+    rule = rule_at(colours["patterns"], section)
+    if part is not None:
+        assert not re.search(rule["end"], part), "the section goes on with its part"
+        rule = rule_at(rule["patterns"], part)
+    assert rule.get("contentName") == scope
+    if "end" in rule:
+        assert re.search(rule["end"], "version: 2.0")
+        assert not re.search(rule["end"], "project::f();")
