@@ -21,7 +21,7 @@ __all__ = ["DrawEstimate", "Estimate", "estimate"]
 
 PRIOR = 0.5
 SWEEPS, FIRST_SWEEPS = 600, 150
-QUANTILE_SAMPLES = 60_000
+QUANTILE_SAMPLES = 400_000
 SEED = 1
 
 Numbers = npt.NDArray[np.float64]

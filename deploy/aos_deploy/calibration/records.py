@@ -29,11 +29,12 @@ class RecordedStep(msgspec.Struct, frozen=True):
 
 
 class RecordedMission(msgspec.Struct, frozen=True):
-    """`ends_early` says why later steps cannot be used, where there are any."""
+    """`ends_early` says why later steps cannot be used. `seed` is 0 where nobody knows it."""
 
     name: str
     steps: tuple[RecordedStep, ...]
     ends_early: str = ""
+    seed: int = 0
 
 
 class _Kept(msgspec.Struct, frozen=True):
@@ -82,7 +83,7 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
         told: list[tuple[str, str, dict[str, Any]]] = [
             (action, response, {}) for action, response in zip(trial.actions, trial.responses, strict=True)
         ]
-        yield _mission(f"{path.parent}, seed {seed}", told, trial.states)
+        yield msgspec.structs.replace(_mission(f"{path.parent}, seed {seed}", told, trial.states), seed=seed)
 
 
 def _of_run(run: Path) -> RecordedMission:

@@ -31,6 +31,7 @@ def register(app: typer.Typer) -> None:
     )
     group.callback()(lambda: None)
     group.command(epilog="Example: aos experiment run armadillo --seeds 20 --system-seeds 4 --jobs 2")(run)
+    group.command(epilog="Example: aos experiment statistics armadillo --repeat 3")(statistics)
     app.add_typer(group, name="experiment")
 
 
@@ -108,6 +109,89 @@ def run(
     print(f"the report is in {from_here(pages[0])} and {from_here(pages[1])}")
 
 
+def statistics(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="A file in deploy/experiments/statistics, or any file")
+    ] = "armadillo",
+    repeat: Annotated[int, typer.Option(min=1, help="So many times the missions that the file wants")] = 1,
+    first_seed: Annotated[int, typer.Option(min=0, help="The seeds begin here")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Records and report; else experiments/NAME-statistics")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Count how often skills succeed in a simulated world.
+
+    The same actions are carried out in every mission. The report says what
+    came of each, and what that says about the numbers of documents.
+    """
+    _check_installed()
+    from aos_deploy.calibration.calibrate import Calibration, calibrate
+    from aos_deploy.calibration.records import RecordedMission, read_missions
+    from aos_deploy.experiments.markdown import page
+    from aos_deploy.experiments.results import surroundings
+    from aos_deploy.experiments.statistics import ScriptedStep, Statistics, markdown_statistics, steps_of
+    from aos_deploy.trials.campaign import play_campaign
+    from aos_deploy.trials.files import read_script_file
+
+    path = _experiment_file(name, "deploy/experiments/statistics")
+    file = read_script_file(path)
+    folder = (out or Path("experiments") / f"{path.stem}-statistics").resolve()
+    missions: list[RecordedMission] = []
+    steps: list[ScriptedStep] = []
+    seeds: dict[str, str] = {}
+    broken: dict[str, int] = {}
+    with progress() as bar:
+        for key, part in file.parts.items():
+            number = part.missions * repeat
+            task = bar.add_task(key, total=number)
+            # No two scripts have the same seeds.
+            begin = first_seed + sum(
+                each.missions * repeat for each in list(file.parts.values())[: len(seeds)]
+            )
+            played = asyncio.run(
+                play_campaign(
+                    msgspec.structs.replace(part, by="system"),
+                    range(begin, begin + number),
+                    folder=path.parent,
+                    out=folder / key,
+                    jobs=1,
+                    on_trial=partial(bar.advance, task),
+                )
+            )
+            seeds[key] = f"{begin} to {begin + number - 1}"
+            broken[key] = sum(bool(trial.fault) for trial in played.trials)
+            wanted = {trial.seed for trial in played.trials if not trial.fault}
+            recorded = [each for each in read_missions(folder / key) if each.seed in wanted]
+            missions += recorded
+            steps += steps_of(key, recorded)
+    calibrations: dict[str, Calibration] = {}
+    for key, bundles in file.calibrates.items():
+        paths = [(path.parent / bundle).resolve() for bundle in bundles]
+        calibrations[key] = asyncio.run(calibrate(missions, paths))
+    found = Statistics(
+        name=path.stem,
+        title=file.title,
+        about=file.about,
+        command=f"aos experiment statistics {name} --repeat {repeat}",
+        surroundings=surroundings(),
+        seeds=seeds,
+        broken=broken,
+        steps=tuple(steps),
+        calibrations=calibrations,
+    )
+    (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(found), indent=2))
+    (folder / "report.md").write_text(markdown_statistics(found))
+    (folder / "report.html").write_text(page(found.title, markdown_statistics(found)))
+    if as_json:
+        print_json(found)
+        return
+    for step in found.steps:
+        told = ", ".join(f"{response} {share.value:.2f}" for response, share in step.responses.items())
+        print(f"{step.part} {step.number} {step.action}: {told}")
+    print(f"the report is in {from_here(folder / 'report.md')}")
+
+
 def _check_installed() -> None:
     """DeployError AOS805 before anything has run, if the report could not be made in the end."""
     for package in ("matplotlib", "markdown_it"):
@@ -119,12 +203,12 @@ def _check_installed() -> None:
             )
 
 
-def _experiment_file(name: str) -> Path:
+def _experiment_file(name: str, where: str = "deploy/experiments") -> Path:
     """The file of that name, or the shipped experiment."""
     given = Path(name)
     if given.suffix in (".yaml", ".yml"):
         return given.resolve()
-    known = {path.stem: path for path in sorted(shipped("deploy/experiments").glob("*.yaml"))}
+    known = {path.stem: path for path in sorted(shipped(where).glob("*.yaml"))}
     if name not in known:
         raise typer.BadParameter(
             f"{name} is none of {', '.join(known)}, and no .yaml file", param_hint="NAME"

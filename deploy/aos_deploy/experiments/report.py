@@ -6,30 +6,19 @@ import html
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from markdown_it import MarkdownIt
-
+from aos_deploy.experiments.markdown import head, row, shown, tally
+from aos_deploy.experiments.markdown import page as page_of
 from aos_deploy.experiments.results import PartResult, Results
-from aos_deploy.trials.intervals import Interval
 
 __all__ = ["markdown_report", "write_report"]
-
-_STYLE = (
-    "body{font:16px/1.5 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em}"
-    "table{border-collapse:collapse;margin:1em 0}th,td{border:1px solid #ccc;padding:.3em .6em}"
-    "th{background:#f3f3f3}svg{max-width:100%;height:auto}code{background:#f3f3f3}"
-)
 
 
 def write_report(results: Results, plots: Mapping[str, Path], folder: Path) -> tuple[Path, Path]:
     """`report.md`, with links to the pictures, and `report.html`, which holds them."""
     page, whole = folder / "report.md", folder / "report.html"
     page.write_text(markdown_report(results, {t: str(p.relative_to(folder)) for t, p in plots.items()}))
-    text = MarkdownIt("commonmark").enable("table").render(markdown_report(results, {}))
     pictures = "".join(f"<h3>{html.escape(title)}</h3>{_svg(path)}" for title, path in plots.items())
-    whole.write_text(
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(results.title)}'
-        f"</title><style>{_STYLE}</style></head><body>{text}{pictures}</body></html>\n"
-    )
+    whole.write_text(page_of(results.title, markdown_report(results, {}), pictures))
     return page, whole
 
 
@@ -42,11 +31,10 @@ def _svg(path: Path) -> str:
 def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
     """The report; `pictures` are files by their titles."""
     around = results.surroundings
-    versions = ", ".join(f"{name} {version}" for name, version in around.versions.items())
     lines = [f"# {results.title}", ""]
     if results.about:
         lines += [results.about.strip(), ""]
-    lines += [f"`{results.command}`, {around.date}, {around.machine}; {versions}.", ""]
+    lines += [around.text(results.command), ""]
     lines += ["## Claims", "", *_claims(results), "", "## Figures", "", *_figures(results), ""]
     lines += ["Values in brackets are the ends of 95 % intervals.", ""]
     lines += [line for title, file in pictures.items() for line in (f"![{title}]({file})", "")]
@@ -55,16 +43,16 @@ def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
 
 
 def _claims(results: Results) -> Iterator[str]:
-    yield from _head("part", "played by", "claim", "", "missions", "share", "wanted", "not in seeds")
+    yield from head("part", "played by", "claim", "", "missions", "share", "wanted", "not in seeds")
     for part in results.parts:
         for verdict in part.verdicts:
-            yield _row(
+            yield row(
                 part.name,
                 part.by,
                 verdict.says,
                 "seen" if verdict.is_seen else "**not seen**",
                 f"{verdict.held} of {verdict.missions}",
-                _shown(verdict.share),
+                shown(verdict.share),
                 f"{verdict.wanted:.2f}",
                 ", ".join(map(str, verdict.failed_seeds)),
             )
@@ -72,30 +60,30 @@ def _claims(results: Results) -> Iterator[str]:
 
 def _figures(results: Results) -> Iterator[str]:
     counted = sorted({name for part in results.parts for name in part.figures.counts})
-    yield from _head(
+    yield from head(
         "part", "played by", "missions", "goal reached", "return", "steps", *counted, "endings", "first"
     )
     for part in results.parts:
         figures = part.figures
-        yield _row(
+        yield row(
             part.name,
             part.by,
             str(figures.missions) + (f" ({figures.broken} broke)" if figures.broken else ""),
-            _shown(figures.goal),
-            _shown(figures.value),
-            _shown(figures.steps),
-            *(_shown(figures.counts.get(name)) for name in counted),
-            _tally(figures.endings),
-            _tally(figures.first_actions),
+            shown(figures.goal),
+            shown(figures.value),
+            shown(figures.steps),
+            *(shown(figures.counts.get(name)) for name in counted),
+            tally(figures.endings),
+            tally(figures.first_actions),
         )
 
 
 def _parts(results: Results) -> Iterator[str]:
-    yield from _head(
+    yield from head(
         "part", "played by", "deploy file", "bundles", "seeds", "digest of documents and settings"
     )
     for part in results.parts:
-        yield _row(part.name, part.by, part.deploy, ", ".join(part.bundles), _seeds(part), part.digest)
+        yield row(part.name, part.by, part.deploy, ", ".join(part.bundles), _seeds(part), part.digest)
     for part in results.parts:
         for seed, fault in part.broken.items():
             yield f"\n{part.name}, {part.by}, seed {seed} broke: {fault}"
@@ -105,22 +93,3 @@ def _seeds(part: PartResult) -> str:
     seeds = part.seeds
     is_range = len(seeds) > 1 and list(seeds) == list(range(seeds[0], seeds[0] + len(seeds)))
     return f"{seeds[0]} to {seeds[-1]}" if is_range else ", ".join(map(str, seeds))
-
-
-def _shown(interval: Interval | None) -> str:
-    if interval is None:
-        return ""
-    return f"{interval.value:.2f} [{interval.low:.2f}, {interval.high:.2f}]"
-
-
-def _tally(counts: Mapping[str, int]) -> str:
-    return ", ".join(f"{name} {count}" for name, count in counts.items())
-
-
-def _head(*names: str) -> Iterator[str]:
-    yield _row(*names)
-    yield _row(*("---" for _ in names))
-
-
-def _row(*cells: str) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import platform
+import subprocess
 from collections import Counter
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
 import msgspec
 
@@ -59,6 +61,13 @@ class Surroundings(msgspec.Struct, frozen=True, kw_only=True):
     date: str
     machine: str
     versions: dict[str, str]
+    commit: str = ""
+
+    def text(self, command: str) -> str:
+        """The line under a report's title."""
+        versions = ", ".join(f"{name} {version}" for name, version in self.versions.items())
+        commit = f", commit {self.commit}" if self.commit else ""
+        return f"`{command}`, {self.date}, {self.machine}; {versions}{commit}."
 
 
 class Results(msgspec.Struct, frozen=True, kw_only=True):
@@ -113,7 +122,24 @@ def surroundings() -> Surroundings:
         date=datetime.now(UTC).date().isoformat(),
         machine=f"{os.cpu_count()} cores, {platform.system()} {platform.machine()}",
         versions={"aos": __version__, "python": platform.python_version(), **_installed()},
+        commit=_commit(),
     )
+
+
+def _commit() -> str:
+    """Of the checkout that this runs from; with a + where files differ from it, empty where it is none."""
+    try:
+        asked = subprocess.run(
+            ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"],
+            cwd=Path(__file__).parent,
+            capture_output=True,
+            text=True,
+            timeout=10,
+            check=False,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return asked.stdout.strip() if asked.returncode == 0 else ""
 
 
 def _installed() -> dict[str, str]:

@@ -13,6 +13,7 @@ import msgspec
 from aos_deploy.bundle_files import files_of_bundle
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.trials.model_player import ModelPlayer
+from aos_deploy.trials.script_player import ScriptPlayer
 from aos_deploy.trials.setting import Setting, deployment_of
 from aos_deploy.trials.system_player import SystemPlayer
 from aos_deploy.trials.trial import Trial
@@ -31,6 +32,8 @@ class Played(msgspec.Struct, frozen=True):
 
 class _Player(Protocol):
     async def play(self, seed: int) -> Trial: ...
+
+    async def close(self) -> None: ...
 
 
 class _Kept(msgspec.Struct, frozen=True):
@@ -70,7 +73,11 @@ async def play_campaign(
 
     if left:
         await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)
-        await _play_all(await _player(setting, deployment, out), left, jobs, keep)
+        player = await _player(setting, deployment, out)
+        try:
+            await _play_all(player, left, jobs, keep)
+        finally:
+            await player.close()
     return Played(tuple(done[seed] for seed in seeds), digest)
 
 
@@ -90,6 +97,8 @@ async def _play_all(player: _Player, seeds: Sequence[int], jobs: int, keep: Call
 
 
 async def _player(setting: Setting, deployment: Deployment, out: Path) -> _Player:
+    if setting.script:
+        return await ScriptPlayer.prepared(deployment, setting.script, out)
     if setting.by == "model":
         return await ModelPlayer.prepared(deployment)
     return SystemPlayer(deployment, out / "runs")
@@ -111,6 +120,7 @@ def _kept(records: Path, digest: str) -> list[Trial]:
 def _digest(setting: Setting, deployment: Deployment) -> str:
     """Of all that a mission's outcome depends on beside its seed."""
     whole = hashlib.sha256(f"{__version__} {setting.by}".encode())
+    whole.update(" > ".join(setting.script).encode())
     whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))
     for bundle in deployment.bundles:
         for name, data in sorted(files_of_bundle(bundle, deployment.file.leave_out).items()):

@@ -15,7 +15,17 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
 from aos_protocol.findings import Findings
 
-__all__ = ["Experiment", "MissionTest", "Part", "TestFile", "read_experiment", "read_test_file"]
+__all__ = [
+    "Experiment",
+    "MissionTest",
+    "Part",
+    "ScriptFile",
+    "ScriptedPart",
+    "TestFile",
+    "read_experiment",
+    "read_script_file",
+    "read_test_file",
+]
 
 Count = Annotated[int, msgspec.Meta(ge=1)]
 Seed = Annotated[int, msgspec.Meta(ge=0)]
@@ -41,6 +51,22 @@ class TestFile(msgspec.Struct, frozen=True, kw_only=True):
     tests: dict[str, MissionTest]
 
 
+class ScriptedPart(Setting, frozen=True, kw_only=True):
+    """Missions of a script, so many if nobody wants more."""
+
+    missions: Count
+
+
+class ScriptFile(msgspec.Struct, frozen=True, kw_only=True):
+    """Scripts by name. `calibrates` are documents, as lists of bundles, by the name in the report."""
+
+    aos: Literal[1]
+    title: str
+    about: str = ""
+    parts: dict[str, ScriptedPart]
+    calibrates: dict[str, tuple[str, ...]] = {}
+
+
 class Experiment(msgspec.Struct, frozen=True, kw_only=True):
     """An experiment: parts by name, each played by the model and by the whole system.
 
@@ -54,7 +80,7 @@ class Experiment(msgspec.Struct, frozen=True, kw_only=True):
     parts: dict[str, Part]
 
 
-F = TypeVar("F", TestFile, Experiment)
+F = TypeVar("F", TestFile, Experiment, ScriptFile)
 
 
 def read_test_file(path: Path) -> TestFile:
@@ -67,13 +93,23 @@ def read_experiment(path: Path) -> Experiment:
     return _read(path, Experiment, "parts")
 
 
+def read_script_file(path: Path) -> ScriptFile:
+    """The scripts of a file; DeployError AOS808 with all diagnostics if it has errors."""
+    return _read(path, ScriptFile, "parts")
+
+
 def _read(path: Path, kind: type[F], entries: str) -> F:
     node, findings = read_yaml(path, str(path))
     file = read_structure(node, kind, findings) if node is not None else None
     if node is not None and file is not None:
-        parts: dict[str, Part] = {**getattr(file, entries)}
+        parts: dict[str, Part | ScriptedPart] = {**getattr(file, entries)}
         for name, part in parts.items():
-            _check(part, _entry(_entry(node, entries), name), findings, f"{entries}.{name}")
+            where, label = _entry(_entry(node, entries), name), f"{entries}.{name}"
+            if isinstance(part, Part):
+                _check(part, where, findings, label)
+            elif not part.script:
+                span = where.span if where is not None else Span(label)
+                findings.error("AOS105", f"{label} has no script", span, "Give it a list of actions")
         if not parts:
             findings.error("AOS105", f"{entries} names none", node.span)
     if file is None or findings.has_errors:

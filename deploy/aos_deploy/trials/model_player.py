@@ -8,6 +8,7 @@ from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.program import cache_dir
 from aos_deploy.trials.trial import Trial
+from aos_protocol.documents import Project
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.endings import Ending, MissionLimits
@@ -24,15 +25,20 @@ DEFAULT_SIMULATIONS = 100_000
 class ModelPlayer:
     """Plays missions of a deployment by the model of its documents; what it needs is built once."""
 
-    def __init__(self, deployment: Deployment, model: BuiltModel) -> None:
+    def __init__(self, deployment: Deployment, project: Project, model: BuiltModel) -> None:
         self.deployment = deployment
-        self._model = model
+        self.project = project
+        self.model = model
 
     @classmethod
     async def prepared(cls, deployment: Deployment) -> ModelPlayer:
         """Reads the documents and compiles the model; DocumentError with all that is wrong with them."""
-        model = await build_project(project_of(deployment), cache_dir(), lambda remark: None)
-        return cls(deployment, model)
+        project = project_of(deployment)
+        model = await build_project(project, cache_dir(), lambda remark: None)
+        return cls(deployment, project, model)
+
+    async def close(self) -> None:
+        """Nothing is left of a mission."""
 
     async def play(self, seed: int) -> Trial:
         """One mission. The same seed gives the same mission wherever the budget is one in simulations."""
@@ -42,7 +48,7 @@ class ModelPlayer:
             step_limit=file.mission.step_limit,
             stop_below_value=file.mission.stop_below_value,
         )
-        engine = await Engine.start(self._model, seed=seed)
+        engine = await Engine.start(self.model, seed=seed)
         try:
             run = await simulate_mission(engine, self._search(seed), limits, with_states=True)
         finally:

@@ -23,7 +23,8 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     """`bundles` stand in place of the deploy file's; `simulations` and `step_limit` too.
 
     `unconstrained` leaves out the deploy file's constraints. `faults` are values for the world file's
-    `faults`, for a simulated world.
+    `faults`, for a simulated world. With a `script` its actions are carried out in that world, one after the
+    other, and nothing is planned.
     """
 
     deploy: str
@@ -33,6 +34,7 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     step_limit: int | None = None
     unconstrained: bool = False
     faults: dict[str, float] = {}
+    script: tuple[str, ...] = ()
 
 
 def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:

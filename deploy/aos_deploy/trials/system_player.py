@@ -33,6 +33,9 @@ class SystemPlayer:
         self.deployment = deployment
         self._runs = runs
 
+    async def close(self) -> None:
+        """Nothing is left of a mission."""
+
     async def play(self, seed: int) -> Trial:
         """One mission; one that broke is a trial with its fault."""
         runs = self._runs / f"seed-{seed}"
