@@ -6,7 +6,7 @@ import asyncio
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
@@ -17,6 +17,10 @@ from aos_deploy.shipped import shipped
 from aos_deploy.terminal import progress
 from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError
+
+if TYPE_CHECKING:
+    from aos_deploy.trials.setting import Setting
+    from aos_solver.offline.solving import Bounds
 
 __all__ = ["register"]
 
@@ -56,6 +60,8 @@ def run(
     are recorded are not run again, unless documents or settings have changed.
     """
     _check_installed()
+    from aos_deploy.experiments.optimum import regret_of
+    from aos_deploy.experiments.physics import keep_picture
     from aos_deploy.experiments.plots import draw_plots
     from aos_deploy.experiments.report import write_report
     from aos_deploy.experiments.results import PartResult, Results, result_of, surroundings
@@ -88,7 +94,16 @@ def run(
                         on_trial=partial(bar.advance, task),
                     )
                 )
-                results.append(result_of(key, each, by, played, experiment))
+                result = result_of(key, each, by, played, experiment)
+                if by == "model" and experiment.optimum:
+                    bounds = _known_optimum(folder / by / key, played.digest, setting, path.parent)
+                    result = msgspec.structs.replace(result, regret=regret_of(bounds, played.trials))
+                elif by == "system":
+                    target = folder / "pictures" / f"{key}.png"
+                    if keep_picture(folder / by / key / "runs", result.seeds, target):
+                        picture = str(target.relative_to(folder))
+                        result = msgspec.structs.replace(result, picture=picture)
+                results.append(result)
     told = Results(
         name=path.stem,
         title=experiment.title,
@@ -190,6 +205,20 @@ def statistics(
         told = ", ".join(f"{response} {share.value:.2f}" for response, share in step.responses.items())
         print(f"{step.part} {step.number} {step.action}: {told}")
     print(f"the report is in {from_here(folder / 'report.md')}")
+
+
+def _known_optimum(out: Path, digest: str, setting: Setting, folder: Path) -> Bounds:
+    """The bounds that were worked out for the same documents, or new ones."""
+    from aos_deploy.experiments.optimum import bounds_of
+    from aos_deploy.trials.setting import deployment_of
+    from aos_solver.offline.solving import Bounds
+
+    kept = out / f"optimum-{digest}.json"
+    if kept.is_file():
+        return msgspec.json.decode(kept.read_bytes(), type=Bounds)
+    bounds = asyncio.run(bounds_of(deployment_of(setting, folder, out)))
+    kept.write_bytes(msgspec.json.encode(bounds))
+    return bounds
 
 
 def _check_installed() -> None:

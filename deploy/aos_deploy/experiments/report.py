@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from base64 import b64encode
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -18,8 +19,15 @@ def write_report(results: Results, plots: Mapping[str, Path], folder: Path) -> t
     page, whole = folder / "report.md", folder / "report.html"
     page.write_text(markdown_report(results, {t: str(p.relative_to(folder)) for t, p in plots.items()}))
     pictures = "".join(f"<h3>{html.escape(title)}</h3>{_svg(path)}" for title, path in plots.items())
+    for part in results.parts:
+        if part.picture:
+            pictures += f"<h3>{html.escape(part.name)}</h3>{_embedded(folder / part.picture)}"
     whole.write_text(page_of(results.title, markdown_report(results, {}), pictures))
     return page, whole
+
+
+def _embedded(path: Path) -> str:
+    return f'<img alt="the world" src="data:image/png;base64,{b64encode(path.read_bytes()).decode()}">'
 
 
 def _svg(path: Path) -> str:
@@ -36,8 +44,13 @@ def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
         lines += [results.about.strip(), ""]
     lines += [around.text(results.command), ""]
     lines += ["## Claims", "", *_claims(results), "", "## Figures", "", *_figures(results), ""]
+    if any(part.regret for part in results.parts):
+        lines += ["## Beside the optimum", "", _REGRET, "", *_regrets(results), ""]
     lines += ["Values in brackets are the ends of 95 % intervals.", ""]
     lines += [line for title, file in pictures.items() for line in (f"![{title}]({file})", "")]
+    for part in results.parts if pictures else ():
+        if part.picture:
+            lines += [f"![{part.name}: the world at the end of a mission]({part.picture})", ""]
     lines += ["## What was run", "", *_parts(results), ""]
     return "\n".join(lines)
 
@@ -58,11 +71,33 @@ def _claims(results: Results) -> Iterator[str]:
             )
 
 
+_REGRET = (
+    "The optimum is the value of the initial belief, between SARSOP's proven bounds: discounted, without a "
+    "limit of steps, for a robot that cannot stop. What is missing to it is a share of the range, the "
+    "difference between the largest and the smallest return of these missions. Below 0 the missions brought "
+    "more, by chance or because they stop."
+)
+
+
+def _regrets(results: Results) -> Iterator[str]:
+    yield from head("part", "missions", "return", "optimum", "range", "missing, as a share of the range")
+    for part in results.parts:
+        if (regret := part.regret) is not None:
+            yield row(
+                part.name,
+                str(part.figures.missions),
+                shown(part.figures.value),
+                f"{regret.lower:.3f} to {regret.upper:.3f}",
+                f"{regret.scale:.2f}",
+                shown(regret.share, 3),
+            )
+
+
 def _figures(results: Results) -> Iterator[str]:
     counted = sorted({name for part in results.parts for name in part.figures.counts})
-    yield from head(
-        "part", "played by", "missions", "goal reached", "return", "steps", *counted, "endings", "first"
-    )
+    goal, in_world, speed = "goal reached", "reached in the world", "simulated seconds a second"
+    titles = ["part", "played by", "missions", goal, in_world, "return", "steps", *counted, speed]
+    yield from head(*titles, "endings", "first")
     for part in results.parts:
         figures = part.figures
         yield row(
@@ -70,9 +105,11 @@ def _figures(results: Results) -> Iterator[str]:
             part.by,
             str(figures.missions) + (f" ({figures.broken} broke)" if figures.broken else ""),
             shown(figures.goal),
+            shown(figures.world_goal),
             shown(figures.value),
             shown(figures.steps),
             *(shown(figures.counts.get(name)) for name in counted),
+            f"{figures.speed:.1f}" if figures.speed is not None else "",
             tally(figures.endings),
             tally(figures.first_actions),
         )

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import msgspec
 
+from aos_deploy.experiments.optimum import Regret
+from aos_deploy.experiments.physics import simulated_speed
 from aos_deploy.trials.campaign import Played
 from aos_deploy.trials.claims import Verdict, judge, matches
 from aos_deploy.trials.files import Experiment, Part
@@ -28,7 +30,9 @@ _PACKAGES = ("eclipse-zenoh", "pybullet", "numpy")
 class Figures(msgspec.Struct, frozen=True, kw_only=True):
     """Of the missions of one part. `value` is the discounted return, which only a model can count.
 
-    `counts` are the means of the experiment's counted steps.
+    `counts` are the means of the experiment's counted steps. `world_goal` is the share of missions that have
+    reached the goal in the simulated world, whatever the belief. `speed` is how many seconds are simulated in
+    one of the processor.
     """
 
     missions: int
@@ -39,6 +43,8 @@ class Figures(msgspec.Struct, frozen=True, kw_only=True):
     counts: dict[str, Interval | None]
     endings: dict[str, int]
     first_actions: dict[str, int]
+    world_goal: Interval | None = None
+    speed: float | None = None
 
 
 class PartResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -53,6 +59,8 @@ class PartResult(msgspec.Struct, frozen=True, kw_only=True):
     figures: Figures
     verdicts: tuple[Verdict, ...]
     broken: dict[str, str]
+    regret: Regret | None = None
+    picture: str = ""
 
 
 class Surroundings(msgspec.Struct, frozen=True, kw_only=True):
@@ -91,13 +99,13 @@ def result_of(name: str, part: Part, by: str, played: Played, experiment: Experi
         bundles=part.bundles,
         digest=played.digest,
         seeds=tuple(trial.seed for trial in played.trials),
-        figures=figures_of(played.trials, experiment.counts),
+        figures=figures_of(played.trials, experiment.counts, experiment.truth if by == "system" else ""),
         verdicts=tuple(judge(claim, played.trials, by) for claim in claims),
         broken={str(trial.seed): trial.fault for trial in played.trials if trial.fault},
     )
 
 
-def figures_of(trials: Sequence[Trial], counts: dict[str, str]) -> Figures:
+def figures_of(trials: Sequence[Trial], counts: dict[str, str], truth: str = "") -> Figures:
     """Missions that broke count as ones that did not reach the goal, and in nothing else."""
     whole = [trial for trial in trials if not trial.fault]
     values = [trial.value for trial in whole if trial.value is not None]
@@ -113,7 +121,15 @@ def figures_of(trials: Sequence[Trial], counts: dict[str, str]) -> Figures:
         },
         endings=dict(Counter(trial.ending for trial in trials).most_common()),
         first_actions=dict(Counter(trial.actions[0] for trial in whole if trial.actions).most_common()),
+        world_goal=interval_of_share(sum(_holds(truth, trial) for trial in whole), len(trials))
+        if truth
+        else None,
+        speed=simulated_speed(whole),
     )
+
+
+def _holds(truth: str, trial: Trial) -> bool:
+    return bool(trial.states) and truth in trial.states[-1]
 
 
 def surroundings() -> Surroundings:

@@ -70,13 +70,17 @@ class ScriptFile(msgspec.Struct, frozen=True, kw_only=True):
 class Experiment(msgspec.Struct, frozen=True, kw_only=True):
     """An experiment: parts by name, each played by the model and by the whole system.
 
-    `counts` are patterns of steps by the name they have in the report, which counts them.
+    `counts` are patterns of steps by the name they have in the report, which counts them. `truth` is text
+    that the world's last record has where the goal was reached. With `optimum` the model's returns are
+    compared with the best that can be had.
     """
 
     aos: Literal[1]
     title: str
     about: str = ""
     counts: dict[str, str] = {}
+    truth: str = ""
+    optimum: bool = False
     parts: dict[str, Part]
 
 
