@@ -112,8 +112,8 @@ class Backups {
       graph_.count_work(move.flows.elements.size());
       for (std::size_t state = 0; state < values.size(); ++state) {
         double sum = 0;
-        for (const auto* flow = move.flows.begin(state); flow != move.flows.end(state); ++flow) {
-          sum += flow->probability * later_[flow->target];
+        for (const auto& flow : move.flows[state]) {
+          sum += flow.probability * later_[flow.target];
         }
         values[state] += model_.discount * sum - 2 * graph_.rounding() * (size + std::abs(move.rewards[state]));
       }

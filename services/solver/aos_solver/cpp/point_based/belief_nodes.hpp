@@ -23,7 +23,7 @@ struct Branch {
   double upper;
   double lower = -std::numeric_limits<double>::infinity();
   double rest = 0;        // the probability that is in no successor
-  double rest_upper = 0;  // and what it is worth at most
+  double rest_upper = 0;  // what the rest is worth at most
   bool is_open = false;
   std::vector<Successor> successors{};
 };
@@ -33,8 +33,8 @@ struct Node {
   std::uint32_t region;
   std::uint32_t left;                // decisions; 0 where there is no end
   std::uint32_t vector = 0;          // the best alpha vector
-  std::uint32_t seen_vectors = 0;    // how many the lower bound is of
-  std::uint32_t seen_changes = 0;    // of the upper bound
+  std::uint32_t seen_vectors = 0;    // alpha vectors that the lower bound takes account of
+  std::uint32_t seen_changes = 0;    // changes that the upper bound takes account of
   std::uint32_t point = nowhere;     // in the upper bound
   double corner = 0;                 // what the upper bound is interpolated to be from single states
   double lower = -std::numeric_limits<double>::infinity();

@@ -94,8 +94,8 @@ class CertaintyEquivalent {
       for (std::uint32_t truth = 0; truth < region.states.size(); ++truth) {
         rewards_.push_back(move.rewards[truth]);
         first_step_.push_back(steps_.size());
-        for (const auto* flow = move.flows.begin(truth); flow != move.flows.end(truth); ++flow) {
-          for (const Step& step : of_target_[flow->target]) add_step(step.pair, flow->probability * step.probability);
+        for (const auto& flow : move.flows[truth]) {
+          for (const Step& step : of_target_[flow.target]) add_step(step.pair, flow.probability * step.probability);
         }
       }
     }
@@ -113,8 +113,8 @@ class CertaintyEquivalent {
   // For every target of a move the pairs of states that follow, where `taken` is taken for granted.
   void find_landings(const Move& move, std::uint32_t taken) {
     predicted_.assign(move.targets, 0.0);
-    for (const auto* flow = move.flows.begin(taken); flow != move.flows.end(taken); ++flow) {
-      predicted_[flow->target] += flow->probability;
+    for (const auto& flow : move.flows[taken]) {
+      predicted_[flow.target] += flow.probability;
     }
     of_target_.resize(std::max<std::size_t>(of_target_.size(), move.targets));
     for (std::size_t target = 0; target < move.targets; ++target) of_target_[target].clear();

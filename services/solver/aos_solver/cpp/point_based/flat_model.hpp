@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct Rows {
 
   const Element* begin(std::size_t row) const { return elements.data() + first[row]; }
   const Element* end(std::size_t row) const { return elements.data() + first[row + 1]; }
+  std::span<const Element> operator[](std::size_t row) const { return {begin(row), end(row)}; }
 };
 
 struct FlatModel {
@@ -48,6 +50,12 @@ struct FlatModel {
   std::vector<Start> starts;
 
   std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }
+  // What a row's next states are worth on average, by their values.
+  double later_value(std::size_t row, const std::vector<double>& values) const {
+    double sum = 0;
+    for (const Outcome& outcome : outcomes[row]) sum += outcome.probability * values[outcome.next];
+    return sum;
+  }
 };
 
 }  // namespace aos::point_based

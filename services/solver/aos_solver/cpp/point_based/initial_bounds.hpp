@@ -40,9 +40,9 @@ class InitialBounds {
     }
     for (std::size_t row = 0; row < model.states * model.actions; ++row) {
       double sum = 0;
-      for (const auto* outcome = model.outcomes.begin(row); outcome != model.outcomes.end(row); ++outcome) {
-        sum += outcome->probability;
-        likelihoods_ += static_cast<double>(model.likelihoods.end(outcome->sensing) - model.likelihoods.begin(outcome->sensing));
+      for (const auto& outcome : model.outcomes[row]) {
+        sum += outcome.probability;
+        likelihoods_ += static_cast<double>(model.likelihoods[outcome.sensing].size());
       }
       max_row_sum_ = std::max(max_row_sum_, sum * (1 + rounding));
     }
@@ -171,7 +171,7 @@ class InitialBounds {
     std::vector<double> values(model_.states, 0.0);
     double outcomes = 0;
     for (const std::uint32_t row : choices.elements) {
-      outcomes += static_cast<double>(model_.outcomes.end(row) - model_.outcomes.begin(row));
+      outcomes += static_cast<double>(model_.outcomes[row].size());
     }
     const double sweeps = std::max(operations_ / (outcomes + 1), min_sweeps_);
     double next_look = 4;
@@ -197,11 +197,11 @@ class InitialBounds {
     Shift shift;
     for (std::size_t number = 0; number < states_.size(); ++number) {
       double best = -std::numeric_limits<double>::infinity();
-      for (const auto* row = choices.begin(number); row != choices.end(number); ++row) {
-        const Estimate again = value_of(*row, [&](std::uint32_t next) { return values[next]; });
+      for (const auto& row : choices[number]) {
+        const Estimate again = value_of(row, [&](std::uint32_t next) { return values[next]; });
         const double added = again.value - values[states_[number]];
         const double error = again.error + ulp * std::abs(values[states_[number]]);
-        const double share = 1 - model_.discount * going_on(*row);
+        const double share = 1 - model_.discount * going_on(row);
         const auto divided = [&](double by, int direction) {
           return by / (share - direction * (by < 0 ? -1 : 1) * rounding_) * (1 + direction * (by < 0 ? -1 : 1) * 4 * ulp);
         };
@@ -215,8 +215,8 @@ class InitialBounds {
 
   double going_on(std::size_t row) const {
     double sum = 0;
-    for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-      if (regions_.region_of[outcome->next] != nowhere) sum += outcome->probability;
+    for (const auto& outcome : model_.outcomes[row]) {
+      if (regions_.region_of[outcome.next] != nowhere) sum += outcome.probability;
     }
     return sum;
   }
@@ -239,8 +239,7 @@ class InitialBounds {
         const std::size_t row = model_.row(state, action);
         const auto does_the_same = [&](std::size_t known) {
           return model_.rewards[known] == model_.rewards[row] &&
-                 std::equal(model_.outcomes.begin(known), model_.outcomes.end(known), model_.outcomes.begin(row),
-                            model_.outcomes.end(row), is_same);
+                 std::ranges::equal(model_.outcomes[known], model_.outcomes[row], is_same);
         };
         const auto known = choices.elements.begin() + static_cast<std::ptrdiff_t>(first);
         if (std::any_of(known, choices.elements.end(), does_the_same)) continue;
@@ -257,8 +256,8 @@ class InitialBounds {
     const auto renew = [&](std::size_t number) {
       double& value = values[states_[number]];
       double renewed = -std::numeric_limits<double>::infinity();
-      for (const auto* row = choices.begin(number); row != choices.end(number); ++row) {
-        renewed = std::max(renewed, lasting_value(states_[number], *row, values));
+      for (const auto& row : choices[number]) {
+        renewed = std::max(renewed, lasting_value(states_[number], row, values));
       }
       change = std::max(change, std::abs(renewed - value));
       value = renewed;
@@ -274,11 +273,11 @@ class InitialBounds {
   double lasting_value(std::uint32_t state, std::size_t row, const std::vector<double>& values) const {
     double later = 0;
     double stays = 0;
-    for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-      if (outcome->next == state) {
-        stays += outcome->probability;
+    for (const auto& outcome : model_.outcomes[row]) {
+      if (outcome.next == state) {
+        stays += outcome.probability;
       } else {
-        later += outcome->probability * values[outcome->next];
+        later += outcome.probability * values[outcome.next];
       }
     }
     return (model_.rewards[row] + model_.discount * later) / (1 - model_.discount * stays);
@@ -293,8 +292,8 @@ class InitialBounds {
   Estimate value_of(std::size_t row, ValueOf&& value) const {
     double later = 0;
     double size = 0;
-    for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-      const double part = outcome->probability * value(outcome->next);
+    for (const auto& outcome : model_.outcomes[row]) {
+      const double part = outcome.probability * value(outcome.next);
       later += part;
       size += std::abs(part);
     }
@@ -332,16 +331,15 @@ class InitialBounds {
       double largest = 0;
       for (std::size_t i = 0; i < actions; ++i) largest = std::max(largest, std::abs(next[i]));
       size += outcome->probability * largest;
-      const auto* last = model_.likelihoods.end(outcome->sensing);
-      for (const auto* likelihood = model_.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
-        std::size_t& slot = slot_of[likelihood->observation];
-        if (slot >= seen.size() || seen[slot] != likelihood->observation) {
+      for (const auto& likelihood : model_.likelihoods[outcome->sensing]) {
+        std::size_t& slot = slot_of[likelihood.observation];
+        if (slot >= seen.size() || seen[slot] != likelihood.observation) {
           slot = seen.size();
-          seen.push_back(likelihood->observation);
+          seen.push_back(likelihood.observation);
           sums.resize(seen.size() * actions, 0.0);
         }
         double* sum = sums.data() + slot * actions;
-        const double weight = outcome->probability * likelihood->probability;
+        const double weight = outcome->probability * likelihood.probability;
         for (std::size_t i = 0; i < actions; ++i) sum[i] += weight * next[i];
       }
     }

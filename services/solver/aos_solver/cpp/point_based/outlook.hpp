@@ -62,11 +62,7 @@ class Outlook {
     for (std::size_t state = 0; state < model.states; ++state) {
       for (std::size_t action = 0; action < model.actions; ++action) {
         const std::size_t row = model.row(state, action);
-        double later = 0;
-        for (const auto* outcome = model.outcomes.begin(row); outcome != model.outcomes.end(row); ++outcome) {
-          later += outcome->probability * values[outcome->next];
-        }
-        const double value = model.rewards[row] + model.discount * later;
+        const double value = model.rewards[row] + model.discount * model.later_value(row, values);
         if (action == 0 || (is_best ? value > now[state] : value < now[state])) now[state] = value;
       }
       furthest = std::max(furthest, is_best ? now[state] : -now[state]);

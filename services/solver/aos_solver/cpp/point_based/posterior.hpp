@@ -24,11 +24,9 @@ class Posterior {
     std::uint64_t work = 0;
     predicted_.assign(move.targets, 0.0);
     for (std::size_t i = 0; i < belief.size(); ++i) {
-      const auto* last = move.flows.end(belief.states[i]);
-      for (const auto* flow = move.flows.begin(belief.states[i]); flow != last; ++flow) {
-        predicted_[flow->target] += belief.probabilities[i] * flow->probability;
-      }
-      work += static_cast<std::uint64_t>(last - move.flows.begin(belief.states[i]));
+      const auto flows = move.flows[belief.states[i]];
+      for (const auto& flow : flows) predicted_[flow.target] += belief.probabilities[i] * flow.probability;
+      work += flows.size();
     }
     return work;
   }

@@ -156,16 +156,15 @@ class Regions {
       for (std::size_t action = 0; action < model_.actions; ++action) {
         const std::size_t row = model_.row(state, action);
         const bool is_alone = !is_united_[state];
-        if (is_alone && model_.outcomes.end(row) - model_.outcomes.begin(row) < 2) continue;
+        if (is_alone && model_.outcomes[row].size() < 2) continue;
         if (is_alone) of_one.clear();
         NumberIndex& successor = is_alone ? of_one : of_regions;
         const std::uint64_t first_key = std::uint64_t{root_of(state)} << 32 | (action * model_.observations);
-        for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-          if (is_worthless_[outcome->next]) continue;
-          const auto* last = model_.likelihoods.end(outcome->sensing);
-          for (const auto* likelihood = model_.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
-            const std::uint32_t next = number_of(successor, first_key + likelihood->observation, outcome->next);
-            if (next != outcome->next && unite(next, outcome->next)) has_united = true;
+        for (const auto& outcome : model_.outcomes[row]) {
+          if (is_worthless_[outcome.next]) continue;
+          for (const auto& likelihood : model_.likelihoods[outcome.sensing]) {
+            const std::uint32_t next = number_of(successor, first_key + likelihood.observation, outcome.next);
+            if (next != outcome.next && unite(next, outcome.next)) has_united = true;
           }
         }
       }
@@ -197,13 +196,13 @@ class Regions {
       for (const std::uint32_t state : region.states) {
         const std::size_t row = model_.row(state, action);
         move.rewards.push_back(model_.rewards[row]);
-        for (const auto* outcome = model_.outcomes.begin(row); outcome != model_.outcomes.end(row); ++outcome) {
-          if (is_worthless_[outcome->next]) continue;
-          const std::uint64_t key = std::uint64_t{outcome->next} << 32 | outcome->sensing;
+        for (const auto& outcome : model_.outcomes[row]) {
+          if (is_worthless_[outcome.next]) continue;
+          const std::uint64_t key = std::uint64_t{outcome.next} << 32 | outcome.sensing;
           const std::uint32_t known = targets_.size();
           const std::uint32_t target = number_of(targets_, key, known);
-          move.flows.elements.push_back({target, outcome->probability});
-          if (target == known) add_target(move, *outcome, target);
+          move.flows.elements.push_back({target, outcome.probability});
+          if (target == known) add_target(move, outcome, target);
         }
         move.flows.first.push_back(move.flows.elements.size());
       }
@@ -213,15 +212,14 @@ class Regions {
   }
 
   void add_target(Move& move, const Outcome& outcome, std::uint32_t target) {
-    const auto* last = model_.likelihoods.end(outcome.sensing);
-    for (const auto* likelihood = model_.likelihoods.begin(outcome.sensing); likelihood != last; ++likelihood) {
+    for (const auto& likelihood : model_.likelihoods[outcome.sensing]) {
       const auto known = static_cast<std::uint32_t>(move.observation_branches.size());
-      const std::uint32_t number = number_of(branches_, likelihood->observation, known);
-      if (number == known) move.observation_branches.push_back({likelihood->observation, region_of[outcome.next], true, {}});
+      const std::uint32_t number = number_of(branches_, likelihood.observation, known);
+      if (number == known) move.observation_branches.push_back({likelihood.observation, region_of[outcome.next], true, {}});
       auto& [observation, region, is_ascending, successors] = move.observation_branches[number];
       const std::uint32_t local = local_of[outcome.next];
       if (!successors.empty() && successors.back().local >= local) is_ascending = false;
-      successors.push_back({target, local, likelihood->probability});
+      successors.push_back({target, local, likelihood.probability});
     }
   }
 
@@ -231,8 +229,8 @@ class Regions {
   std::vector<bool> is_worthless_;
   std::vector<bool> is_reached_;
   std::vector<std::uint32_t> reached_;
-  NumberIndex targets_;  // of an action in a region, with its
-  NumberIndex branches_;
+  NumberIndex targets_;   // of an action in a region
+  NumberIndex branches_;  // of that action's observations
 };
 
 }  // namespace aos::point_based

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "aos/base/directed.hpp"
@@ -45,26 +46,14 @@ class Enumerator final : public DirectedDraws {
   // Calls `run(enumerator)` once for each path; after it, `probability()` is the path's. Throws NotEnumerable.
   template <class Run>
   void for_each_path(Run&& run, int max_paths = path_budget) {
-    start();
-    int paths = 0;
-    do {
-      if (++paths > max_paths) throw NotEnumerable{"there are more combinations of draws than can be walked"};
-      run_once(run);
-    } while (advance());
+    walk(run, max_paths, std::numeric_limits<std::size_t>::max());
   }
 
   // The same for models with loops that chance ends: returns what the paths weigh, together, that were not walked, which
   // is little. Throws NotEnumerable, too.
   template <class Run>
   double for_nearly_each_path(Run&& run, int max_paths = path_budget) {
-    start();
-    int paths = 0;
-    do {
-      if (++paths > max_paths) throw NotEnumerable{"there are more combinations of draws than can be walked"};
-      run_once(run);
-      if (depth_ > max_draws_depth_first) return best_first(run, max_paths - paths);
-    } while (advance());
-    return 0;
+    return walk(run, max_paths, max_draws_depth_first);
   }
 
  private:
@@ -98,6 +87,19 @@ class Enumerator final : public DirectedDraws {
   void start();
   // To the next path, depth first; false after the last.
   bool advance();
+
+  // Returns what the paths weigh that were not walked.
+  template <class Run>
+  double walk(Run& run, int max_paths, std::size_t max_depth_first) {
+    start();
+    int paths = 0;
+    do {
+      if (++paths > max_paths) throw NotEnumerable{"there are more combinations of draws than can be walked"};
+      run_once(run);
+      if (depth_ > max_depth_first) return best_first(run, max_paths - paths);
+    } while (advance());
+    return 0;
+  }
 
   template <class Run>
   void run_once(Run& run) {

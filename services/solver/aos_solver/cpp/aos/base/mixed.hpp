@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace aos {
 
@@ -9,5 +11,13 @@ inline std::uint64_t mixed(std::uint64_t hash, std::uint64_t more) {
   hash = (hash ^ more) * 0x9e3779b97f4a7c15u;
   return hash ^ (hash >> 32);
 }
+
+struct NumbersHash {
+  std::size_t operator()(const std::vector<std::uint64_t>& numbers) const {
+    std::uint64_t hash = 0;
+    for (const std::uint64_t number : numbers) hash = mixed(hash, number);
+    return hash;
+  }
+};
 
 }  // namespace aos

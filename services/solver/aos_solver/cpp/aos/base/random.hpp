@@ -123,6 +123,18 @@ class Draws {
   }
 };
 
+// The index of the positive weight that has a place from 0 to the weights' total.
+inline int place_in(const double* weights, int count, double place) {
+  int last = 0;
+  for (int i = 0; i < count; ++i) {
+    if (weights[i] <= 0) continue;
+    if (place < weights[i]) return i;
+    place -= weights[i];
+    last = i;
+  }
+  return last;
+}
+
 // Draws at random. The generator is xoshiro256++ (Blackman and Vigna), seeded through splitmix64, so that every seed
 // gives an independent stream.
 class Sampler : public Draws<Sampler> {
@@ -164,17 +176,7 @@ class Sampler : public Draws<Sampler> {
   // Returns the sink before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
-  int choose(const double* weights, int count, double total) {
-    double left = uniform() * total;
-    int last = 0;
-    for (int i = 0; i < count; ++i) {
-      if (weights[i] <= 0) continue;
-      if (left < weights[i]) return i;
-      left -= weights[i];
-      last = i;
-    }
-    return last;
-  }
+  int choose(const double* weights, int count, double total) { return place_in(weights, count, uniform() * total); }
 
  private:
   std::array<std::uint64_t, 4> words_;

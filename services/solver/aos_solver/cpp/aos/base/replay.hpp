@@ -48,15 +48,7 @@ class Replay final : public DirectedDraws {
   std::size_t draws() const { return draws_; }
 
   int choose(const double* weights, int count, double total) override {
-    double left = next(weights, count, total) * total;
-    int last = 0;
-    for (int i = 0; i < count; ++i) {
-      if (weights[i] <= 0) continue;
-      if (left < weights[i]) return i;
-      left -= weights[i];
-      last = i;
-    }
-    return last;
+    return place_in(weights, count, next(weights, count, total) * total);
   }
   double uniform() override { return next(nullptr, 0, 1); }
 

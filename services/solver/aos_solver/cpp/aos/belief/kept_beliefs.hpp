@@ -90,31 +90,30 @@ class KeptBeliefs {
     return from + count;
   }
 
-  bool write(const void* bytes, std::size_t count, std::size_t offset) const {
-    const auto* next = static_cast<const char*>(bytes);
-    off_t place = begin() + static_cast<off_t>(offset);
-    while (count > 0) {
-      const ssize_t written = ::pwrite(file_, next, count, place);
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return false;
-      next += written;
-      place += written;
-      count -= static_cast<std::size_t>(written);
+  // `move(done)` moves some of the bytes after those that are done, and returns how many.
+  template <class Move>
+  static bool move_all(std::size_t count, Move&& move) {
+    for (std::size_t done = 0; done < count;) {
+      const ssize_t moved = move(done);
+      if (moved < 0 && errno == EINTR) continue;
+      if (moved <= 0) return false;
+      done += static_cast<std::size_t>(moved);
     }
     return true;
   }
+  bool write(const void* bytes, std::size_t count, std::size_t offset) const {
+    const auto* const from = static_cast<const char*>(bytes);
+    const off_t place = begin() + static_cast<off_t>(offset);
+    return move_all(count, [&](std::size_t done) {
+      return ::pwrite(file_, from + done, count - done, place + static_cast<off_t>(done));
+    });
+  }
   bool read(void* bytes, std::size_t count, std::size_t offset) const {
-    auto* next = static_cast<char*>(bytes);
-    off_t place = begin() + static_cast<off_t>(offset);
-    while (count > 0) {
-      const ssize_t taken = ::pread(file_, next, count, place);
-      if (taken < 0 && errno == EINTR) continue;
-      if (taken <= 0) return false;
-      next += taken;
-      place += taken;
-      count -= static_cast<std::size_t>(taken);
-    }
-    return true;
+    auto* const to = static_cast<char*>(bytes);
+    const off_t place = begin() + static_cast<off_t>(offset);
+    return move_all(count, [&](std::size_t done) {
+      return ::pread(file_, to + done, count - done, place + static_cast<off_t>(done));
+    });
   }
 
   int file_;

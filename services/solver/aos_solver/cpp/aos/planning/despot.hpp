@@ -86,10 +86,6 @@ class Despot {
     return result;
   }
 
-  // The scenarios are drawn anew for each decision, so nothing is kept.
-  void move_to(int, Observation) {}
-  void forget() {}
-
  private:
   static std::size_t scenario_bytes() { return sizeof(Scenario<Model>) + Model::bytes_elsewhere(); }
   using Evaluation = ScenarioEvaluation<Model>;

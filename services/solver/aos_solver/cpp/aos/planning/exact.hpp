@@ -75,7 +75,6 @@ class ExactEvaluation {
   };
 
   const point_based::FlatModel& rows() const { return space_.rows(); }
-  bool has_rows(std::uint32_t state) const { return state < rows().states; }
 
   // The fully observable (MDP) values of states, by decisions to go.
   void prepare_mdp_values(int horizon) {
@@ -96,11 +95,7 @@ class ExactEvaluation {
   }
   double mdp_value(std::uint32_t state, std::size_t action, const std::vector<double>& later) const {
     const std::size_t row = rows().row(state, action);
-    double continuation = 0;
-    for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
-      continuation += outcome->probability * later[outcome->next];
-    }
-    return rows().rewards[row] + Model::discount * continuation;
+    return rows().rewards[row] + Model::discount * rows().later_value(row, later);
   }
 
   // Weights here need not sum to 1: a part's weight is how likely it is to get there.
@@ -111,10 +106,9 @@ class ExactEvaluation {
       const std::size_t row = rows().row(state, action);
       result.value += weight * rows().rewards[row];
       if (horizon == 1) continue;
-      for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
-        const auto* const last = rows().likelihoods.end(outcome->sensing);
-        for (const auto* likelihood = rows().likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
-          posteriors[likelihood->observation][outcome->next] += weight * outcome->probability * likelihood->probability;
+      for (const auto& outcome : rows().outcomes[row]) {
+        for (const auto& likelihood : rows().likelihoods[outcome.sensing]) {
+          posteriors[likelihood.observation][outcome.next] += weight * outcome.probability * likelihood.probability;
           ++walked_;
         }
       }

@@ -60,8 +60,8 @@ class RootSpread {
   static constexpr std::uint64_t renewal = 256;
 
   std::uint64_t simulations_ = 0;
-  double mean_ = 0;  // of all returns, with their
-  double squares_ = 0;
+  double mean_ = 0;     // of all returns
+  double squares_ = 0;  // sum of the returns' squared deviations from their mean
   double variance_ = 0;
 };
 

@@ -48,8 +48,8 @@ class MdpValues {
   std::uint32_t certain_next(std::uint32_t number, int action) const {
     if (number == no_state) return number;
     const std::size_t row = rows().row(number, static_cast<std::size_t>(action));
-    const auto* const first = rows().outcomes.begin(row);
-    return rows().outcomes.end(row) == first + 1 && first->probability > 1 - 1e-6 ? first->next : no_state;
+    const auto outcomes = rows().outcomes[row];
+    return outcomes.size() == 1 && outcomes[0].probability > 1 - 1e-6 ? outcomes[0].next : no_state;
   }
 
   // With `horizon` decisions to go.
@@ -89,11 +89,7 @@ class MdpValues {
   }
 
   double value_of(std::size_t row, const std::vector<double>& later) const {
-    double continuation = 0;
-    for (const auto* outcome = rows().outcomes.begin(row); outcome != rows().outcomes.end(row); ++outcome) {
-      continuation += outcome->probability * later[outcome->next];
-    }
-    return rows().rewards[row] + Model::discount * continuation;
+    return rows().rewards[row] + Model::discount * rows().later_value(row, later);
   }
 
   // Returns the largest change.

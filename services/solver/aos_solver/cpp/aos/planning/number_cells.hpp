@@ -65,9 +65,9 @@ class NumberCells {
     std::map<std::uint32_t, double> sums;
     for (std::size_t row = 0; row + 1 < reported.first.size(); ++row) {
       sums.clear();
-      for (const auto* likelihood = reported.begin(row); likelihood != reported.end(row); ++likelihood) {
-        for (const auto& [observation, probability] : cells_of_[likelihood->observation]) {
-          sums[observation] += likelihood->probability * probability;
+      for (const auto& likelihood : reported[row]) {
+        for (const auto& [observation, probability] : cells_of_[likelihood.observation]) {
+          sums[observation] += likelihood.probability * probability;
         }
       }
       for (const auto& [observation, probability] : sums) result.elements.push_back({observation, probability});

@@ -15,7 +15,7 @@
 #include "aos/base/distributions.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
-#include "aos/model/reflection.hpp"
+#include "aos/base/mixed.hpp"
 
 namespace aos {
 
@@ -65,13 +65,6 @@ class NumberReports final : public NumberSink {
 
  private:
   using Key = std::vector<std::uint64_t>;
-  struct KeyHash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t hash = 0;
-      for (const std::uint64_t part : key) hash = mixed(hash, part);
-      return hash;
-    }
-  };
   static constexpr std::size_t max_size = 2'000'000;  // of numbers in all reports
 
   std::uint64_t part_of(int skill, NumberKey number, DescribedDistribution& distribution) {
@@ -88,8 +81,8 @@ class NumberReports final : public NumberSink {
   std::vector<Report> reports_;
   std::vector<Part> parts_;
   std::unordered_map<std::uint64_t, std::uint32_t> gauges_;
-  std::unordered_map<Key, std::uint64_t, KeyHash> by_distribution_;
-  std::unordered_map<Key, std::uint32_t, KeyHash> by_key_;
+  std::unordered_map<Key, std::uint64_t, NumbersHash> by_distribution_;
+  std::unordered_map<Key, std::uint32_t, NumbersHash> by_key_;
   std::size_t size_ = 0;
   bool is_full_ = false;
 };

@@ -189,8 +189,8 @@ class Planner {
   PointBased<Model> point_based_{space_};
   std::unique_ptr<Despot<Model>> despot_;
   PlannerKind used_ = PlannerKind::pomcp;
-  int horizon_ = 1;  // of the last search, and
-  BarredActions barred_;
+  int horizon_ = 1;       // of the last search
+  BarredActions barred_;  // in the last search
   std::string why_;
 };
 

@@ -121,7 +121,7 @@ class PointBased {
     constexpr double max_likelihoods = 2e6;
     double likelihoods = 0;
     for (const point_based::Outcome& outcome : model.outcomes.elements) {
-      likelihoods += static_cast<double>(model.likelihoods.end(outcome.sensing) - model.likelihoods.begin(outcome.sensing));
+      likelihoods += static_cast<double>(model.likelihoods[outcome.sensing].size());
     }
     return likelihoods * horizon_ > max_likelihoods;
   }

@@ -39,8 +39,8 @@ struct ActionNode {
   double q = 0;
   double rewards = 0;        // sum of immediate rewards
   double continuations = 0;  // sum over children of n * v
-  double mean = 0;           // of the sampled returns, with their
-  double squares = 0;        // sum of squared deviations
+  double mean = 0;           // of the sampled returns
+  double squares = 0;        // sum of the returns' squared deviations from their mean
   double share = 1;          // of the exploration here, as a multiple of an even one
   std::uint32_t n = 0;
   std::uint32_t first_child = no_node;

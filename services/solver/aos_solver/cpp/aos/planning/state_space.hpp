@@ -16,6 +16,7 @@
 
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
+#include "aos/base/mixed.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
@@ -123,13 +124,6 @@ class StateSpace {
 
  private:
   using SensingKey = std::vector<std::uint64_t>;  // observations with their probabilities
-  struct SensingHash {
-    std::size_t operator()(const SensingKey& key) const {
-      std::uint64_t hash = 0;
-      for (const std::uint64_t part : key) hash = mixed(hash, part);
-      return hash;
-    }
-  };
   // A path through an action that the mission goes on after.
   struct Path {
     std::uint32_t next;
@@ -271,7 +265,7 @@ class StateSpace {
   std::size_t given_up_with_ = 0;  // states of the belief
 
   Enumerator draws_;
-  std::unordered_map<SensingKey, std::uint32_t, SensingHash> sensings_;
+  std::unordered_map<SensingKey, std::uint32_t, NumbersHash> sensings_;
   std::vector<Path> paths_;
   std::vector<point_based::Likelihood> likelihoods_;
   SensingKey key_;

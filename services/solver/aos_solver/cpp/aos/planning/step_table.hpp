@@ -84,13 +84,12 @@ class StepTable {
     const auto action = static_cast<int>(row % actions_);
     outcomes_.clear();
     double running = 0;
-    for (const auto* outcome = rows.outcomes.begin(row); outcome != rows.outcomes.end(row); ++outcome) {
-      const auto* const last = rows.likelihoods.end(outcome->sensing);
-      for (const auto* likelihood = rows.likelihoods.begin(outcome->sensing); likelihood != last; ++likelihood) {
-        const Step step{rows.rewards[row], space.observations().of(action, likelihood->observation)};
-        outcomes_.push_back({{step, outcome->next}, outcome->probability * likelihood->probability});
+    for (const auto& outcome : rows.outcomes[row]) {
+      for (const auto& likelihood : rows.likelihoods[outcome.sensing]) {
+        const Step step{rows.rewards[row], space.observations().of(action, likelihood.observation)};
+        outcomes_.push_back({{step, outcome.next}, outcome.probability * likelihood.probability});
       }
-      running += outcome->probability;
+      running += outcome.probability;
     }
     constexpr double rounding = 1e-12;
     if (running < 1 - rounding) outcomes_.push_back({{{rows.rewards[row], default_observation}, ended}, 1 - running});
