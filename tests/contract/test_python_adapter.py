@@ -173,7 +173,8 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(
 @pytest.mark.parametrize("function", ["wait", "block"])
 async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, function: str) -> None:
     await robot.start(skill=f"robot.py:{function}", drive="robot.py:drive")
-    async with robot.bus.listen(robot.keys.progress("/skill"), SkillProgress) as progress:
+    progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
+    async with asyncio.timeout(PATIENCE_S), progress:
         running = asyncio.create_task(robot.refusal("/skill", 1))
         await anext(progress)
         assert (await robot.cancel("/skill")).ids == ("m-1-1",)
@@ -183,7 +184,8 @@ async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, fun
 
 async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown(robot: Robot) -> None:
     await robot.start(skill="robot.py:hang")
-    async with robot.bus.listen(robot.keys.progress("/skill"), SkillProgress) as progress:
+    progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
+    async with asyncio.timeout(PATIENCE_S), progress:
         running = asyncio.create_task(robot.refusal("/skill", 1))
         async for _, each in progress:
             if each.state == "executing":

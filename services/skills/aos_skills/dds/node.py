@@ -7,13 +7,11 @@ import itertools
 import logging
 import secrets
 from collections.abc import Awaitable, Callable
-from typing import Self
 
 from aos_protocol.errors import AosError, SkillError
 from aos_skills.dds.cyclone import HEADER, Endpoint, Participant, Writer
-from aos_skills.ros import action_client
-from aos_skills.ros.action_server import ActionServer
-from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, ActionEnd, Fields, Qos, RunGoal, TopicFound
+from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, Fields, Qos, TopicFound
+from aos_skills.ros.ros2_node import Ros2Node
 from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.wire import ros_type
 
@@ -26,27 +24,20 @@ _MATCH_S = 1.0
 _log = logging.getLogger("aos.dds")
 
 
-class DdsNode:
+class DdsNode(Ros2Node):
     """A `RosNode`. Belongs to the event loop that made it."""
 
     def __init__(
         self, types: RosTypes, *, domain: int = 0, interface: str = "lo", peers: tuple[str, ...] = ()
     ) -> None:
-        self.types = types
+        super().__init__(types)
         self._domain = domain
         self._participant = Participant(domain, interface, peers, types)
         self._participant.changed = self._on_change
         self._has_changed = asyncio.Event()
         self._clients: dict[str, _Client] = {}
         self._matched: dict[str, Callable[[], int]] = {}
-        self._feedback = action_client.Feedback()
         self._tasks: set[asyncio.Task[None]] = set()
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.close()
 
     async def close(self) -> None:
         for task in self._tasks:
@@ -77,9 +68,7 @@ class DdsNode:
         return reader.close
 
     async def until_heard(self, topic: str) -> None:
-        ends_at_s = asyncio.get_running_loop().time() + _MATCH_S
-        while not self._matched[topic]() and asyncio.get_running_loop().time() < ends_at_s:  # noqa: ASYNC110
-            await asyncio.sleep(_MATCH_POLL_S)
+        await _until(lambda: self._matched[topic]() > 0)
 
     async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
         found = await self._wait_for(True, f"rt{topic}", timeout_s)
@@ -126,10 +115,6 @@ class DdsNode:
         self.types.check(f"{theirs}_Request")
         return theirs
 
-    async def service_gone(self, service: str) -> None:
-        while self._serves(service):
-            await self.changed()
-
     def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None:
         async def answer(payload: bytes) -> None:
             head, body = _split(payload)
@@ -139,6 +124,7 @@ class DdsNode:
             except Exception as error:
                 _log.warning("%s is not answered: %s", service, error)
             else:
+                await _until(lambda: replies.matched() > 0)
                 replies.send(_joined(head, encoded))
 
         def on_request(payload: bytes) -> None:
@@ -153,52 +139,16 @@ class DdsNode:
             f"rq{service}Request", f"{type_name}_Request", on_request, DEFAULT_QOS, has_header=True
         )
 
-    # --- actions -------------------------------------------------------------------------------------
-
-    async def run_action(
-        self,
-        action: str,
-        goal: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        cancelled: asyncio.Event | None = None,
-        on_feedback: Callable[[Fields], None] | None = None,
-    ) -> ActionEnd:
-        return await action_client.run_action(
-            self,
-            self._feedback,
-            action,
-            goal,
-            type_name=type_name,
-            timeout_s=timeout_s,
-            cancelled=cancelled,
-            on_feedback=on_feedback,
-        )
-
-    def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
-        ActionServer(self, action, type_name, run)
-
-    def kind_of(self, name: str) -> str:
-        if self._serves(name):
-            return "service"
-        return "action" if self._serves(f"{name}/_action/send_goal") else ""
-
     # --- who is there --------------------------------------------------------------------------------
 
     def _on_change(self) -> None:
         self._has_changed.set()
 
-    async def check(self, name: str, type_name: str) -> None:
-        if self.kind_of(name) == "action":
-            name, type_name = f"{name}/_action/send_goal", f"{type_name}_SendGoal" if type_name else ""
-        await self.service_type(name, type_name, 0.0)
-
     async def changed(self) -> None:
         self._has_changed.clear()
         await self._has_changed.wait()
 
-    def _serves(self, service: str) -> bool:
+    def serves(self, service: str) -> bool:
         return self._find(False, f"rq{service}Request") is not None
 
     def _find(self, is_writer: bool, topic: str) -> Endpoint | None:
@@ -254,6 +204,13 @@ class _Client:
         waiting = self._waiting.get(number)
         if asked_by == self._id and waiting is not None and not waiting.done():
             waiting.set_result(body)
+
+
+async def _until(is_matched: Callable[[], bool]) -> None:
+    """Returns when the other side is known, without which what is sent is lost; after a while in any case."""
+    ends_at_s = asyncio.get_running_loop().time() + _MATCH_S
+    while not is_matched() and asyncio.get_running_loop().time() < ends_at_s:  # noqa: ASYNC110
+        await asyncio.sleep(_MATCH_POLL_S)
 
 
 def _joined(head: bytes, payload: bytes) -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import itertools
 import logging
 import time
@@ -11,9 +10,8 @@ from typing import Self
 
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
-from aos_skills.ros import action_client
-from aos_skills.ros.action_server import ActionServer
-from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, ActionEnd, Fields, Qos, RunGoal, TopicFound
+from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, Fields, Qos, TopicFound
+from aos_skills.ros.ros2_node import Ros2Node
 from aos_skills.ros.types import NO_HASH, RosTypes
 from aos_skills.ros2.graph import Graph
 from aos_skills.ros2.wire import Attachment, Endpoint, Kind, gid_of
@@ -25,17 +23,16 @@ _FIRST_ENTITY = 10
 _log = logging.getLogger("aos.ros2")
 
 
-class Node:
+class Node(Ros2Node):
     """A `RosNode`. Belongs to the event loop that opened it."""
 
     def __init__(self, bus: ForeignBus, types: RosTypes, name: str, domain: int) -> None:
-        self.types = types
+        super().__init__(types)
         self.domain = domain
         self._bus = bus
         self._node = Endpoint(domain, bus.id, 0, 0, Kind.NODE, name)
         self._numbers = itertools.count(_FIRST_ENTITY)
         self._clients: dict[str, _Client] = {}
-        self._feedback = action_client.Feedback()
         bus.announce(self._node.token)
         self.graph = Graph(bus, domain)
 
@@ -46,12 +43,6 @@ class Node:
         """Joins the ROS 2 system whose router is at `endpoint`; BusError AOS605 if there is none."""
         bus = await ForeignBus.open(endpoint, connect_timeout_s=connect_timeout_s)
         return cls(bus, types, name, domain)
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.close()
 
     async def close(self) -> None:
         await self._bus.close()
@@ -123,10 +114,6 @@ class Node:
     async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
         return (await self._server(service, type_name, timeout_s)).type_name
 
-    async def service_gone(self, service: str) -> None:
-        while self._serves(service):
-            await self.graph.changed()
-
     async def _server(self, service: str, type_name: str, timeout_s: float) -> Endpoint:
         """The node's end of a service, whose type is as it is defined here."""
         server = await self.graph.wait_for(Kind.SERVER, service, timeout_s)
@@ -159,48 +146,12 @@ class Node:
         # Whoever sees the token may ask at once.
         self._bus.announce(own.token)
 
-    # --- actions -------------------------------------------------------------------------------------
-
-    async def run_action(
-        self,
-        action: str,
-        goal: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        cancelled: asyncio.Event | None = None,
-        on_feedback: Callable[[Fields], None] | None = None,
-    ) -> ActionEnd:
-        return await action_client.run_action(
-            self,
-            self._feedback,
-            action,
-            goal,
-            type_name=type_name,
-            timeout_s=timeout_s,
-            cancelled=cancelled,
-            on_feedback=on_feedback,
-        )
-
-    def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
-        ActionServer(self, action, type_name, run)
-
-    def kind_of(self, name: str) -> str:
-        if self._serves(name):
-            return "service"
-        return "action" if self._serves(f"{name}/_action/send_goal") else ""
-
-    async def check(self, name: str, type_name: str) -> None:
-        if self.kind_of(name) == "action":
-            name, type_name = f"{name}/_action/send_goal", f"{type_name}_SendGoal" if type_name else ""
-        await self._server(name, type_name, 0.0)
-
     async def changed(self) -> None:
         await self.graph.changed()
 
     # --- what they share -----------------------------------------------------------------------------
 
-    def _serves(self, service: str) -> bool:
+    def serves(self, service: str) -> bool:
         return bool(self.graph.find(Kind.SERVER, service))
 
     def _client(self, server: Endpoint) -> _Client:

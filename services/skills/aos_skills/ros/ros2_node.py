@@ -1,0 +1,115 @@
+"""What all ROS 2 nodes do alike: actions stand on services and topics, whatever carries these."""
+
+from __future__ import annotations
+
+import asyncio
+from abc import ABC, abstractmethod
+from collections.abc import Awaitable, Callable
+from typing import Self
+
+from aos_skills.ros import action_client
+from aos_skills.ros.action_server import ActionServer
+from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, ActionEnd, Fields, Qos, RunGoal, TopicFound
+from aos_skills.ros.types import RosTypes
+
+__all__ = ["Ros2Node"]
+
+
+class Ros2Node(ABC):
+    """A `RosNode` over a transport that gives topics, services and who is there; see `RosNode` for each."""
+
+    def __init__(self, types: RosTypes) -> None:
+        self.types = types
+        self._feedback = action_client.Feedback()
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    # --- by the transport ----------------------------------------------------------------------------
+
+    @abstractmethod
+    def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]: ...
+
+    @abstractmethod
+    def subscribe(
+        self, topic: str, type_name: str, take: Callable[[Fields], None], qos: Qos = DEFAULT_QOS
+    ) -> Callable[[], None]: ...
+
+    @abstractmethod
+    async def until_heard(self, topic: str) -> None:
+        """Returns when whoever publishes a topic knows of the subscription to it."""
+
+    @abstractmethod
+    async def topic(self, topic: str, timeout_s: float) -> TopicFound | None: ...
+
+    @abstractmethod
+    async def call(
+        self,
+        service: str,
+        fields: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        discovery_s: float = DISCOVERY_S,
+    ) -> Fields: ...
+
+    @abstractmethod
+    def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None: ...
+
+    @abstractmethod
+    async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
+        """The type of a service, as it is defined here; SkillError AOS505 or AOS509."""
+
+    @abstractmethod
+    def serves(self, service: str) -> bool:
+        """Whether some node serves it now."""
+
+    @abstractmethod
+    async def changed(self) -> None: ...
+
+    @abstractmethod
+    async def close(self) -> None: ...
+
+    # --- the same for all ----------------------------------------------------------------------------
+
+    async def run_action(
+        self,
+        action: str,
+        goal: Fields,
+        *,
+        type_name: str = "",
+        timeout_s: float,
+        cancelled: asyncio.Event | None = None,
+        on_feedback: Callable[[Fields], None] | None = None,
+    ) -> ActionEnd:
+        return await action_client.run_action(
+            self,
+            self._feedback,
+            action,
+            goal,
+            type_name=type_name,
+            timeout_s=timeout_s,
+            cancelled=cancelled,
+            on_feedback=on_feedback,
+        )
+
+    def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
+        ActionServer(self, action, type_name, run)
+
+    def kind_of(self, name: str) -> str:
+        if self.serves(name):
+            return "service"
+        return "action" if self.serves(f"{name}/_action/send_goal") else ""
+
+    async def check(self, name: str, type_name: str) -> None:
+        if self.kind_of(name) == "action":
+            name, type_name = f"{name}/_action/send_goal", f"{type_name}_SendGoal" if type_name else ""
+        await self.service_type(name, type_name, 0.0)
+
+    async def service_gone(self, service: str) -> None:
+        """Returns when nobody serves it."""
+        while self.serves(service):
+            await self.changed()
