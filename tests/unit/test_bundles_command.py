@@ -79,6 +79,18 @@ def test_lint_of_a_broken_bundle_names_all_places_and_ends_with_one(app: typer.T
     assert "broken: error[AOS115]: there is no environment document" in result.output
 
 
+def test_lint_checks_a_bundle_that_adds_skills_with_the_one_that_it_adds_to(
+    app: typer.Typer, bundles: Path
+) -> None:
+    alone = CliRunner().invoke(app, ["lint", str(bundles / "armadillo-retract"), "--no-compile"])
+    assert alone.exit_code == 1
+    assert "armadillo-retract --also BUNDLE" in alone.output
+    arguments = ["lint", str(bundles / "armadillo-retract"), "--also", str(bundles / "armadillo-finer")]
+    together = CliRunner().invoke(app, [*arguments, "--no-compile"])
+    assert together.exit_code == 0
+    assert "armadillo-retract: 0 errors" in together.output
+
+
 def test_lint_gives_the_same_as_json(app: typer.Typer, broken: Path) -> None:
     result = CliRunner().invoke(app, ["lint", str(broken), "--format", "json"])
     found = json.loads(result.output)

@@ -12,7 +12,7 @@ from aos_protocol.documents import Environment
 from aos_protocol.messages import BeliefSummary, MissionState
 from aos_registry.convert import Dialect, convert, without_origins
 from aos_registry.load import load_files
-from aos_solver.endings import Ending, MissionLimits, believed_ending
+from aos_solver.endings import Ending, MissionLimits, believed_ending, remark_of
 
 RUNNING, GOAL, FAILURE, OVER = range(4)
 
@@ -148,6 +148,24 @@ def test_a_mission_that_is_surely_over_counts_as_what_it_is_at_least(
     goal: float, over: float, failure: float, ending: Ending | None
 ) -> None:
     assert believed_ending(belief(goal, over, failure), MissionLimits(goal_probability=0.9)) is ending
+
+
+@pytest.mark.parametrize(
+    ("goal", "over", "failure", "said"),
+    [
+        (0.05, 0.0, 0.95, "the mission is over without its goal"),
+        (0.78, 0.0, 0.17, "the mission is over, and nobody can tell how: goal 0.780"),
+        (0.0, 0.95, 0.0, "the mission is over without its goal or a failure"),
+        (0.5, 0.45, 0.05, "the mission is over, and nobody can tell how"),
+    ],
+)
+def test_a_mission_whose_end_is_not_known_is_not_said_to_be_without_its_goal(
+    goal: float, over: float, failure: float, said: str
+) -> None:
+    limits, state = MissionLimits(goal_probability=0.9), belief(goal, over, failure)
+    ending = believed_ending(state, limits)
+    assert ending is not None
+    assert remark_of(ending, state, limits).startswith(said)
 
 
 def test_every_ending_has_an_exit_code_of_its_own() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -17,7 +18,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError
 from aos_protocol.sarif import sarif_log
-from aos_registry.load import load_bundle, read_bundle_files, with_excerpts
+from aos_registry.load import load_bundle, load_files, read_bundle_files, with_excerpts
 from aos_registry.outline import outline
 
 __all__ = ["Folder", "refusal", "register"]
@@ -56,6 +57,10 @@ def lint(
     compiles: Annotated[
         bool, typer.Option("--compile/--no-compile", help="Whether the compiler looks at the C++ as well")
     ] = True,
+    also: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="BUNDLE", exists=True, help="A bundle that this one adds to; repeatable"),
+    ] = None,
 ) -> None:
     """Check a bundle and print everything that is wrong.
 
@@ -63,10 +68,11 @@ def lint(
     told at their place in the documents; the built model is kept for later. Exit code 0: clean, or warnings
     only. 1: errors.
     """
-    loaded = load_bundle(path)
+    files, remarks = _files_of([*(also or ()), path])
+    loaded = load_files(files, name=path.name or str(path), remarks=remarks)
     found = loaded.diagnostics
     if compiles and loaded.project is not None:
-        found = (*found, *_model_findings(path, loaded.project))
+        found = (*found, *_model_findings(files, path, loaded.project))
     counts = Counter(diagnostic.severity for diagnostic in found)
     if form is Format.JSON:
         print_json(
@@ -84,11 +90,24 @@ def lint(
         print_diagnostics(found)
         errors, warnings = counts[Severity.ERROR], counts[Severity.WARNING]
         typer.echo(f"{path}: {count(errors, 'error')}, {count(warnings, 'warning')}")
+        if not also and any(diagnostic.code == "AOS115" for diagnostic in found):
+            typer.echo(f"If it adds to another bundle, check them together: aos lint {path} --also BUNDLE")
     if has_errors(found):
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
 
 
-def _model_findings(path: Path, project: Project) -> tuple[Diagnostic, ...]:
+def _files_of(bundles: Iterable[Path]) -> tuple[dict[str, bytes], list[Diagnostic]]:
+    """The documents of all, where a later one's stand in place of those of the same name."""
+    files: dict[str, bytes] = {}
+    remarks: list[Diagnostic] = []
+    for bundle in bundles:
+        found, its_remarks = read_bundle_files(bundle)
+        files |= found
+        remarks += its_remarks
+    return files, remarks
+
+
+def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) -> tuple[Diagnostic, ...]:
     """What generating and compiling the model finds."""
     import asyncio  # These would make the other commands start slower.
 
@@ -108,9 +127,9 @@ def _model_findings(path: Path, project: Project) -> tuple[Diagnostic, ...]:
     except AosError as error:
         if not error.diagnostics:
             return (Diagnostic(Severity.ERROR, error.code, error.message, Span(path.name), error.hint),)
-        return with_excerpts(error.diagnostics, read_bundle_files(path)[0])
+        return with_excerpts(error.diagnostics, files)
     _, warnings = lowered(project)
-    return with_excerpts((*warnings, *reached), read_bundle_files(path)[0])
+    return with_excerpts((*warnings, *reached), files)
 
 
 def inspect(

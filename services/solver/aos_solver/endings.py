@@ -8,7 +8,14 @@ import msgspec
 
 from aos_protocol.messages import ActionValue, BeliefSummary
 
-__all__ = ["Ending", "MissionLimits", "believed_ending", "ending_after_planning", "ending_of_belief"]
+__all__ = [
+    "Ending",
+    "MissionLimits",
+    "believed_ending",
+    "ending_after_planning",
+    "ending_of_belief",
+    "remark_of",
+]
 
 
 class Ending(StrEnum):
@@ -76,3 +83,22 @@ def ending_after_planning(best: ActionValue, limits: MissionLimits) -> Ending | 
     if best.q + 2 * best.stderr < limits.stop_below_value:
         return Ending.NOTHING_WORTHWHILE
     return None
+
+
+def remark_of(ending: Ending, belief: BeliefSummary, limits: MissionLimits) -> str:
+    """Why a mission ended, in one line for people; where nobody can tell how it ended, it says so."""
+    if ending == Ending.GOAL:
+        return f"the goal is reached with probability {belief.goal_probability:.3f}"
+    if ending == Ending.STEP_LIMIT:
+        return f"the step limit of {limits.step_limit} is reached"
+    if ending == Ending.NOTHING_WORTHWHILE:
+        return f"no action is expected to return more than {limits.stop_below_value}"
+    odds = (
+        f"goal {belief.goal_probability:.3f}, over {belief.over_probability:.3f}, "
+        f"failure {belief.failure_probability:.3f}"
+    )
+    if ending == Ending.OVER and belief.over_probability >= limits.goal_probability:
+        return f"the mission is over without its goal or a failure: {odds}"
+    if ending == Ending.FAILURE and belief.failure_probability >= limits.goal_probability:
+        return f"the mission is over without its goal: {odds}"
+    return f"the mission is over, and nobody can tell how: {odds}"

@@ -24,7 +24,7 @@ from aos_protocol.messages import (
 )
 from aos_runtime.clock import Clock
 from aos_solver.child.answers import BeliefUpdate, Plan, Risks
-from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief
+from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief, remark_of
 from aos_solver.failures import Failures
 from aos_solver.hot_plug import RunningModel
 from aos_solver.risk import RiskBudget
@@ -297,7 +297,7 @@ class Mission:
     def _ends_with(self, ending: Ending | None, belief: BeliefSummary) -> bool:
         if ending is None:
             return False
-        self._end(ending, _REMARKS[ending](belief, self._limits))
+        self._end(ending, remark_of(ending, belief, self._limits))
         return True
 
     def _move_to(self, phase: str, step: int, belief: BeliefSummary, *, remark: str = "") -> None:
@@ -328,24 +328,3 @@ class Mission:
         self.state = state
         self._ports.journal("mission", state)
         self._ports.publish_state(state)
-
-
-def _endings(belief: BeliefSummary) -> str:
-    """How probable each ending is."""
-    endings = {
-        "goal": belief.goal_probability,
-        "over": belief.over_probability,
-        "failure": belief.failure_probability,
-    }
-    return ", ".join(f"{ending} {probability:.3f}" for ending, probability in endings.items())
-
-
-_REMARKS: dict[Ending, Callable[[BeliefSummary, MissionLimits], str]] = {
-    Ending.GOAL: lambda belief, _: f"the goal is reached with probability {belief.goal_probability:.3f}",
-    Ending.OVER: lambda belief, _: f"the mission is over without its goal or a failure: {_endings(belief)}",
-    Ending.FAILURE: lambda belief, _: f"the mission is over without its goal: {_endings(belief)}",
-    Ending.NOTHING_WORTHWHILE: lambda _, limits: (
-        f"no action is expected to return more than {limits.stop_below_value}"
-    ),
-    Ending.STEP_LIMIT: lambda _, limits: f"the step limit of {limits.step_limit} is reached",
-}
