@@ -82,7 +82,7 @@ class _Running:
         self.task = task
         self.reason = ""
         self.progress = 0.0
-        self.told_s = float("-inf")
+        self.reported_s = float("-inf")
 
 
 class Host:
@@ -336,9 +336,9 @@ class Host:
 
     def _take_progress(self, progress: float, text: str) -> None:
         running = self._running
-        if running is None or self._loop.time() < running.told_s + PROGRESS_EVERY_S:
+        if running is None or self._loop.time() < running.reported_s + PROGRESS_EVERY_S:
             return
-        running.told_s = self._loop.time()
+        running.reported_s = self._loop.time()
         running.progress = min(max(progress, 0.0), 1.0)
         self._tell(running, "executing", text)
 

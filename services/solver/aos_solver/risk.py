@@ -41,7 +41,7 @@ class RiskBudget:
 
     def spend(self, risks: Risks, index: int) -> tuple[ConstraintRisk, ...]:
         """Takes what the action of this number risks from the budget, and says how the decision stands."""
-        told = tuple(
+        spent = tuple(
             ConstraintRisk(
                 never=bound.never,
                 probability=bound.probability,
@@ -54,14 +54,14 @@ class RiskBudget:
                 zip(self._bounds, self._left, risks.actions[index], strict=True)
             )
         )
-        self._left = [max(each.left - each.risk, 0.0) for each in told]
-        return told
+        self._left = [max(each.left - each.risk, 0.0) for each in spent]
+        return spent
 
     def remark(self, risks: Risks) -> str:
         """Why no action can be chosen."""
-        told = []
+        refused = []
         for number, (bound, left) in enumerate(zip(self._bounds, self._left, strict=True)):
             least = min(probabilities[number] for probabilities in risks.actions)
             left_text = f"{left:.3g} is left of {bound.probability:g}"
-            told.append(f"never {bound.never}: {left_text}, and the least risk is {least:.3g}")
-        return f"every action risks more than is allowed ({'; '.join(told)})"
+            refused.append(f"never {bound.never}: {left_text}, and the least risk is {least:.3g}")
+        return f"every action risks more than is allowed ({'; '.join(refused)})"

@@ -17,7 +17,7 @@ from aos_registry.check.defaults import check_defaults
 from aos_registry.check.endings import check_endings, check_goals
 from aos_registry.check.given_observation import (
     check_given_observation,
-    check_told_variables,
+    check_reported_variables,
     names_in_given_observation,
 )
 from aos_registry.check.mapping_code import check_low_level, check_mapping
@@ -59,7 +59,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
         check_mapping(mapping, assembly.models.get(name), scope, findings)
         is_sound = len(findings) == before
         if assembly.environment is not None:
-            check_told_variables(mapping, assembly.environment, findings)
+            check_reported_variables(mapping, assembly.environment, findings)
         if is_whole and is_sound:
             check_unused_locals(mapping, _reported_to_model(mapping, name, assembly), findings)
     if assembly.low_level is not None:

@@ -8,7 +8,7 @@ from aos_protocol.local_types import local_type, local_type_text, reported_varia
 from aos_registry.check.blocks import given_observation_blocks
 from aos_registry.check.model_code import read_block
 
-__all__ = ["check_given_observation", "check_told_variables", "names_in_given_observation"]
+__all__ = ["check_given_observation", "check_reported_variables", "names_in_given_observation"]
 
 
 def check_given_observation(model: SkillModel, mapping: AbstractionMapping, findings: Findings) -> None:
@@ -28,7 +28,9 @@ def check_given_observation(model: SkillModel, mapping: AbstractionMapping, find
             findings.error("AOS110", message, span, hint)
 
 
-def check_told_variables(mapping: AbstractionMapping, environment: Environment, findings: Findings) -> None:
+def check_reported_variables(
+    mapping: AbstractionMapping, environment: Environment, findings: Findings
+) -> None:
     """AOS134 for each local variable that sets a state variable by its name alone, perhaps by accident."""
     for variable in mapping.local_variables:
         if variable.name in reported_variables(mapping, environment):

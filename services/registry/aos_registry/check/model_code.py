@@ -128,7 +128,7 @@ class _BlockCheck:
         self._enum_sizes = {name: len(enum.values) for name, enum in scope.enums.items()}
         self._enum_sizes |= around.enum_sizes
         self._declared = around.declared
-        self._told_absent: set[str] = set()
+        self._reported_absent: set[str] = set()
         self._absent = self._absent_skills()
         self._locals = {declaration.name: declaration.type for declaration in self._cpp.declarations}
 
@@ -227,8 +227,8 @@ class _BlockCheck:
             message = f"there is no skill `{root}` that has parameters"
             hint = "If it was left out, leave out what looks at its parameters too"
             self._unknown(root, skills, message, span, hint)
-        elif root not in self._told_absent:
-            self._told_absent.add(root)
+        elif root not in self._reported_absent:
+            self._reported_absent.add(root)
             message, hint = f"there is no skill `{root}`", "It counts as one that is never chosen"
             self._findings.unknown(root, skills, message, span, hint, severity=Severity.WARNING)
 

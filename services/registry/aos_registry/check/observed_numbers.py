@@ -46,7 +46,7 @@ def check_observed_numbers(
 ) -> None:
     """AOS136 for each number that the mapping cannot give."""
     variables = {variable.name: variable for variable in mapping.local_variables}
-    told = reported_variables(mapping, environment) if environment is not None else ()
+    reported = reported_variables(mapping, environment) if environment is not None else ()
     for number in reported_numbers(model):
         span = number.snippet.locate(number.extent.line, number.extent.column)
         variable = variables.get(number.name)
@@ -58,7 +58,7 @@ def check_observed_numbers(
             kind = f"is of type {variable.type}" if variable.type else "has no type"
             message = f"the local variable {variable.name} {kind}, and model code reports {_what(number)}"
             findings.error("AOS136", message, variable.span, f"Give it the type {_wanted(number)}")
-        elif number.name in told:
+        elif number.name in reported:
             message = f"{variable.name} is reported with noise, and would set a state variable of its name"
             hint = "A local variable with the name and type of a state variable tells its value: rename it"
             findings.error("AOS136", message, variable.span, hint)

@@ -32,8 +32,8 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
         span = block.snippet.locate(mention.root.line, mention.root.column)
         if name in given and name in enum_values | others:
             message = f"`{name}` is declared in this skill too, and hides the response"
-            told = findings.error if name in enum_values else findings.warning
-            told("AOS126", message, span, "Choose another name for one of them")
+            report = findings.error if name in enum_values else findings.warning
+            report("AOS126", message, span, "Choose another name for one of them")
         if name in given or name in known:
             continue
         message = f"the abstraction mapping of {model.name} has no response `{name}`"

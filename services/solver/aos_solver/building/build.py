@@ -169,29 +169,19 @@ def _engine_name(compiler: Compiler, state_bytes: int) -> str:
     return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), *place])}"
 
 
-class _Build:
+class _Build(msgspec.Struct, frozen=True):
     """One model on its way into the cache."""
 
-    def __init__(
-        self,
-        emitted: EmittedModel,
-        cache: BuildCache,
-        compiler: Compiler,
-        on_progress: Callable[[str], None],
-        deadline_s: float,
-        options: tuple[str, ...],
-        niceness: int,
-    ) -> None:
-        self._emitted = emitted
-        self._cache = cache
-        self._compiler = compiler
-        self._on_progress = on_progress
-        self._deadline_s = deadline_s
-        self._options = options
-        self._niceness = niceness
+    emitted: EmittedModel
+    cache: BuildCache
+    compiler: Compiler
+    on_progress: Callable[[str], None]
+    deadline_s: float
+    options: tuple[str, ...]
+    niceness: int
 
     async def make(self, staging: Path) -> None:
-        self._on_progress(f"compiling {self._emitted.project} with {self._compiler.version}")
+        self.on_progress(f"compiling {self.emitted.project} with {self.compiler.version}")
         try:
             async with asyncio.TaskGroup() as tasks:
                 usual_engine = tasks.create_task(self._engine(STATE_BYTES[0]))
@@ -205,27 +195,25 @@ class _Build:
 
     async def _engine(self, state_bytes: int) -> Path:
         return await build_engine(
-            self._cache.directory,
-            compiler=self._compiler,
-            on_progress=self._on_progress,
+            self.cache.directory,
+            compiler=self.compiler,
+            on_progress=self.on_progress,
             state_bytes=state_bytes,
         )
 
     @property
     def _cpu_s(self) -> int | None:
         """Processor time for a model that somebody waits for; more for long ones, and on slow machines."""
-        if self._options == _OPTIONS["thorough"]:
+        if self.options == _OPTIONS["thorough"]:
             return None
-        engine_s = _engine_seconds(self._cache.find(_engine_name(self._compiler, STATE_BYTES[0])))
-        return int(
-            max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self._emitted.cpp.count("\n") / LINES_PER_CPU_S
-        )
+        engine_s = _engine_seconds(self.cache.find(_engine_name(self.compiler, STATE_BYTES[0])))
+        return int(max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self.emitted.cpp.count("\n") / LINES_PER_CPU_S)
 
     async def _compile(self, staging: Path) -> None:
-        (staging / MODEL_FILE).write_text(self._emitted.cpp)
-        (staging / _SOURCE).write_text(without_line_directives(self._emitted.cpp))
-        options = [*self._options, *self._precompiled, *_LIMITS]
-        compilation = self._compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
+        (staging / MODEL_FILE).write_text(self.emitted.cpp)
+        (staging / _SOURCE).write_text(without_line_directives(self.emitted.cpp))
+        options = [*self.options, *self._precompiled, *_LIMITS]
+        compilation = self.compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
         output, status = await self._run(compilation, staging, cpu_s=self._cpu_s)
         if status != 0:
             raise self._failure(output, status)
@@ -234,10 +222,10 @@ class _Build:
     @property
     def _precompiled(self) -> list[str]:
         """The options for what quick builds include, if that is compiled already."""
-        entry = self._cache.find(_engine_name(self._compiler, STATE_BYTES[0]))
-        if entry is None or self._options != _OPTIONS["quick"]:
+        entry = self.cache.find(_engine_name(self.compiler, STATE_BYTES[0]))
+        if entry is None or self.options != _OPTIONS["quick"]:
             return []
-        return self._compiler.precompiled(_SUPPORT, str(entry))
+        return self.compiler.precompiled(_SUPPORT, str(entry))
 
     def _state_bytes(self, model: Path) -> int:
         """The size of the quickest engine that takes the model's states."""
@@ -245,41 +233,41 @@ class _Build:
         needed = int(mark[1]) if mark is not None else 0
         if needed > MAX_STATE_BYTES:
             message = (
-                f"a state of {self._emitted.project} takes {needed} bytes; {MAX_STATE_BYTES} is the limit"
+                f"a state of {self.emitted.project} takes {needed} bytes; {MAX_STATE_BYTES} is the limit"
             )
             raise ModelError(message, hint="Use smaller vectors and maps for state variables")
         return next((state_bytes for state_bytes in STATE_BYTES if needed <= state_bytes), ANY_SIZE)
 
     def _ready_size(self, state_bytes: int) -> int:
         """That size, or any size where a quick build would have to compile that engine first."""
-        is_there = self._cache.find(_engine_name(self._compiler, state_bytes)) is not None
-        is_other_there = self._cache.find(_engine_name(self._compiler, ANY_SIZE)) is not None
-        is_quick = self._options == _OPTIONS["quick"]
+        is_there = self.cache.find(_engine_name(self.compiler, state_bytes)) is not None
+        is_other_there = self.cache.find(_engine_name(self.compiler, ANY_SIZE)) is not None
+        is_quick = self.options == _OPTIONS["quick"]
         return ANY_SIZE if is_quick and is_other_there and not is_there else state_bytes
 
     async def _link(self, staging: Path, engine: list[Path]) -> None:
         model = staging / _OBJECT
-        linking = self._compiler.linking([str(part) for part in (model, *engine)], _EXECUTABLE)
+        linking = self.compiler.linking([str(part) for part in (model, *engine)], _EXECUTABLE)
         output, status = await self._run(linking, staging)
         if status != 0:
-            raise internal_error(self._emitted.project, output, status, self._kept_source())
+            raise internal_error(self.emitted.project, output, status, self._kept_source())
         model.unlink()
 
     async def _run(self, command: list[str], staging: Path, *, cpu_s: int | None = None) -> tuple[str, int]:
         return await run_compiler(
-            self._compiler,
+            self.compiler,
             command,
             staging,
-            self._deadline_s,
-            self._emitted.project,
+            self.deadline_s,
+            self.emitted.project,
             LIMIT_HINT,
-            niceness=self._niceness,
+            niceness=self.niceness,
             cpu_s=cpu_s,
         )
 
     def _failure(self, output: str, status: int) -> ModelError:
-        project = self._emitted.project
-        report = read_messages(output, _SOURCE, self._emitted)
+        project = self.emitted.project
+        report = read_messages(output, _SOURCE, self.emitted)
         if report.diagnostics:
             return ModelError(
                 f"the model code of {project} does not compile",
@@ -292,16 +280,16 @@ class _Build:
 
     def _limit_error(self) -> ModelError:
         """At the first document code that may compute while it is compiled, if there is any."""
-        message = f"the compiler ran out of time or memory on {self._emitted.project}"
-        suspects = (piece for piece in self._emitted.pieces if _COMPILE_TIME_CODE.search(piece.text))
+        message = f"the compiler ran out of time or memory on {self.emitted.project}"
+        suspects = (piece for piece in self.emitted.pieces if _COMPILE_TIME_CODE.search(piece.text))
         spans = tuple(piece.locate(1, 1) for piece in suspects)
         found = tuple(Diagnostic(Severity.ERROR, "AOS202", message, span, LIMIT_HINT) for span in spans[:1])
         return ModelError(message, code="AOS202", hint=LIMIT_HINT, diagnostics=found)
 
     def _kept_source(self) -> Path:
         """The emitted file at a place where it can be looked at."""
-        kept = self._cache.directory / f"failed-{self._emitted.digest[:16]}.cpp"
-        kept.write_text(self._emitted.cpp)
+        kept = self.cache.directory / f"failed-{self.emitted.digest[:16]}.cpp"
+        kept.write_text(self.emitted.cpp)
         return kept
 
 

@@ -187,11 +187,11 @@ class EngineChild:
             return OverdueError(fault.message, hint=fault.hint, diagnostics=fault.diagnostics)
         if status == HANG_STATUS and piece:
             return self.fault(EndlessCodeError.code, "this code does not come to an end", piece)
-        told = _status_text(status)
+        how = _status_text(status)
         if not piece:
-            message = f"the engine ended outside of the documents' code ({told})"
+            message = f"the engine ended outside of the documents' code ({how})"
             return ModelError(message, code="AOS213", hint=_MEMORY_HINT)
-        return self.fault(kind.code, f"{message} ({told})", piece)
+        return self.fault(kind.code, f"{message} ({how})", piece)
 
     async def _status(self) -> int | None:
         """How a child that has closed its output ended; None if it lingers."""

@@ -87,14 +87,14 @@ class _Replay:
 
     async def statement(self, commands: Sequence[str]) -> Span | None:
         """Where the same fault comes again."""
-        told = await self._fault_of([_with_one_thread(command) for command in commands])
-        if told is None:
-            told = await self._fault_of(
+        found = await self._fault_of([_with_one_thread(command) for command in commands])
+        if found is None:
+            found = await self._fault_of(
                 [command_line("rate", seconds=_RANDOM_ACTIONS_S, seed=self._start.seed)]
             )
-            if told is not None and not self._is_in_the_piece(told):
+            if found is not None and not self._is_in_the_piece(found):
                 return None
-        return told
+        return found
 
     async def _fault_of(self, commands: Sequence[str]) -> Span | None:
         child = await EngineChild.launch(self._built, self._start)

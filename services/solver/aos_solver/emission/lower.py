@@ -206,7 +206,7 @@ class _Lowering:
             dynamic_model=code.section(DYNAMIC, model.dynamic_model),
             rollout_policy=code.section(LOOKING, model.rollout_policy),
             given_observation=code.section(GIVEN, model.state_given_observation),
-            told=reported_variables(mapping, self._project.environment),
+            reported=reported_variables(mapping, self._project.environment),
             observed=tuple(Observed(number.name, number.is_array) for number in reported_numbers(model)),
             keeps_state=copies.keeps_state,
             keeps_state_=copies.keeps_state_,
@@ -227,7 +227,7 @@ def _absent_skills(project: Project) -> tuple[str, ...]:
 
 def _locals(mapping: AbstractionMapping, skill: LoweredSkill) -> tuple[Local, ...]:
     """The local variables that a correction needs."""
-    needed = set(skill.told)
+    needed = set(skill.reported)
     if skill.given_observation is not None:
         needed |= skill.given_observation.names - {parameter.name for parameter in skill.parameters}
     return tuple(

@@ -83,8 +83,8 @@ def _skill(skill: Skill) -> Iterator[str]:
             yield f"  {parameter.name} is one of {', '.join(parameter.values.variables)}"
     if skill.violation_penalty:
         yield f"  a violated precondition costs {skill.violation_penalty:g}"
-    if skill.told:
-        yield f"  a real observation tells the values of {', '.join(skill.told)}"
+    if skill.reported:
+        yield f"  a real observation tells the values of {', '.join(skill.reported)}"
     for title, section in (
         ("possible parameters", skill.possible_parameters),
         ("precondition", skill.precondition),

@@ -229,8 +229,8 @@ class Observed(msgspec.Struct, frozen=True):
 class Skill(msgspec.Struct, frozen=True):
     """A skill: its responses in the order of the mapping's rules, its parameters, its functions.
 
-    `document` is the file that describes it. `told` are the local variables whose values a real observation
-    tells to the state variables of their names, `locals` those and what `given_observation` uses.
+    `document` is the file that describes it. `reported` are the local variables whose values a real
+    observation gives to the state variables of their names, `locals` those and what `given_observation` uses.
     `observed` are the numbers that it reports.
     `keeps_state` and `keeps_state_`: a step needs these copies of the state (see `lower_copies`).
     """
@@ -248,7 +248,7 @@ class Skill(msgspec.Struct, frozen=True):
     rollout_policy: Section | None
     given_observation: Section | None = None
     locals: tuple[Local, ...] = ()
-    told: tuple[str, ...] = ()
+    reported: tuple[str, ...] = ()
     observed: tuple[Observed, ...] = ()
     keeps_state: bool = True
     keeps_state_: bool = True
@@ -256,7 +256,7 @@ class Skill(msgspec.Struct, frozen=True):
     @property
     def is_corrected(self) -> bool:
         """Whether its real observations tell about the state beyond the response."""
-        return self.given_observation is not None or bool(self.told)
+        return self.given_observation is not None or bool(self.reported)
 
     @property
     def local_bindings(self) -> tuple[tuple[str, str], ...]:

@@ -24,7 +24,7 @@
 
 namespace aos::point_based {
 
-// Bounds that are told.
+// Bounds that are reported.
 inline std::pair<double, double> checked(double lower, double upper) {
   if (lower <= upper) return {lower, upper};
   throw CrossedBounds("the lower bound " + std::to_string(lower) + " is above the upper bound " + std::to_string(upper));

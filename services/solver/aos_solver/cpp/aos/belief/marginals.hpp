@@ -64,7 +64,7 @@ class Marginals {
   struct Variable {
     std::string name;
     std::vector<Value> values;
-    std::vector<std::string> texts;  // of those that are told
+    std::vector<std::string> texts;  // of those that are reported
     std::unordered_map<std::uint64_t, std::size_t> places;  // of many values
 
     void add(const Value& added) {
@@ -179,7 +179,7 @@ class Marginals {
     }
   }
 
-  // Texts take long and are made of what is told only, of all that a state shows at once.
+  // Texts take long and are made of what is reported only, of all that a state shows at once.
   void write_texts() {
     struct Wanted {
       std::size_t particle, leaf;

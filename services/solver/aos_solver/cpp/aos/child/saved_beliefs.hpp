@@ -19,9 +19,9 @@ namespace aos {
 inline constexpr std::size_t max_answer_bytes = std::size_t{16} << 20;  // about
 
 // The particles from number `first` on, as many as fit one answer, each as its weight and its state as text. What is the
-// same in all states, and the history of a drawn belief, only with the first of them. `told` gives what is told of a state.
-template <class Model, class Told>
-void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t first, Told&& told) {
+// same in all states, and the history of a drawn belief, only with the first of them. `shown` gives what is written of a state.
+template <class Model, class Shown>
+void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t first, Shown&& shown) {
   const auto& particles = belief.particles();
   const SavedConstants constants = first == 0 ? Model::save_constants() : SavedConstants{};
   json.begin_object().member("error_bound", belief.error_bound()).member("is_drawn", belief.is_drawn());
@@ -32,7 +32,7 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
   const std::size_t max_bytes = json.text().size() + max_answer_bytes;
   for (std::size_t number = first; number < particles.size() && json.text().size() < max_bytes; ++number) {
     const auto& [state, weight] = particles[number];
-    json.begin_array().value(weight).value(Model::save_state(told(state))).end_array();
+    json.begin_array().value(weight).value(Model::save_state(shown(state))).end_array();
   }
   json.end_array().end_object();
 }

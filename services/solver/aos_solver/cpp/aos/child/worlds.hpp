@@ -1,6 +1,6 @@
 // Many hidden states side by side, each with its own stream of random numbers: worlds that somebody outside acts in, to
-// learn. What is observed is told as numbers: 0 for nothing, then the responses of all skills in their order; responses
-// of the same name are the same observation. Text responses are told as texts.
+// learn. What is observed is reported as numbers: 0 for nothing, then the responses of all skills in their order; responses
+// of the same name are the same observation. Text responses are reported as texts.
 #pragma once
 
 #include <algorithm>
@@ -48,7 +48,7 @@ class Worlds {
 
   std::size_t count() const { return worlds_.size(); }
 
-  // One action for each world; a negative one starts the world anew. Arrays have an entry for each world and are told in
+  // One action for each world; a negative one starts the world anew. Arrays have an entry for each world and are reported in
   // base64; endings are of `Ending`. Of the numbers that were observed there are the worlds, the keys and the values.
   void step(JsonWriter& json, const std::vector<std::int32_t>& actions) {
     rewards_.clear();

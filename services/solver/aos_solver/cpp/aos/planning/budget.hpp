@@ -44,11 +44,13 @@ struct ActionEstimate {
   double reward = 0;
 };
 
-// The action with the highest value of those that count; of actions that cannot be told apart, the one that earns most at
-// once. The value of waiting is that of the best of many later choices, and so is estimated too high rather than too low:
-// who did not prefer what comes sooner would put off for ever what is as good later. Values cannot be told apart that
-// differ by no more than the best of `horizon` values of the same error exceeds their mean, sqrt(2 ln horizon) errors, and
-// by no more than a delay by one of `horizon` steps can be worth.
+// The action with the highest value of those that count. Of actions that cannot be told apart it is the one that earns most
+// at once: the value of waiting is that of the best of many later choices, so it is rather estimated too high, and what is
+// as good later would be put off for ever.
+//
+// Two values cannot be told apart where their difference is small in two ways. It is no more than the best of `horizon` values
+// of the same error exceeds their mean, sqrt(2 ln horizon) errors. And it is no more than a delay by one of `horizon` steps
+// can be worth.
 template <class Counts>
 int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, Counts&& counts) {
   const ActionEstimate* best = nullptr;

@@ -5,9 +5,9 @@
 // is simulated once from each example, all of them under the same luck. A sweep values each example by its best action,
 // as chosen by one half of the examples and valued by the other, since the best of many estimates is too high.
 //
-// What was learned is tested before it is used: somebody who sees the state and goes by the values has to earn at least
-// half of what they promise beyond what play at random earns. Where values count the same income twice, which is how they
-// fail, nothing like it is earned.
+// What was learned is tested before it is used: a policy that observes the state and goes by the values has to earn at least
+// half of what they promise beyond what play at random earns. Values fail by counting the same income twice; then nothing
+// like it is earned.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,6 @@ class LearnedValues {
     successors_ = {};
     return is_usable_;
   }
-  bool is_usable() const { return is_usable_; }
 
   // With so many decisions to go, of which only none at all counts.
   double value(const State& state, int left) const {

@@ -57,7 +57,7 @@ class MdpValues {
     return number == no_state ? highest_ : layer(horizon)[number];
   }
 
-  // What an action costs somebody who sees the state, against the best one: how much less it is worth, so never above 0.
+  // How much less an action's fully observable value is than the best one's: never above 0.
   double advantage(std::uint32_t number, int action, int horizon) const {
     if (number == no_state) return 0;
     const double worth = value_of(rows().row(number, static_cast<std::size_t>(action)), layer(horizon - 1));

@@ -1,8 +1,8 @@
 // What a robot observes if it tells numbers only by the cells of a grid that they fall in: finitely much, so that
 // searches that enumerate observations can look ahead. The grid is the same for all states and actions.
 //
-// Who is told less can do no better, and the robot can act as if it were told less. So what is earned over cells is a
-// lower bound of what can be earned, and an upper bound over cells bounds nothing.
+// A robot that observes numbers can act as if it observed their cells only. So what is earned over cells is a lower bound of
+// what can be earned. An upper bound over cells bounds nothing.
 #pragma once
 
 #include <algorithm>

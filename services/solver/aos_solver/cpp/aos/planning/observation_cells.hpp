@@ -3,8 +3,8 @@
 // that was drawn there: what is drawn belongs to the nearest, in units of the distributions' spreads. There are the more
 // cells the more visits (progressive widening: Couetoux and others, 2011).
 //
-// All states of a simulation that reach a cell could have brought an observation of it, so its history has a proper belief,
-// that of somebody who is told the cell and not the numbers. What he can earn the robot can, too.
+// All states of simulations that reach a cell could have brought an observation of it. So its history has a proper belief,
+// the one after the cell instead of the numbers. What can be earned by cells can be earned by numbers, too.
 #pragma once
 
 #include <cmath>

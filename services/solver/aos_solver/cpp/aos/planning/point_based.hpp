@@ -30,8 +30,8 @@ class PointBased {
  public:
   explicit PointBased(const StateSpace<Model>& space) : space_(space) {}
 
-  // Takes over the model from a space in which the belief's states are listed. Returns why the search cannot be used;
-  // nothing where it can. No budget counts what it takes for the first decision; later it is next to nothing.
+  // Takes over the model from a space in which the belief's states are listed. Returns why the search cannot be used; nothing
+  // where it can. That takes long once, before the first decision, and is in no budget.
   std::string prepare(const Belief<Model>& belief, int horizon) {
     if (Model::action_count() == 0) return "there are no actions";
     const auto entries = space_.weights_of(belief);
@@ -48,14 +48,15 @@ class PointBased {
     }
     return take_model(entries);
   }
-  // Whether the search tells observed numbers by cells only: upper bounds are then none.
+  // Whether observed numbers count by their cells only. There are no upper bounds then.
   bool tells_by_cells() const { return Model::reports_numbers(); }
   // Of an observation, at most.
   std::size_t cells() const { return cells_.max_cells(); }
   // Whether values are of missions without end: the discount leaves next to nothing of what comes after the horizon, or
   // there are too many states to tell them apart by the decisions to go.
   bool is_endless() const { return is_endless_; }
-  // What the running part of the prepared belief is worth at least and at most, to who tells numbers no better.
+  // What the running part of the prepared belief is worth at least and at most. With cells the upper bound holds for a robot
+  // that observes no more than cells.
   std::pair<double, double> bounds() const {
     if (running_ <= 0) return {0, 0};
     const auto [lower, upper] = search_->bounds();

@@ -1,4 +1,4 @@
-// What one decision's simulations told at the root, beside its values: what actions earn at once, and how far returns go.
+// What one decision's simulations found at the root, beside its values: what actions earn at once, and how far returns go.
 //
 // POMCP's paper uses a budget up. Here a budget in time ends once the choice cannot change.
 #pragma once

@@ -36,7 +36,7 @@ struct Observed {
   Observation observation;
 };
 
-// Most often there is but one observation.
+// Mostly there is one observation only.
 template <class Element>
 void sort_by_observation(std::vector<Element>& elements, std::size_t first, std::size_t last) {
   const auto begin = elements.begin() + static_cast<std::ptrdiff_t>(first);
@@ -72,13 +72,14 @@ struct ScenarioBounds {
 //
 // Where the model is small enough (mdp_values.hpp), all is counted from the fully observable (MDP) value of a scenario's
 // state: a step costs what its action is worth less than the best one for that state. On average over all luck that adds up
-// to the same, but most of the luck is left out, and 0 is what nobody can exceed. There a policy takes the action that is
-// best by MDP values on average over the scenarios of a group, and goes on by what is observed. Scenarios whose observation only few others share stay together: a policy that went by those few would know
-// what nobody can know.
+// to the same. Most of the luck is left out, and 0 is what nobody can exceed.
 //
-// The other policy is that of the rollouts; where there are no MDP values, the most that a few of them earn
-// stands for the bound, though it is none. Where there are both, a history has the better one for its default policy. Of
-// many scenarios with the same history some stand for all.
+// There are two default policies. One takes the action that is best by MDP values on average over the scenarios of a group,
+// and goes on by what is observed. Scenarios whose observation only few others share stay together: a policy that went by
+// those few would know what nobody can know. The other policy is that of the rollouts. A history has the better of the two.
+//
+// Without MDP values the most that a few rollouts earn stands for the upper bound, though it is none. Of many scenarios with
+// the same history some stand for all.
 template <class Model>
 class ScenarioEvaluation {
  public:

@@ -1,8 +1,8 @@
 // POMCP's simulations (Silver and Veness, 2010) in the tree of one thread: read from `simulate` down.
 //
-// A simulation goes down from the root by upper confidence bounds (`choose`), values the first new history it comes to by a
-// rollout or the values of states (`SimulatedState::leaf`), and takes the return back up (`back_up`). Where that departs from
-// the paper, the name that is called has its reason where it is defined; docs/planning.md lists all of them.
+// A simulation goes down from the root by upper confidence bounds (`choose`). The first new history that it comes to is valued
+// by a rollout or by the values of states (`SimulatedState::leaf`). The return is taken back up (`back_up`). Departures from
+// the paper have their reasons in the files that are called; docs/planning.md lists them.
 //
 // Letters: n visits, q value of an action, v value of a history.
 #pragma once
