@@ -41,6 +41,7 @@ inline constexpr double few_effective = 0.2 * particle_count;
 inline constexpr double few_origins = 250;
 inline constexpr double too_few_effective = 50;
 inline constexpr int max_rescues = 2;
+inline constexpr int max_rescues_of_none = 6;           // where no particle is left
 
 template <class Model>
 class ParticleFilter {
@@ -90,8 +91,9 @@ class ParticleFilter {
     if (before.history.steps().size() >= max_history) before = begun(before.particles, false);
     Updated updated = propagated(before, step);
     const bool is_worth_moving = !before.history.steps().empty() || before.history.begins_with_the_documents();
-    for (int rescue = 0; rescue < max_rescues && step.is_observed && is_worth_moving; ++rescue) {
+    for (int rescue = 0; step.is_observed && is_worth_moving; ++rescue) {
       if (updated.cloud.effective() >= too_few_effective) break;
+      if (rescue >= (updated.cloud.particles.empty() ? max_rescues_of_none : max_rescues)) break;
       before = Moves<Model>{before.history, random_}.moved(before);
       Updated again = propagated(before, step);
       if (again.cloud.effective() >= updated.cloud.effective()) updated = std::move(again);

@@ -37,6 +37,7 @@ class BeliefCommands {
   const Belief<Model>& belief() const { return belief_; }
 
   void reset(JsonWriter& json) {
+    impossible_in_a_row_ = 0;
     become(json, Belief<Model>::initial(random_), [&] { search_.start_over(); });
   }
 
@@ -87,8 +88,10 @@ class BeliefCommands {
     }
     json.key("summary");
     if (is_impossible) {
+      ++impossible_in_a_row_;
       become(json, after_impossible(action));
     } else {
+      impossible_in_a_row_ = 0;
       become(json, std::move(posterior), [&] { search_.move_to(action, observation); });
     }
     json.end_object();
@@ -165,16 +168,23 @@ class BeliefCommands {
 
   // hold: what the action does is believed, what was seen is not. widen: the same, but half of the belief goes back to
   // what it was before and to the initial belief, in equal shares. reset: the initial belief.
+  //
+  // Of a drawn belief the particles may only have been too few, and what is mixed can be moved no more (moves.hpp): the
+  // first ones in a row are held.
   Belief<Model> after_impossible(int action) {
     const Belief<Model> initial = Belief<Model>::initial(random_);
     if (policy_ == ImpossiblePolicy::reset) return initial;
     const Belief<Model> predicted = belief_.predicted(action, random_);
-    if (policy_ == ImpossiblePolicy::hold) return predicted;
+    const bool may_be_too_few = belief_.is_drawn() && impossible_in_a_row_ <= held_in_a_row;
+    if (policy_ == ImpossiblePolicy::hold || may_be_too_few) return predicted;
     return predicted.mixed_with(belief_.mixed_with(initial, 0.5), 0.5);
   }
 
+  static constexpr int held_in_a_row = 8;
+
   Sampler random_;
   ImpossiblePolicy policy_;
+  int impossible_in_a_row_ = 0;
   Belief<Model> belief_;
   KeptBeliefs<Model> kept_;
   Planner<Model>& search_;
