@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -158,6 +159,34 @@ def test_the_shipped_robot_serves_a_ros_2_program_of_others(
         )
         assert program.stdout.splitlines()[-1:] == ["True 7"], program.stderr
     assert robot.returncode == 0
+
+
+def test_the_page_about_ros_can_be_followed_to_the_first_activation(
+    root: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    page = (root / "docs" / "ros.md").read_text(encoding="utf-8")
+    serve, drive = re.findall(r"^\.venv/bin/aos-up (.*)$", page, re.MULTILINE)
+    block = page.partition("The first one prints what it serves:")[2].split("```")[1]
+    here = ["--runs", str(tmp_path / "robot"), "--listen", "tcp/127.0.0.1:0"]
+    with up([*in_the_checkout(serve, root), *here], cache_dir) as robot:
+        told = [str(event.get("text")) for event in events_of_until(robot, "Ctrl-C stops it")]
+        for line in block.strip().splitlines():
+            assert line == "..." or line in told
+        served = json.loads((tmp_path / "robot" / "latest" / "run.json").read_text())["endpoint"]
+        (file,) = in_the_checkout(drive, root)
+        # Where the page has the ports of a whole machine, a test has those that are free.
+        text = Path(file).read_text().replace("tcp/127.0.0.1:7447", served).replace("7448", "0")
+        text = text.replace("bundles/", f"{root}/deploy/bundles/").replace("100_000", "1_000")
+        text = text.replace("[interfaces]", f"[{root}/deploy/interfaces]").replace("../runs", "runs")
+        (tmp_path / "mission.yaml").write_text(text)
+        with up([str(tmp_path / "mission.yaml")], cache_dir) as mission:
+            first = next(event for event in events_of(mission) if event.get("outcome"))
+            assert first["outcome"]["status"] == "observed"
+
+
+def in_the_checkout(arguments: str, root: Path) -> list[str]:
+    """Arguments of aos-up with their deploy file where it is."""
+    return [str(root / word) if word.endswith(".yaml") else word for word in arguments.split()]
 
 
 def events_of_until(process: subprocess.Popen[str], text: str) -> Iterator[dict[str, Any]]:
