@@ -1,4 +1,4 @@
-"""Lines of the table of docs/middleware.md, original mappings construct by construct, that no other test has."""
+"""Original mappings, construct by construct: lines of the table of docs/middleware.md."""
 
 from __future__ import annotations
 
