@@ -132,6 +132,7 @@ CODES: dict[str, str] = {
     "AOS806": "an unknown ROS interface",
     "AOS807": "a path that nobody serves",
     "AOS808": "an experiment or a file of mission tests is not valid",
+    "AOS809": "a Ray cluster that cannot be used",
 }
 """Every code with its meaning; docs/errors.md is made from this table."""
 

@@ -47,7 +47,15 @@ def run(
     ] = 0,
     first_seed: Annotated[int, typer.Option(min=0, help="The seeds begin here")] = 1,
     part: Annotated[list[str] | None, typer.Option(help="Only this part; repeatable")] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Missions at a time; else 1, or a cluster's processors")
+    ] = None,
+    on: Annotated[
+        str,
+        typer.Option(
+            metavar="WHERE", help="local, or ray://HOST:10001 for the model's missions on a Ray cluster"
+        ),
+    ] = "local",
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Records and report; else experiments/NAME")
     ] = None,
@@ -59,6 +67,7 @@ def run(
     intervals. A run that was interrupted goes on where it was: missions that
     are recorded are not run again, unless documents or settings have changed.
     """
+    _check_place(on, system_seeds)
     _check_installed()
     from aos_deploy.experiments.optimum import regret_of
     from aos_deploy.experiments.physics import keep_picture
@@ -92,6 +101,8 @@ def run(
                         out=folder / by / key,
                         jobs=jobs,
                         on_trial=partial(bar.advance, task),
+                        on=on,
+                        on_progress=lambda text: typer.echo(text, err=True),
                     )
                 )
                 result = result_of(key, each, by, played, experiment)
@@ -219,6 +230,19 @@ def _known_optimum(out: Path, digest: str, setting: Setting, folder: Path) -> Bo
     bounds = asyncio.run(bounds_of(deployment_of(setting, folder, out)))
     kept.write_bytes(msgspec.json.encode(bounds))
     return bounds
+
+
+def _check_place(on: str, system_seeds: int) -> None:
+    """BadParameter where missions cannot be run."""
+    if on == "local":
+        return
+    if on != "ray" and not on.startswith("ray://"):
+        hint = "local, ray://HOST:PORT, or ray for a Ray of its own on this machine"
+        raise typer.BadParameter(f"{on!r} is none of {hint}", param_hint="--on")
+    if system_seeds:
+        raise typer.BadParameter(
+            "missions of the whole system are run here: leave --on out", param_hint="--on"
+        )
 
 
 def _check_installed() -> None:

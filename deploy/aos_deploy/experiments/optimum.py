@@ -9,7 +9,7 @@ import msgspec
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.program import cache_dir
 from aos_deploy.trials.intervals import Interval, interval_of_mean
-from aos_deploy.trials.model_player import ModelPlayer
+from aos_deploy.trials.model_player import ModelMissions, ModelPlayer
 from aos_deploy.trials.trial import Trial
 from aos_solver.child.engine import Engine
 from aos_solver.offline.enumeration import enumerate_model
@@ -35,7 +35,7 @@ class Regret(msgspec.Struct, frozen=True, kw_only=True):
 
 async def bounds_of(deployment: Deployment) -> Bounds:
     """Of the value of the initial belief, by SARSOP; IntractableError where the model cannot be listed."""
-    player = await ModelPlayer.prepared(deployment)
+    player = await ModelPlayer.prepared(ModelMissions.of(deployment))
     engine = await Engine.start(player.model, seed=1, keeps_belief=False)
     try:
         model = (await enumerate_model(engine)).model

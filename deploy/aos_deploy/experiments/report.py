@@ -13,6 +13,8 @@ from aos_deploy.experiments.results import PartResult, Results
 
 __all__ = ["markdown_report", "write_report"]
 
+_SHOWN_SEEDS = 20
+
 
 def write_report(results: Results, plots: Mapping[str, Path], folder: Path) -> tuple[Path, Path]:
     """`report.md`, with links to the pictures, and `report.html`, which holds them."""
@@ -67,7 +69,7 @@ def _claims(results: Results) -> Iterator[str]:
                 f"{verdict.held} of {verdict.missions}",
                 shown(verdict.share),
                 f"{verdict.wanted:.2f}",
-                ", ".join(map(str, verdict.failed_seeds)),
+                _first_of(verdict.failed_seeds),
             )
 
 
@@ -91,6 +93,12 @@ def _regrets(results: Results) -> Iterator[str]:
                 f"{regret.scale:.2f}",
                 shown(regret.share, 3),
             )
+
+
+def _first_of(seeds: tuple[int, ...]) -> str:
+    """The first ones; report.json has all."""
+    listed = ", ".join(map(str, seeds[:_SHOWN_SEEDS]))
+    return f"{listed} and {len(seeds) - _SHOWN_SEEDS} more" if len(seeds) > _SHOWN_SEEDS else listed
 
 
 def _figures(results: Results) -> Iterator[str]:

@@ -12,7 +12,8 @@ import msgspec
 
 from aos_deploy.bundle_files import files_of_bundle
 from aos_deploy.deploy_file import Deployment
-from aos_deploy.trials.model_player import ModelPlayer
+from aos_deploy.trials.model_player import ModelMissions, ModelPlayer
+from aos_deploy.trials.ray_cluster import RayPlayer
 from aos_deploy.trials.script_player import ScriptPlayer
 from aos_deploy.trials.setting import Setting, deployment_of
 from aos_deploy.trials.system_player import SystemPlayer
@@ -20,7 +21,10 @@ from aos_deploy.trials.trial import Trial
 from aos_protocol import __version__
 from aos_runtime.lifecycle import root_cause
 
-__all__ = ["Played", "play_campaign"]
+__all__ = ["HERE", "Played", "play_campaign"]
+
+HERE = "local"
+"""Where missions are played: on this machine."""
 
 
 class Played(msgspec.Struct, frozen=True):
@@ -49,12 +53,15 @@ async def play_campaign(
     *,
     folder: Path,
     out: Path,
-    jobs: int,
+    jobs: int | None,
     on_trial: Callable[[], None],
+    on: str = HERE,
+    on_progress: Callable[[str], None] = lambda text: None,
 ) -> Played:
     """Plays a mission of each seed. Records in `out` are used where they were made of the same.
 
-    Missions that broke are run again. `folder` is where the setting's paths begin.
+    Missions that broke are run again. `folder` is where the setting's paths begin. Missions of the model can
+    be played `on` a Ray cluster, on `jobs` of its processors or on all; here it is one at a time if not said.
     """
     deployment = deployment_of(setting, folder, out)
     digest = _digest(setting, deployment)
@@ -71,11 +78,16 @@ async def play_campaign(
             file.write(msgspec.json.encode(_Kept(digest, trial)) + b"\n")
         on_trial()
 
+    player: _Player
     if left:
         await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)
-        player = await _player(setting, deployment, out)
+        if on != HERE and setting.by == "model":
+            player = cluster = await RayPlayer.prepared(ModelMissions.of(deployment), on, jobs, on_progress)
+            jobs = cluster.jobs
+        else:
+            player = await _player(setting, deployment, out)
         try:
-            await _play_all(player, left, jobs, keep)
+            await _play_all(player, left, jobs or 1, keep)
         finally:
             await player.close()
     return Played(tuple(done[seed] for seed in seeds), digest)
@@ -100,7 +112,7 @@ async def _player(setting: Setting, deployment: Deployment, out: Path) -> _Playe
     if setting.script:
         return await ScriptPlayer.prepared(deployment, setting.script, out)
     if setting.by == "model":
-        return await ModelPlayer.prepared(deployment)
+        return await ModelPlayer.prepared(ModelMissions.of(deployment))
     return SystemPlayer(deployment, out / "runs")
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 
+import msgspec
+
 from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.program import cache_dir
@@ -16,41 +18,53 @@ from aos_solver.hot_plug import build_project
 from aos_solver.search import Search
 from aos_solver.simulation import simulate_mission
 
-__all__ = ["ModelPlayer"]
+__all__ = ["ModelMissions", "ModelPlayer"]
 
 DEFAULT_SIMULATIONS = 100_000
 """As in the commands, where neither simulations nor a time is given."""
 
 
-class ModelPlayer:
-    """Plays missions of a deployment by the model of its documents; what it needs is built once."""
+class ModelMissions(msgspec.Struct, frozen=True):
+    """All that missions of the model depend on beside their seeds; it refers to no file."""
 
-    def __init__(self, deployment: Deployment, project: Project, model: BuiltModel) -> None:
-        self.deployment = deployment
-        self.project = project
+    project: Project
+    limits: MissionLimits
+    search: Search
+
+    @classmethod
+    def of(cls, deployment: Deployment) -> ModelMissions:
+        """Those of a deployment; DocumentError with all that is wrong with its documents."""
+        mission = deployment.file.mission
+        limits = MissionLimits(
+            goal_probability=mission.goal_probability,
+            step_limit=mission.step_limit,
+            stop_below_value=mission.stop_below_value,
+        )
+        return cls(project_of(deployment), limits, _search(deployment))
+
+
+class ModelPlayer:
+    """Plays missions by the model of their documents, which is built once."""
+
+    def __init__(self, missions: ModelMissions, model: BuiltModel) -> None:
+        self.missions = missions
         self.model = model
 
     @classmethod
-    async def prepared(cls, deployment: Deployment) -> ModelPlayer:
-        """Reads the documents and compiles the model; DocumentError with all that is wrong with them."""
-        project = project_of(deployment)
-        model = await build_project(project, cache_dir(), lambda remark: None)
-        return cls(deployment, project, model)
+    async def prepared(cls, missions: ModelMissions) -> ModelPlayer:
+        """Compiles the model; ModelError if that fails."""
+        return cls(missions, await build_project(missions.project, cache_dir(), lambda remark: None))
 
     async def close(self) -> None:
         """Nothing is left of a mission."""
 
     async def play(self, seed: int) -> Trial:
         """One mission. The same seed gives the same mission wherever the budget is one in simulations."""
-        file, start = self.deployment.file, time.perf_counter()
-        limits = MissionLimits(
-            goal_probability=file.mission.goal_probability,
-            step_limit=file.mission.step_limit,
-            stop_below_value=file.mission.stop_below_value,
-        )
+        start = time.perf_counter()
+        search = msgspec.structs.replace(self.missions.search, seed=seed)
         engine = await Engine.start(self.model, seed=seed)
         try:
-            run = await simulate_mission(engine, self._search(seed), limits, with_states=True)
+            run = await simulate_mission(engine, search, self.missions.limits, with_states=True)
         finally:
             await engine.close()
         return Trial(
@@ -64,19 +78,20 @@ class ModelPlayer:
             seconds=time.perf_counter() - start,
         )
 
-    def _search(self, seed: int) -> Search:
-        solver = self.deployment.file.solver
-        search = Search(
-            simulations=solver.simulations or DEFAULT_SIMULATIONS,
-            seed=seed,
-            time_s=solver.time_s,
-            horizon=solver.horizon,
-            planner=solver.planner,
-            threads=solver.threads,
-        )
-        if self.deployment.policy is None:
-            return search
-        # Numbers take a tenth of a second to import.
-        from aos_solver.offline.policy import Policy, PolicySearch
 
-        return PolicySearch.instead_of(search, Policy.load(self.deployment.policy))
+def _search(deployment: Deployment) -> Search:
+    solver = deployment.file.solver
+    search = Search(
+        simulations=solver.simulations or DEFAULT_SIMULATIONS,
+        seed=solver.seed,
+        time_s=solver.time_s,
+        horizon=solver.horizon,
+        planner=solver.planner,
+        threads=solver.threads,
+    )
+    if deployment.policy is None:
+        return search
+    # Numbers take a tenth of a second to import.
+    from aos_solver.offline.policy import Policy, PolicySearch
+
+    return PolicySearch.instead_of(search, Policy.load(deployment.policy))

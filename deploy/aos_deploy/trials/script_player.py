@@ -14,7 +14,7 @@ from typing import Any
 
 from aos_deploy.adapter_kinds import check_installed
 from aos_deploy.deploy_file import Deployment
-from aos_deploy.trials.model_player import ModelPlayer
+from aos_deploy.trials.model_player import ModelMissions, ModelPlayer
 from aos_deploy.trials.trial import Trial
 from aos_middleware.evaluator import EvaluationLimits, Evaluator
 from aos_middleware.mappings import emit_project
@@ -54,7 +54,7 @@ class ScriptPlayer:
             )
         for adapter in deployment.adapters:
             check_installed(adapter.name, adapter.kind)
-        player = await ModelPlayer.prepared(deployment)
+        player = await ModelPlayer.prepared(ModelMissions.of(deployment))
         engine = await Engine.start(player.model, seed=1, keeps_belief=False)
         actions = {action.name: action for action in engine.description.actions}
         await engine.close()
@@ -62,7 +62,7 @@ class ScriptPlayer:
             if name not in actions:
                 hint = f"Known are {', '.join(actions)}"
                 raise DeployError(f"the script's action {name} is none of the documents'", hint=hint)
-        return cls(deployment, player.project, [actions[name] for name in script], out)
+        return cls(deployment, player.missions.project, [actions[name] for name in script], out)
 
     async def play(self, seed: int) -> Trial:
         """One mission; one that broke is a trial with its fault."""

@@ -1,0 +1,115 @@
+"""Missions of the model on a Ray cluster: the same as here, and words for what is wrong with it.
+
+Ray is in no lock: `pip install 'ray[client]'` into the environment makes these tests run.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import msgspec
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from aos_deploy.cli import aos_app
+from aos_deploy.trials import ray_cluster
+from aos_deploy.trials.campaign import HERE, play_campaign
+from aos_deploy.trials.setting import Setting
+from aos_deploy.trials.trial import Trial
+from aos_protocol.errors import DeployError
+
+# Ray leaves the processes that it starts to themselves.
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::ResourceWarning", "ignore::UserWarning", "ignore::pytest.PytestUnraisableExceptionWarning"
+)
+
+needs_ray = pytest.mark.skipif(find_spec("ray") is None, reason="ray is not installed")
+
+
+@pytest.fixture(autouse=True)
+def _cache(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+
+
+def play(root: Path, out: Path, seeds: range, on: str, told: list[str] | None = None) -> list[Trial]:
+    """The missions, without how long they took; `told` gets a line for each that was played or was there."""
+    setting = Setting(deploy="armadillo.yaml", simulations=2000, step_limit=6)
+    lines = told if told is not None else []
+    played = asyncio.run(
+        play_campaign(
+            setting,
+            seeds,
+            folder=root / "deploy",
+            out=out,
+            jobs=2,
+            on_trial=lambda: lines.append("mission"),
+            on=on,
+            on_progress=lines.append,
+        )
+    )
+    return [msgspec.structs.replace(trial, seconds=0.0) for trial in played.trials]
+
+
+@needs_ray
+@pytest.mark.timeout(300)
+def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_twice(
+    root: Path, tmp_path: Path
+) -> None:
+    here = play(root, tmp_path / "here", range(1, 7), HERE)
+    there = play(root, tmp_path / "there", range(1, 5), ray_cluster.OWN)
+    assert there == here[:4]
+    told: list[str] = []
+    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, told) == here
+    assert told[:4] == ["mission"] * 4
+    assert "processors of the Ray cluster ray" in told[4]
+    told = []
+    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, told) == here
+    assert told == ["mission"] * 6
+
+
+@needs_ray
+@pytest.mark.timeout(120)
+def test_a_machine_with_another_aos_is_refused(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ray_cluster, "_sources_of", lambda folders: ("9.9", "f" * 64))
+    with pytest.raises(DeployError, match=r"has another AOS: .* there, 9\.9 with sources ffffffff here"):
+        play(root, tmp_path, range(1, 2), ray_cluster.OWN)
+
+
+@needs_ray
+@pytest.mark.timeout(120)
+def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(root: Path, tmp_path: Path) -> None:
+    with pytest.raises(DeployError) as caught:
+        play(root, tmp_path, range(1, 2), "ray://127.0.0.1:9")
+    assert caught.value.code == "AOS809"
+    assert "ray://127.0.0.1:9 cannot be reached" in caught.value.message
+
+
+def test_without_ray_the_command_says_how_to_install_it(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(DeployError, match=r"aos-autonomy\[ray\]") as caught:
+        play(root, tmp_path, range(1, 2), "ray://127.0.0.1:9")
+    assert caught.value.code == "AOS805"
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--on", "cluster:10001"], "is none of local, ray://HOST:PORT"),
+        (["--on", "ray", "--system-seeds", "1"], "missions of the whole system are run here"),
+    ],
+)
+def test_a_place_where_missions_cannot_run_is_refused_before_anything_runs(
+    options: list[str], told: str
+) -> None:
+    app: typer.Typer = aos_app()
+    done = CliRunner().invoke(app, ["experiment", "run", "armadillo", *options])
+    assert done.exit_code == 2
+    assert told in " ".join(done.stderr.split())
