@@ -90,23 +90,9 @@ def test_a_program_that_the_other_host_does_not_have_is_named(ssh: str, tmp_path
     assert f"robot on robot@arm: there is no program arm_driver in {tmp_path} or on the PATH" in said
 
 
-@pytest.mark.parametrize(
-    ("text", "hint"),
-    [
-        (
-            "robot@arm: Permission denied (publickey).",
-            "Give robot@arm a key of this user (ssh-copy-id robot@arm)",
-        ),
-        ("Host key verification failed.", "Connect once by hand"),
-        ("ssh: connect to host arm port 22: Connection refused", "See that it works by hand"),
-        (
-            "Error: remote port forwarding failed for listen port 20001",
-            "AllowTcpForwarding in its sshd_config",
-        ),
-    ],
-)
-def test_an_ssh_that_fails_says_why_and_what_to_do(tmp_path: Path, text: str, hint: str) -> None:
+def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path) -> None:
+    text = "ssh: connect to host arm port 22: Connection refused"
     status, said = up(refusing_ssh(tmp_path, text), "[arm_driver]", tmp_path)
     assert status == 3
     assert f"robot@arm cannot be reached by ssh: {text}" in said
-    assert hint in said
+    assert "See that it works by hand, without a password: ssh robot@arm true" in said

@@ -1,0 +1,74 @@
+"""Programs on other hosts: what ssh is told, and what is said when it fails."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.remote import HOST, remote_command, why_it_failed
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [
+        (
+            "robot@arm: Permission denied (publickey).",
+            "Give robot@arm a key of this user (ssh-copy-id robot@arm)",
+        ),
+        ("Host key verification failed.", "Connect once by hand, and look at the key that robot@arm shows"),
+        (
+            "ssh: connect to host arm port 22: Connection refused",
+            "See that it works by hand, without a password",
+        ),
+        (
+            "Error: remote port forwarding failed for listen port 20001",
+            "AllowTcpForwarding in its sshd_config",
+        ),
+    ],
+)
+def test_an_ssh_that_fails_says_why_and_what_to_do(text: str, hint: str) -> None:
+    error = why_it_failed("arm", "robot@arm", 255, [text])
+    assert error is not None
+    assert error.message == f"arm: robot@arm cannot be reached by ssh: {text}"
+    assert hint in error.hint
+
+
+def test_the_end_of_the_program_itself_is_not_that_of_ssh() -> None:
+    assert why_it_failed("arm", "robot@arm", 3, ["no power"]) is None
+
+
+@pytest.mark.parametrize(
+    "host", ["arm", "robot@arm.local", "robot@10.0.0.7", "ssh://robot@arm:2222", "[::1]"]
+)
+def test_hosts_are_written_as_ssh_takes_them(host: str) -> None:
+    assert HOST.fullmatch(host)
+
+
+@pytest.mark.parametrize("host", ["-oProxyCommand=x", "arm; reboot", "", "$(reboot)", "robot@-x", "a b"])
+def test_nothing_else_is_a_host(host: str) -> None:
+    assert not HOST.fullmatch(host)
+
+
+def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Path) -> None:
+    settings = tmp_path / "arm.json"
+    settings.write_text('{"it": "isn\'t $HOME"}')
+    told = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "r", "AOS_SETTINGS": str(settings)}
+    command = remote_command(
+        ("./arm", "two words", "$(reboot)"), "arm", "/opt/the arm", "tcp/127.0.0.1:7447", told, settings
+    )
+    forward = command[command.index("-R") + 1]
+    assert forward.startswith("127.0.0.1:")
+    assert forward.endswith(":127.0.0.1:7447")
+    *_, shell, option, script = shlex.split(command[-1])
+    assert (shell, option) == ("sh", "-c")
+    port = forward.split(":")[1]
+    for part in (
+        "cd '/opt/the arm'",
+        "./arm 'two words' '$(reboot)'",
+        f"AOS_ENDPOINT=tcp/127.0.0.1:{port}",
+        shlex.quote(settings.read_text()),
+    ):
+        assert part in script
+    assert str(settings) not in script
