@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from aos_deploy.experiments.physics import simulated_speed
 from aos_deploy.shipped import shipped
 from aos_deploy.trials.claims import Before, Claim, Count, When, judge, matches
-from aos_deploy.trials.files import read_experiment, read_test_file
+from aos_deploy.trials.files import read_experiment, read_script_file, read_test_file
 from aos_deploy.trials.intervals import interval_of_mean, interval_of_share
 from aos_deploy.trials.setting import deployment_of
 from aos_deploy.trials.trial import Trial
@@ -137,3 +138,29 @@ def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path)
 def test_shipped_experiments_name_what_is_there(path: Path, tmp_path: Path) -> None:
     for part in read_experiment(path).parts.values():
         deployment_of(part, path.parent, tmp_path)
+
+
+@pytest.mark.parametrize(
+    "path", sorted(shipped("deploy/experiments/statistics").glob("*.yaml")), ids=lambda path: path.stem
+)
+def test_shipped_scripts_name_what_is_there(path: Path, tmp_path: Path) -> None:
+    file = read_script_file(path)
+    for part in file.parts.values():
+        assert deployment_of(part, path.parent, tmp_path).world is not None
+    for bundles in file.calibrates.values():
+        assert all((path.parent / bundle).is_dir() for bundle in bundles)
+
+
+def test_a_part_without_a_script_is_told_with_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "scripts.yaml"
+    path.write_text("aos: 1\ntitle: T\nparts:\n  one: {deploy: x.yaml, missions: 2}\n")
+    with pytest.raises(DeployError) as caught:
+        read_script_file(path)
+    assert [(each.code, each.span.line) for each in caught.value.diagnostics] == [("AOS105", 4)]
+
+
+def test_speed_is_simulated_time_for_processor_time() -> None:
+    line = '{"time_s": %g, "processor_s": %g}'
+    whole = Trial(seed=1, ending="goal", goal=True, states=(line % (10.0, 1.0), line % (30.0, 2.0)))
+    assert simulated_speed([whole]) == 10.0
+    assert simulated_speed([Trial(seed=2, ending="goal", goal=True, states=("at=Home",))]) is None
