@@ -194,9 +194,8 @@ async def _answer(reference: Any, timeout_s: float, what: str) -> Any:
         raise _unusable(
             f"{what} brought no answer within {timeout_s:g} s", "Look at the cluster's load"
         ) from None
-    except AosError:
-        raise
     except Exception as error:
+        # Ray's errors are of the class of their cause as well, with a traceback as their text.
         cause = getattr(error, "cause", None)
         if isinstance(cause, AosError):
             raise cause from None
