@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 
+from aos_deploy.printing import from_here
 from aos_deploy.trials.trial import Trial
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
@@ -83,7 +84,9 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
         told: list[tuple[str, str, dict[str, Any]]] = [
             (action, response, {}) for action, response in zip(trial.actions, trial.responses, strict=True)
         ]
-        yield msgspec.structs.replace(_mission(f"{path.parent}, seed {seed}", told, trial.states), seed=seed)
+        yield msgspec.structs.replace(
+            _mission(f"{from_here(path.parent)}, seed {seed}", told, trial.states), seed=seed
+        )
 
 
 def _of_run(run: Path) -> RecordedMission:
@@ -98,7 +101,7 @@ def _of_run(run: Path) -> RecordedMission:
             is_seen = record.outcome.status == "observed"
             told.append((record.action, record.outcome.response if is_seen else "", record.outcome.numbers))
     lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
-    return _mission(str(run), told, lines)
+    return _mission(str(from_here(run)), told, lines)
 
 
 def _mission(
