@@ -125,7 +125,7 @@ def test_a_local_variable_of_a_state_variables_name_and_type_is_told() -> None:
     assert program_of(told).skills[0].reported == ("total",)
     untyped = msgspec.structs.replace(mapping, local_variables=(msgspec.structs.replace(variable, type=""),))
     project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=untyped),))
-    assert program_of(project).skills[0].told == ()
+    assert program_of(project).skills[0].reported == ()
 
 
 def test_names_that_cpp_needs_are_refused_at_their_places() -> None:
