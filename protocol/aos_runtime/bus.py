@@ -169,7 +169,7 @@ class Bus:
             payload=payload,
             attachment=_TAKEN,
             timeout=timeout_s if on_stray is None else timeout_s + STRAYS_S,
-            # Not `express`: with that, one question in ten whose answerer dies is never told to be lost (Zenoh 1.10).
+            # Not `express`: one question in ten whose answerer died was then never told to be lost.
             # Otherwise a reply is held back until every responder has finished.
             consolidation=zenoh.ConsolidationMode.NONE,
         )
