@@ -41,7 +41,7 @@ inline constexpr double few_effective = 0.2 * particle_count;
 inline constexpr double few_origins = 250;
 inline constexpr double too_few_effective = 50;
 inline constexpr int max_rescues = 2;
-inline constexpr int max_rescues_of_none = 6;           // where no particle is left
+inline constexpr int max_rescues_of_none = 3;           // where no particle is left
 
 template <class Model>
 class ParticleFilter {
