@@ -139,9 +139,9 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path, cache
     assert "no record" in told.stdout  # of the hard table, where the robot never picks
     assert pick.read_text() == wrong
     patched = subprocess.run(
-        ["patch", "-p1", "-i", "changes.patch"], cwd=tmp_path, capture_output=True, check=False
+        ["git", "apply", "changes.patch"], cwd=tmp_path, capture_output=True, check=False
     )
-    assert patched.returncode == 0, patched.stdout
+    assert patched.returncode == 0, patched.stderr
     result = json.loads(run("--json").stdout)
     assert result["patch"] == ""
 

@@ -75,7 +75,7 @@ def calibrate(
         return
     _print(result)
     if write is not None and result.patch:
-        typer.echo(f"the patch is in {write}; apply it with `patch -p1 < {write}`")
+        typer.echo(f"the patch is in {write}; apply it with `git apply {write}`")
 
 
 def _print(result: Calibration) -> None:
