@@ -17,6 +17,10 @@ _COLOURS = {"model": "#3b6ea5", "system": "#c0662f"}
 _ROW_INCHES = 0.42
 
 
+def _count_of(name: str) -> Callable[[PartResult], Interval | None]:
+    return lambda part: part.figures.counts.get(name)
+
+
 def draw_plots(results: Results, folder: Path) -> dict[str, Path]:
     """One picture for each figure that a part has, by its title; SVG files in `folder`."""
     # Texts stay texts, and the same figures give the same file.
@@ -28,7 +32,7 @@ def draw_plots(results: Results, folder: Path) -> dict[str, Path]:
         "steps": lambda part: part.figures.steps,
     }
     for name in sorted(counted):
-        wanted[f"{name}, times in a mission"] = lambda part, name=name: part.figures.counts.get(name)  # type: ignore[misc]
+        wanted[f"{name}, times in a mission"] = _count_of(name)
     folder.mkdir(parents=True, exist_ok=True)
     drawn = {}
     for title, value_of in wanted.items():
