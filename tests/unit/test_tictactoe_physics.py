@@ -108,6 +108,37 @@ def test_a_perfect_player_never_loses() -> None:
         assert winner(board) != "O"
 
 
+@pytest.mark.parametrize(
+    ("board", "ended", "won"),
+    [
+        ("OOO?XX??X", False, None),
+        ("OOOXXOOXX", True, "O"),
+        ("XXOOXOXOX", True, None),
+        ("XXOXOOXOX", True, "X"),
+    ],
+)
+def test_by_the_rules_for_corners_the_board_is_filled_and_pairs_count(
+    board: str, ended: bool, won: str | None
+) -> None:
+    assert (is_over(board, "corners"), winner(board, "corners")) == (ended, won)
+
+
+def test_a_perfect_player_of_corners_takes_the_last_pair() -> None:
+    assert best_moves("XO?XOOOXX", "X", "corners") == [2]
+    assert best_moves("?O?XOXOXO", "X", "corners") == [0, 2]
+
+
+def test_by_the_rules_for_corners_somebody_draws_after_three_in_a_row(make: Make) -> None:
+    world = make(rules="corners")
+    world.marks, world.is_robots_turn = "OOO?X???X", False
+    call(world, "/look")
+    assert world.marks.count("X") == 3
+    world = make()
+    world.marks, world.is_robots_turn = "OOO?X???X", False
+    call(world, "/look")
+    assert world.marks.count("X") == 2
+
+
 def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make) -> None:
     world = make()
     person = PersonAtTerminal(0, world.scene)

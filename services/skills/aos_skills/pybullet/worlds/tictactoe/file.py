@@ -6,6 +6,8 @@ from typing import Literal
 
 import msgspec
 
+from aos_skills.pybullet.worlds.tictactoe.rules import Rules
+
 __all__ = ["FaultModel", "TicTacToeFile"]
 
 
@@ -21,7 +23,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TicTacToeFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Who plays against the robot, and what is on the board at first.
+    """Who plays against the robot, by which `rules`, and what is on the board at first.
 
     A person types at a terminal that is connected to `port` of this machine: see `play`. `moves_made` gives
     numbers of random moves, the person's first, and how likely each is.
@@ -29,5 +31,6 @@ class TicTacToeFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     opponent: Literal["random", "perfect", "person"] = "random"
     port: int = 7450
+    rules: Rules = "row"
     moves_made: dict[int, float] = {}
     faults: FaultModel = FaultModel()

@@ -19,6 +19,6 @@ def opponent(file: TicTacToeFile, chance: random.Random, scene: Scene) -> Callab
         case "random":
             return lambda board: chance.choice(empty_cells(board))
         case "perfect":
-            return lambda board: chance.choice(best_moves(board, "X"))
+            return lambda board: chance.choice(best_moves(board, "X", file.rules))
         case "person":
             return PersonAtTerminal(file.port, scene)

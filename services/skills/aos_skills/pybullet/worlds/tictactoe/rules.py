@@ -1,13 +1,21 @@
-"""The game: boards as nine characters, row by row, `O` of the robot, `X` of the person, `?` for nothing."""
+"""The game: boards as nine characters, row by row, `O` of the robot, `X` of the person, `?` for nothing.
+
+By the rules `row`, three in a row win. By the rules `corners` the board is filled, and whoever has marked a
+corner and a cell beside it has a point for each such pair; more points win.
+"""
 
 from __future__ import annotations
 
 from functools import cache
+from typing import Literal
 
-__all__ = ["EMPTY_BOARD", "best_moves", "empty_cells", "is_over", "marked", "winner"]
+__all__ = ["EMPTY_BOARD", "Rules", "best_moves", "empty_cells", "is_over", "marked", "winner"]
+
+Rules = Literal["row", "corners"]
 
 EMPTY_BOARD = "?" * 9
 ROWS = ((0, 1, 2), (3, 4, 5), (6, 7, 8), (0, 3, 6), (1, 4, 7), (2, 5, 8), (0, 4, 8), (2, 4, 6))
+PAIRS = ((0, 1), (0, 3), (2, 1), (2, 5), (6, 3), (6, 7), (8, 5), (8, 7))
 
 
 def empty_cells(board: str) -> list[int]:
@@ -20,29 +28,36 @@ def marked(board: str, cell: int, mark: str) -> str:
     return board[:cell] + mark + board[cell + 1 :]
 
 
-def winner(board: str) -> str | None:
-    """Whose mark fills a row."""
+def winner(board: str, rules: Rules = "row") -> str | None:
+    """Who has won; None while nobody has."""
+    if rules == "corners":
+        lead = _points(board, "O") - _points(board, "X") if "?" not in board else 0
+        return "O" if lead > 0 else "X" if lead < 0 else None
     marks = (board[a] for a, b, c in ROWS if board[a] == board[b] == board[c] != "?")
     return next(marks, None)
 
 
-def is_over(board: str) -> bool:
-    return winner(board) is not None or "?" not in board
+def is_over(board: str, rules: Rules = "row") -> bool:
+    return "?" not in board or winner(board, rules) is not None
 
 
-def best_moves(board: str, mark: str) -> list[int]:
+def best_moves(board: str, mark: str, rules: Rules = "row") -> list[int]:
     """The cells from which a perfect player of `mark` gets the most against another one."""
-    worth = {cell: -_worth(marked(board, cell, mark), _other(mark)) for cell in empty_cells(board)}
+    worth = {cell: -_worth(marked(board, cell, mark), _other(mark), rules) for cell in empty_cells(board)}
     return [cell for cell, value in worth.items() if value == max(worth.values())]
 
 
 @cache
-def _worth(board: str, mark: str) -> int:
+def _worth(board: str, mark: str, rules: Rules) -> int:
     """What perfect play brings to who has the turn: 1, 0 or -1."""
-    if winner(board) is not None:
-        return -1  # The one who drew last has won.
+    if is_over(board, rules):
+        return {mark: 1, _other(mark): -1, None: 0}[winner(board, rules)]
     cells = empty_cells(board)
-    return max((-_worth(marked(board, cell, mark), _other(mark)) for cell in cells), default=0)
+    return max(-_worth(marked(board, cell, mark), _other(mark), rules) for cell in cells)
+
+
+def _points(board: str, mark: str) -> int:
+    return sum(board[corner] == board[beside] == mark for corner, beside in PAIRS)
 
 
 def _other(mark: str) -> str:

@@ -66,7 +66,16 @@ class TicTacToe(World):
         return {"/joints": {"positions": self.robot.arm.angles}}
 
     def truth(self) -> dict[str, Any]:
-        return {"board": self.marks, "winner": winner(self.marks), "is_over": is_over(self.marks)}
+        return {
+            "board": self.marks,
+            "winner": winner(self.marks, self.file.rules),
+            "is_over": self.is_over,
+        }
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the game has ended: then nobody draws any more."""
+        return is_over(self.marks, self.file.rules)
 
     def write(self, way: list[Vector]) -> bool:
         """Leads the pen along a way; whether it has left a line."""
