@@ -25,6 +25,8 @@ __all__ = ["TicTacToe"]
 CAMERA_M = (1.05, 0.0, 0.55)
 PICTURE_SIZE = (480, 360)
 FIELD_OF_VIEW_DEG = 42
+BOARD_SEEN: tuple[Vector, Vector] = ((0.72, 0.0, 0.38), (*CENTRE_M, 0.0))
+"""For the record's pictures; the robot looks from elsewhere."""
 PERSON_DRAWS_S = 2.0
 MIN_INK = 20
 """Contacts of the pen in simulation steps, below which there is no circle."""
@@ -42,7 +44,7 @@ class TicTacToe(World):
         self.faults = Faults(seed)
         self.board = Board(scene)
         self.robot = PandaWithPen(scene)
-        self.camera = Camera(scene, (1.15, -0.75, 0.85), (0.35, 0.0, 0.15))
+        self.camera = Camera(scene, (1.4, -0.7, 0.8), (0.2, -0.2, 0.3), lambda: BOARD_SEEN)
         self._person = random.Random(f"person {seed}")
         self._opponent = opponent(file, self._person, scene)
         self.marks = EMPTY_BOARD
