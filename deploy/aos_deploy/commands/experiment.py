@@ -19,8 +19,8 @@ from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError
 
 if TYPE_CHECKING:
+    from aos_deploy.experiments.optimum import Optimum
     from aos_deploy.trials.setting import Setting
-    from aos_solver.offline.solving import Bounds
 
 __all__ = ["register"]
 
@@ -107,8 +107,8 @@ def run(
                 )
                 result = result_of(key, each, by, played, experiment)
                 if by == "model" and experiment.optimum:
-                    bounds = _known_optimum(folder / by / key, played.digest, setting, path.parent)
-                    result = msgspec.structs.replace(result, regret=regret_of(bounds, played.trials))
+                    optimum = _known_optimum(folder / by / key, played.digest, setting, path.parent)
+                    result = msgspec.structs.replace(result, regret=regret_of(optimum, played.trials))
                 elif by == "system":
                     target = folder / "pictures" / f"{key}.png"
                     if keep_picture(folder / by / key / "runs", result.seeds, target):
@@ -218,18 +218,17 @@ def statistics(
     print(f"the report is in {from_here(folder / 'report.md')}")
 
 
-def _known_optimum(out: Path, digest: str, setting: Setting, folder: Path) -> Bounds:
-    """The bounds that were worked out for the same documents, or new ones."""
-    from aos_deploy.experiments.optimum import bounds_of
+def _known_optimum(out: Path, digest: str, setting: Setting, folder: Path) -> Optimum:
+    """What was worked out for the same documents and settings, or worked out now."""
+    from aos_deploy.experiments.optimum import Optimum, optimum_of
     from aos_deploy.trials.setting import deployment_of
-    from aos_solver.offline.solving import Bounds
 
-    kept = out / f"optimum-{digest}.json"
+    kept = out / f"best-{digest}.json"
     if kept.is_file():
-        return msgspec.json.decode(kept.read_bytes(), type=Bounds)
-    bounds = asyncio.run(bounds_of(deployment_of(setting, folder, out)))
-    kept.write_bytes(msgspec.json.encode(bounds))
-    return bounds
+        return msgspec.json.decode(kept.read_bytes(), type=Optimum)
+    optimum = asyncio.run(optimum_of(deployment_of(setting, folder, out)))
+    kept.write_bytes(msgspec.json.encode(optimum))
+    return optimum
 
 
 def _check_place(on: str, system_seeds: int) -> None:

@@ -74,22 +74,34 @@ def _claims(results: Results) -> Iterator[str]:
 
 
 _REGRET = (
-    "The optimum is the value of the initial belief, between SARSOP's proven bounds: discounted, without a "
-    "limit of steps, for a robot that cannot stop. What is missing to it is a share of the range, the "
-    "difference between the largest and the smallest return of these missions. Below 0 the missions brought "
-    "more, by chance or because they stop."
+    "The optimum is the best that a mission can bring on average, between SARSOP's proven bounds: the value "
+    "of the initial belief, discounted, without a limit of steps. Where the deploy file has a "
+    "`stop_below_value`, the robot may stop at any time, and stopping is worth that much; it is counted in "
+    "the returns here, too, of missions that stopped. What is missing to the optimum is a share of the "
+    "range, the difference between the largest and the smallest of these returns. Below 0 the missions "
+    "brought more, by chance or because they end where the belief is sure enough."
 )
 
 
 def _regrets(results: Results) -> Iterator[str]:
-    yield from head("part", "missions", "return", "optimum", "range", "missing, as a share of the range")
+    yield from head(
+        "part",
+        "missions",
+        "return, with what stopping is worth",
+        "stopping is worth",
+        "optimum",
+        "range",
+        "missing, as a share of the range",
+    )
     for part in results.parts:
         if (regret := part.regret) is not None:
+            optimum = regret.optimum
             yield row(
                 part.name,
                 str(part.figures.missions),
-                shown(part.figures.value),
-                f"{regret.lower:.3f} to {regret.upper:.3f}",
+                shown(regret.value),
+                "" if optimum.stop_value is None else f"{optimum.stop_value:g}",
+                f"{optimum.lower:.3f} to {optimum.upper:.3f}",
                 f"{regret.scale:.2f}",
                 shown(regret.share, 3),
             )
