@@ -235,7 +235,7 @@ void what_is_not_turned_yet_stays_open() {
     }
     cloud = std::move(after);
   }
-  expect(distance < 0.2, "the next card is open, on average, but for " + std::to_string(distance));
+  expect(distance < 0.06, "the next card is open, on average, but for " + std::to_string(distance));
 }
 
 }  // namespace

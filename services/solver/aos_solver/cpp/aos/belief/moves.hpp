@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,6 +19,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
+#include "aos/belief/free_draws.hpp"
 #include "aos/belief/guided_step.hpp"
 #include "aos/belief/history.hpp"
 
@@ -28,6 +30,7 @@ inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
 inline constexpr std::size_t proposals_that_tell = 500;
 inline constexpr std::size_t min_accepted = 1;          // of them; else there is little to be gained
+inline constexpr double refreshing = 0.5;               // of the proposals make draws of the origin anew
 
 template <class Model>
 class Moves {
@@ -45,7 +48,7 @@ class Moves {
     std::size_t accepted = 0;
     while (steps_ < max_moving_steps) {
       for (Copy& copy : copies_) {
-        accepted += move(copy) ? 1 : 0;
+        accepted += (random_.flag(refreshing) ? refresh(copy) : move(copy)) ? 1 : 0;
         if (++proposed == proposals_that_tell && accepted < min_accepted) return cloud;
         if (steps_ >= max_moving_steps) break;
       }
@@ -131,6 +134,52 @@ class Moves {
     return true;
   }
 
+  // Many draws of the origin made anew at once; all later steps run as they did, with the same draws. A guided step has to
+  // draw from the same weights as before, so that what its likelihood was estimated from is as likely as it was.
+  bool refresh(Copy& copy) {
+    const std::vector<const Block*> blocks = blocks_of(copy.trace);
+    if (blocks[0]->draws == 0) return false;
+    const std::vector<std::size_t>& anew = free_draws_.choose(blocks[0]->draws, random_);
+    if (anew.empty()) return false;
+    std::vector<double> values;
+    State before{};
+    Sampler later{blocks[0]->seed};
+    run(0, blocks[0]->values, later, before, &values);
+    for (const std::size_t draw : anew) {
+      if (draw < values.size()) values[draw] = random_.uniform();
+    }
+    std::vector<double> used;
+    State after{};
+    run(0, values, random_, after, &used);
+    if (after == before) return false;
+    const bool is_accepted = still_brings(blocks, before, after);
+    free_draws_.note(is_accepted);
+    if (!is_accepted) return false;
+    std::vector<Block> proposed;
+    const auto draws = static_cast<std::uint32_t>(used.size());
+    proposed.push_back({std::move(used), 0, 1, draws});
+    for (std::size_t i = 1; i < blocks.size(); ++i) proposed.push_back(*blocks[i]);
+    copy.state = after;
+    copy.trace = replaced(copy.trace, blocks.size(), proposed);
+    copy.is_moved = true;
+    return true;
+  }
+
+  // Runs all steps from either origin, to their last states. Whether the second brings what was observed, drawn by how
+  // likely the numbers are with either.
+  bool still_brings(const std::vector<const Block*>& blocks, State& before, State& after) {
+    double ratio = 1;
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
+      const double likelihood_before = repeat(i, *blocks[i], before);
+      const std::uint64_t weights_before = weights_drawn_from_.digest();
+      const double likelihood_after = repeat(i, *blocks[i], after);
+      if (is_guided(i) && weights_drawn_from_.digest() != weights_before) return false;
+      if (likelihood_after <= 0) return false;
+      ratio *= likelihood_after / likelihood_before;
+    }
+    return ratio >= 1 || random_.flag(ratio);
+  }
+
   struct DrawPlace {
     std::size_t block;
     std::size_t draw;
@@ -175,7 +224,8 @@ class Moves {
     }
     const HistoryStep& step = history_.steps()[place - 1];
     const NumbersOf numbers{step, replay_};
-    replay_.start(values, later, record);
+    weights_drawn_from_.start();
+    replay_.start(values, later, record, &weights_drawn_from_);
     return step.agrees(History<Model>::run(state, step, replay_)) ? replay_.weight() : 0;
   }
 
@@ -241,9 +291,26 @@ class Moves {
     return trace;
   }
 
+  // Of the weights that a step draws from.
+  class Weights final : public DrawWatcher {
+   public:
+    void start() { digest_ = 0; }
+    std::uint64_t digest() const { return digest_; }
+    void before_draw(std::size_t, const double* weights, int count, double total) override {
+      mix(static_cast<std::uint64_t>(count));
+      for (int i = 0; i < count; ++i) mix(std::bit_cast<std::uint64_t>(weights[i] / total));
+    }
+
+   private:
+    void mix(std::uint64_t bits) { digest_ = (std::rotl(digest_, 5) ^ bits) * 0x9e3779b97f4a7c15u; }
+    std::uint64_t digest_ = 0;
+  };
+
   const History<Model>& history_;
   Sampler& random_;
   Replay replay_;
+  Weights weights_drawn_from_;
+  FreeDraws free_draws_;
   std::vector<Copy> copies_;
   std::size_t steps_ = 0;
 };

@@ -1,0 +1,53 @@
+// Which draws of the origin nothing observed has felt, learnt from moves that change several of them at once: group testing
+// (Dorfman, 1943) with scores in place of certainty.
+//
+// What is far away is drawn in the beginning and matters later. Such draws can be made anew together, in one move that is
+// nearly always accepted, where one draw at a time would take as many moves as there are draws.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "aos/base/random.hpp"
+
+namespace aos {
+
+class FreeDraws {
+ public:
+  // A set of draws to make anew, of the first `count`. It does not depend on what the draws are, so that it would be chosen
+  // as often on the way back. Its size is of any scale, so that few draws are tried, too.
+  const std::vector<std::size_t>& choose(std::size_t count, Sampler& random) {
+    if (scores_.size() < count) scores_.resize(count, unknown);
+    const double scale = std::exp(-random.uniform() * std::log(static_cast<double>(scores_.size()) + 1));
+    chosen_.clear();
+    for (std::size_t draw = 0; draw < scores_.size(); ++draw) {
+      if (random.flag(scale * scores_[draw] * scores_[draw])) chosen_.push_back(draw);
+    }
+    return chosen_;
+  }
+
+  // Whether the draws that were chosen last could be made anew together. Where not, those are blamed more that have been
+  // free less often.
+  void note(bool was_accepted) {
+    double doubts = 0;
+    for (const std::size_t draw : chosen_) doubts += doubt(draw);
+    for (const std::size_t draw : chosen_) {
+      double& score = scores_[draw];
+      score = was_accepted ? score + gain * (1 - score) : score * (1 - loss * doubt(draw) / doubts);
+    }
+  }
+
+ private:
+  static constexpr double unknown = 0.5;
+  static constexpr double gain = 0.3;
+  static constexpr double loss = 0.7;
+
+  // Nothing is trusted fully, since later observations may feel it.
+  double doubt(std::size_t draw) const { return 1.02 - scores_[draw]; }
+
+  std::vector<double> scores_;  // in [0, 1]
+  std::vector<std::size_t> chosen_;
+};
+
+}  // namespace aos
