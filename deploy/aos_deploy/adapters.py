@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
@@ -81,9 +82,10 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
     return tuple(plans)
 
 
-def played_by_model() -> tuple[AdapterPlan, ...]:
-    """Every skill is played by its own document."""
-    return (AdapterPlan(name=MODEL, kind_name=MODEL, kind=adapter_kinds()[MODEL], serves_others=True),)
+def played_by_model(faults: Mapping[str, float] | None = None) -> tuple[AdapterPlan, ...]:
+    """Every skill is played by its own document, with these faults (`aos_solver.played_faults`)."""
+    kind, options = adapter_kinds()[MODEL], {"faults": dict(faults)} if faults else {}
+    return (AdapterPlan(name=MODEL, kind_name=MODEL, kind=kind, options=options, serves_others=True),)
 
 
 _HOW_TO_NAME = "Write it as adapters: {NAME: {command: [PROGRAM, ARGUMENT]}}, and bind paths to NAME"

@@ -53,3 +53,51 @@ def test_claims_that_fail_are_told_with_their_missions(tmp_path: Path, cache_dir
     again = json.loads(run("--json").stdout)
     assert records.read_bytes() == before
     assert [verdict["held"] for verdict in again["finer"]["verdicts"]] == [2, 0]
+
+
+LOSSY_ROBOT = f"""
+aos: 1
+robot: armadillo
+bundles: [{DEPLOY}/bundles/armadillo-finer]
+mission: {{step_limit: 6, failure_limit: 2}}
+skills: {{navigate: {{timeout_s: 0.3}}}}
+bind: {{"*": model}}
+"""
+
+LOSSY_TEST = """
+  {name}:
+    deploy: robot.yaml
+    by: system-model
+    seeds: 1
+    simulations: 500
+    faults: {{{fault}: 1.0}}
+    claims:
+      - {{says: nothing is observed, first: navigate > no observation}}
+      - {{says: the world, {claim}}}
+"""
+
+LOSSY_CLAIMS = {
+    "failed_call": "endings: [skills_failed], never_state: robot_at=EasyTable",
+    "lost_result": "endings: [skills_failed], some_state: robot_at=EasyTable",
+    "navigate.no_answer": "some_state: robot_at=EasyTable",
+}
+
+
+def test_calls_fail_results_are_lost_and_answers_never_come_as_a_test_wants(
+    tmp_path: Path, cache_dir: Path
+) -> None:
+    (tmp_path / "robot.yaml").write_text(LOSSY_ROBOT)
+    tests = [
+        LOSSY_TEST.format(name=fault.replace(".", "-"), fault=fault, claim=claim)
+        for fault, claim in LOSSY_CLAIMS.items()
+    ]
+    (tmp_path / "missions.yaml").write_text("aos: 1\ntests:" + "".join(tests))
+    done = subprocess.run(
+        [AOS, "test", tmp_path / "missions.yaml", "--keep", tmp_path / "kept"],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("ok     ") == 6

@@ -134,6 +134,8 @@ def _digest(setting: Setting, deployment: Deployment) -> str:
     whole = hashlib.sha256(f"{__version__} {setting.by}".encode())
     whole.update(" > ".join(setting.script).encode())
     whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))
+    if setting.by != "model" and (setting.faults or deployment.file.skills):
+        whole.update(msgspec.json.encode((setting.faults, deployment.file.skills)))
     for bundle in deployment.bundles:
         for name, data in sorted(files_of_bundle(bundle, deployment.file.leave_out).items()):
             whole.update(f"{len(name)}:{name}:{len(data)}:".encode() + data)

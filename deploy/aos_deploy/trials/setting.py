@@ -9,8 +9,10 @@ import msgspec
 from ruamel.yaml import YAML
 
 from aos_deploy.adapters import played_by_model
+from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file
 from aos_protocol.errors import DeployError
+from aos_solver.played_faults import PlayedFaults
 
 __all__ = ["Player", "Setting", "deployment_of"]
 
@@ -23,8 +25,8 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     """`bundles` stand in place of the deploy file's; `simulations` and `step_limit` too.
 
     `unconstrained` leaves out the deploy file's constraints. `faults` are values for the world file's
-    `faults`, for a simulated world. With a `script` its actions are carried out in that world, one after the
-    other, and nothing is planned.
+    `faults` in a simulated world, and those of `PlayedFaults` where the model plays in a whole system. With a
+    `script` its actions are carried out in the simulated world, one after the other, and nothing is planned.
     """
 
     deploy: str
@@ -61,7 +63,9 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
         deployment = msgspec.structs.replace(deployment, bundles=bundles)
     deployment = msgspec.structs.replace(deployment, file=file)
     if setting.by == "system-model":
-        return msgspec.structs.replace(deployment, adapters=played_by_model())
+        if setting.faults:
+            PlayedFaults(setting.faults).check(skill.name for skill in project_of(deployment).skills)
+        return msgspec.structs.replace(deployment, adapters=played_by_model(setting.faults))
     if setting.faults:
         return _with_faults(deployment, setting, out)
     return deployment
@@ -70,7 +74,10 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
 def _with_faults(deployment: Deployment, setting: Setting, out: Path) -> Deployment:
     """The deployment with a world file whose faults are other ones."""
     if deployment.world is None or setting.by != "system":
-        hint = "Faults are those of the deploy file's `world:`, in missions that are run `by: system`"
+        hint = (
+            "Faults are those of the deploy file's `world:` in missions `by: system`, or those of skills in "
+            "missions `by: system-model`"
+        )
         raise DeployError(f"{setting.deploy}: there is no simulated world to have faults", hint=hint)
     yaml = YAML(typ="safe", pure=True)
     world: dict[str, Any] = yaml.load(deployment.world.read_text(encoding="utf-8"))

@@ -3,7 +3,7 @@
 All skills that are bound to it share one hidden true state, drawn from the initial belief by the mission's
 seed and stepped by the model, as `aos simulate` does it. A call answers with the observation itself. The
 truth of each step is in `<run>/<adapter>.jsonl`; the planner is not told. A process that starts again plays
-the steps of that file once more, and so comes to the same state.
+the steps of that file once more, and so comes to the same state. With the option `faults` some calls fail.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from aos_protocol.messages import ProjectRevision
 from aos_runtime.adapters import Call, Host, Observed
 from aos_solver.child.engine import Engine
 from aos_solver.hot_plug import build_project
+from aos_solver.played_faults import FAILED_CALL, LOST_RESULT, NO_ANSWER, PlayedFaults
 
 __all__ = ["ModelAdapter", "PlayedStep"]
 
@@ -27,13 +28,17 @@ _log = logging.getLogger("aos.model")
 
 
 class PlayedStep(msgspec.Struct, frozen=True):
-    """One line of the file: what was done, what came of it, and the state after it as text."""
+    """One line of the file: what was done, what came of it, and the state after it as text.
+
+    Its `fault` is what the mission was told in place of the response.
+    """
 
     action: str
     response: str
     reward: float
     ending: str
     state: str
+    fault: str = ""
 
 
 class _World(msgspec.Struct, frozen=True):
@@ -53,6 +58,7 @@ class ModelAdapter:
         self._host = host
         self._cache_dir = Path(host.options["cache_dir"])
         self._file = host.run_dir / f"{host.name}.jsonl"
+        self._faults = PlayedFaults(host.options.get("faults", {}))
         self._played: list[str] = []
         self._world: _World | None = None
         self._following: asyncio.Task[None] | None = None
@@ -62,13 +68,22 @@ class ModelAdapter:
         """Documents come after everything has started; a model takes its time to be compiled."""
         if self._file.exists():
             lines = self._file.read_bytes().splitlines()
-            self._played = [msgspec.json.decode(line, type=PlayedStep).action for line in lines]
+            steps = [msgspec.json.decode(line, type=PlayedStep) for line in lines]
+            self._played = [step.action for step in steps if step.fault != FAILED_CALL]
         self._following = asyncio.create_task(self._follow())
 
     async def call(self, call: Call) -> Observed:
-        """A step of the hidden state."""
+        """A step of the hidden state; SkillError where a fault was drawn for it."""
+        fault = self._faults.drawn(call.skill, self._host.seed, call.id.step)
         # A step takes far less than its cancellation could: it is done or not begun.
-        return await asyncio.shield(self._step(call))
+        observed = await asyncio.shield(self._step(call, fault))
+        if fault == FAILED_CALL:
+            raise SkillError(f"{call.skill} has failed, as the test wants it", code="AOS510")
+        if fault == LOST_RESULT:
+            raise SkillError(f"the result of {call.skill} is lost, as the test wants it", code="AOS504")
+        if fault == NO_ANSWER:
+            await asyncio.Event().wait()
+        return observed
 
     async def close(self) -> None:
         if self._following is not None:
@@ -77,20 +92,25 @@ class ModelAdapter:
         if self._world is not None:
             await self._world.engine.close()
 
-    async def _step(self, call: Call) -> Observed:
+    async def _step(self, call: Call, fault: str) -> Observed:
         async with self._changing:
             world = self._world
             if world is None:
                 raise SkillError("the model is not ready", code="AOS505")
             index = _index(world, call)
-            step = await world.engine.step_world(index)
-            state = await world.engine.world_state()
-        name = world.names[index]
-        self._played.append(name)
-        played = PlayedStep(name, step.response, step.reward, step.ending, state)
+            name = world.names[index]
+            if fault == FAILED_CALL:
+                played = PlayedStep(name, "", 0.0, "", await world.engine.world_state(), fault)
+                numbers: dict[str, Any] = {}
+            else:
+                step = await world.engine.step_world(index)
+                state = await world.engine.world_state()
+                played = PlayedStep(name, step.response, step.reward, step.ending, state, fault)
+                numbers = step.numbers
+                self._played.append(name)
         with self._file.open("ab") as file:
             file.write(msgspec.json.encode(played) + b"\n")
-        return Observed(step.response, step.numbers)
+        return Observed(played.response, numbers)
 
     async def _follow(self) -> None:
         async for revision in self._host.revisions():
