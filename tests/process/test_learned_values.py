@@ -54,6 +54,85 @@ code = __input.code
 }
 """Each of 24 boxes may hold one coin: sixteen million states."""
 
+COINS = {
+    "coins.ef": """project: boxes
+horizon: 40
+discount: 0.95
+
+state_variable: bool full []
+code:
+state.full.assign(40, false);
+
+state_variable: int left
+code:
+state.left = 4;
+
+initial_belief:
+for (int i = 0; i < 4; i++) {
+    int box = AOSUtils::SampleDiscrete(vector<double>(40, 1.0 / 40));
+    while (state.full[box]) box = (box + 1) % 40;
+    state.full[box] = true;
+}
+
+reward_code:
+if (state.left == 0) {
+    __reward = 10;
+    __isGoalState = true;
+}
+""",
+    "open.sd": BOXES["open.sd"]
+    .replace("i < 24", "i < 40")
+    .replace("state.full[box] ? 1 : 0;", "-1;\nstate__.left -= state.full[box];"),
+    "open.am": BOXES["open.am"],
+}
+"""Four of 40 boxes hold a coin, and an opening costs 1: what a state is worth follows from how many coins are left."""
+
+BERRIES = {
+    "berries.ef": """project: berries
+horizon: 20
+discount: 0.95
+
+state_variable: int at
+state_variable: int berries
+
+initial_belief:
+for (int i = 0; i < 24; i++) state.berries |= int(AOS.Bernoulli(0.5)) << i;
+""",
+    "go.sd": """project: berries
+parameter: int by
+
+available_parameters_code:
+__possibleParameters.push_back(std::make_tuple(-1));
+__possibleParameters.push_back(std::make_tuple(1));
+
+dynamic_model:
+state__.at = (state.at + by + 24) % 24;
+bool picked = state.berries >> state__.at & 1;
+state__.berries &= ~(1 << state__.at);
+__reward = picked;
+__moduleResponse = picked ? found : nothing;
+""",
+    "go.am": BOXES["open.am"]
+    .replace("project: boxes", "project: berries")
+    .replace("/open", "/go")
+    .replace("box", "by"),
+}
+"""A ring of 24 bushes, of which a number has a bit each: no table of few values tells where the berries are."""
+
+
+async def _why(documents: dict[str, str], cache_dir: Path) -> str:
+    built = await built_text(documents, cache_dir)
+    async with engine_of(built) as engine:
+        return (await engine.plan(simulations=500, seed=3, planner="pomcp")).why
+
+
+async def test_values_are_learned_where_tables_of_few_variables_hold_them(cache_dir: Path) -> None:
+    assert "what states are worth is learned" in await _why(COINS, cache_dir)
+
+
+async def test_rollouts_stay_where_a_policy_by_rollouts_earns_as_much(cache_dir: Path) -> None:
+    assert "learned" not in await _why(BERRIES, cache_dir)
+
 
 async def test_the_same_seed_learns_the_same(cache_dir: Path) -> None:
     built = await built_text(BOXES, cache_dir)

@@ -5,9 +5,10 @@
 // is simulated once from each example, all of them under the same luck. A sweep values each example by its best action,
 // as chosen by one half of the examples and valued by the other, since the best of many estimates is too high.
 //
-// What was learned is tested before it is used: a policy that observes the state and goes by the values has to earn at least
-// half of what they promise beyond what play at random earns. Values fail by counting the same income twice; then nothing
-// like it is earned.
+// What was learned is tested before it is used, by a policy that observes the state and goes by the values. It has to earn at
+// least half of what they promise beyond what play at random earns: values fail by counting the same income twice; then
+// nothing like it is earned. And it has to earn more than a policy that goes by a few rollouts after each action (Bertsekas and
+// Castanon, 1999): where it does not, a search is better off with rollouts.
 #pragma once
 
 #include <algorithm>
@@ -69,6 +70,9 @@ class LearnedValues {
   static constexpr int sweeps = 30;
   static constexpr int max_compared = 24;  // actions, of which a walk takes the best
   static constexpr int tests = 64;
+  static constexpr int max_rollouts = 32;  // before a decision, of all actions together
+  static constexpr std::size_t max_compared_steps = 2'000'000;
+  static constexpr double min_compared_missions = 4;
 
   struct Successor {
     float reward;
@@ -85,7 +89,7 @@ class LearnedValues {
       for (int sweep = 0; sweep < std::min(sweeps, horizon_); ++sweep) improve();
       used_ = tables_.used_variables();
     }
-    is_usable_ = keeps_its_promise(belief, random);
+    is_usable_ = keeps_its_promise(belief, random) && beats_rollouts(belief, random);
   }
 
   // --- examples --------------------------------------------------------------------------------------
@@ -125,18 +129,23 @@ class LearnedValues {
   }
   int best_action(const State& state, int left, Sampler& random) const {
     const Sampler luck{random.bits()};
+    return best_by([&](int action) { return action_value(state, action, left, luck); }, random);
+  }
+  template <class Worth>
+  static int best_by(Worth&& worth_of, Sampler& random) {
     const bool compares_all = Model::action_count() <= max_compared;
     int best = 0;
     double most = -std::numeric_limits<double>::infinity();
-    for (int i = 0; i < std::min(Model::action_count(), max_compared); ++i) {
+    for (int i = 0; i < compared(); ++i) {
       const int action = compares_all ? i : random.below(Model::action_count());
-      const double worth = action_value(state, action, left, luck);
+      const double worth = worth_of(action);
       if (worth <= most) continue;
       most = worth;
       best = action;
     }
     return best;
   }
+  static int compared() { return std::min(Model::action_count(), max_compared); }
 
   // Those that differ among the examples.
   bool find_variables() {
@@ -208,17 +217,64 @@ class LearnedValues {
     double earned = 0;
     double at_random = 0;
     for (int test = 0; test < tests; ++test) {
-      State state = belief.sample(random);
+      const State& state = belief.sample(random);
       if (Model::ending(state) != Ending::running) continue;
       promised += value(state, horizon_);
       at_random += Model::rollout(state, horizon_, random);
-      double discount = 1;
-      for (int left = horizon_; left > 0 && Model::ending(state) == Ending::running; --left) {
-        earned += discount * Model::step(state, best_action(state, left, random), random).reward;
-        discount *= Model::discount;
-      }
+      earned += earned_by_values(state, random);
     }
     return earned > at_random && earned >= (promised + at_random) / 2;
+  }
+
+  // From the same states, by more than twice the standard error of the difference.
+  bool beats_rollouts(const Belief<Model>& belief, Sampler& random) const {
+    double count = 0;
+    double sum = 0;
+    double squares = 0;
+    std::size_t steps = 0;
+    for (int test = 0; test < tests && steps < max_compared_steps; ++test) {
+      const State& state = belief.sample(random);
+      if (Model::ending(state) != Ending::running) continue;
+      const double difference = earned_by_values(state, random) - earned_by_rollouts(state, random, steps);
+      ++count;
+      sum += difference;
+      squares += difference * difference;
+    }
+    if (count < min_compared_missions) return false;
+    const double mean = sum / count;
+    const double variance_of_mean = std::max(squares / count - mean * mean, 0.0) / (count - 1);
+    return mean > 2 * std::sqrt(variance_of_mean);
+  }
+
+  // The discounted return of one mission that sees its state.
+  template <class Choice>
+  double earned_by(State state, Choice&& choice, Sampler& random) const {
+    double earned = 0;
+    double discount = 1;
+    for (int left = horizon_; left > 0 && Model::ending(state) == Ending::running; --left) {
+      earned += discount * Model::step(state, choice(state, left), random).reward;
+      discount *= Model::discount;
+    }
+    return earned;
+  }
+  double earned_by_values(const State& state, Sampler& random) const {
+    return earned_by(state, [&](const State& now, int left) { return best_action(now, left, random); }, random);
+  }
+  double earned_by_rollouts(const State& state, Sampler& random, std::size_t& steps) const {
+    const int rollouts = std::max(1, max_rollouts / compared());
+    const auto worth = [&](const State& now, int action, int left) {
+      double sum = 0;
+      for (int i = 0; i < rollouts; ++i) {
+        State next = now;
+        sum += Model::step(next, action, random).reward + Model::discount * Model::rollout(next, left - 1, random);
+        steps += static_cast<std::size_t>(left);
+      }
+      return sum;
+    };
+    const auto choice = [&](const State& now, int left) {
+      return best_by([&](int action) { return worth(now, action, left); }, random);
+    };
+    return earned_by(state, choice, random);
   }
 
   bool has_tried_ = false;
