@@ -67,6 +67,12 @@ def test_a_crate_in_the_way_is_gone_around(make: Make) -> None:
     assert world.visits == ["l1"]
 
 
+def test_from_beside_a_crate_it_drives_away(make: Make) -> None:
+    world = make(crates={"beside": Crate(-1.44, -1.7)})
+    assert go(world, -1.6, -0.5)
+    assert world.visits == ["l1"]
+
+
 def test_while_it_turns_it_sees_nothing_but_what_is_on_the_map(make: Make) -> None:
     """Whoever else reads the lidar, too."""
     world = make()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,8 @@ __all__ = ["navigate"]
 MAX_PLANS = 12
 UNMAPPED_M = 0.12
 """What the lidar sees further than this from everything on the map is something new."""
+LEAVE_M = 0.1
+"""A way may begin too near to something, up to here: the robot stands there already, and has to leave."""
 
 
 def navigate(world: Turtlebot, fields: dict[str, Any]) -> dict[str, Any]:
@@ -47,7 +50,8 @@ def _arrives(world: Turtlebot, goal: Point) -> bool:
         if len(new) == 0:
             return True
         floor_map.add(np.unique(np.round(new / 0.03) * 0.03, axis=0))
-        return floor_map.is_free(np.array(left))
+        ahead = [point for point in left if math.dist(point, robot.place[:2]) > LEAVE_M]
+        return not ahead or floor_map.is_free(np.array(ahead))
 
     for _ in range(MAX_PLANS):
         way = floor_map.way(robot.place[:2], goal)
