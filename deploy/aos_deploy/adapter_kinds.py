@@ -54,7 +54,7 @@ _KINDS = {
         extra="sim",
     ),
     MODEL: Kind(
-        adapter="aos_solver.model_adapter:ModelAdapter",
+        adapter="aos_deploy.model_adapter:ModelAdapter",
         value="note",
         ready_s=600.0,  # It compiles the model.
     ),

@@ -7,9 +7,9 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 from aos_deploy.formats.sensing_by_state import NEVER, SensingByState, with_sensing_by_state
+from aos_deploy.formats.symbols import symbols
 from aos_protocol.errors import PlanningError
 from aos_solver.offline.explicit_model import ExplicitModel
-from aos_solver.offline.symbols import symbols
 
 __all__ = ["WRITERS", "write_problem"]
 
