@@ -35,19 +35,19 @@ struct OnlineSarsop::Solver {
   // The nearer the discount is to 1, the less is lost by putting off what can be had now; the gap has to be less.
   double precision() const {
     const double size = std::max(std::abs(sarsop.lower()), std::abs(sarsop.upper()));
-    return std::max(closed_share * std::min(1.0, 20 * (1 - model.discount)) * size, sarsop.noise());
+    return std::max(closed_share * std::min(1.0, 20 * (1 - model.discount)) * size, sarsop.graph().noise());
   }
   bool is_closed() const { return sarsop.upper() - sarsop.lower() <= precision(); }
 
-  double above() const { return outlook.above(sarsop.min_value()); }
-  double below() const { return outlook.below(sarsop.max_value()); }
+  double above() const { return outlook.above(sarsop.graph().min_value()); }
+  double below() const { return outlook.below(sarsop.graph().max_value()); }
 
   // `trial` returns whether there is more to find out.
   template <class Trial>
   std::uint64_t repeat(std::uint64_t max_work, const IsOver& is_over, Trial&& trial) {
-    const std::uint64_t before = sarsop.work();
-    while (trial() && (max_work == 0 || sarsop.work() - before < max_work) && !is_over()) {}
-    return sarsop.work() - before;
+    const std::uint64_t before = sarsop.graph().work();
+    while (trial() && (max_work == 0 || sarsop.graph().work() - before < max_work) && !is_over()) {}
+    return sarsop.graph().work() - before;
   }
 
   FlatModel model;

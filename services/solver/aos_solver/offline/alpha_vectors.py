@@ -1,18 +1,29 @@
-"""Alpha vectors: for every plan that was found, its value in every state."""
+"""Alpha vectors: for every plan that was found, its value in every state.
+
+In a file they come after a line of JSON that has the sizes of the regions, as little-endian arrays without
+gaps: for every region, in the line's order, u32 states[states], u32 actions[vectors], and f64
+values[vectors][states].
+"""
 
 from __future__ import annotations
 
-from pathlib import Path
+from collections.abc import Sequence
+from typing import Any, Self
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
-from aos_protocol.errors import PlanningError
 from aos_solver.offline.explicit_model import Floats, Integers
 
-__all__ = ["AlphaVectors", "Choice", "RegionVectors", "read_alpha_vectors"]
+__all__ = ["AlphaVectors", "Choice", "RegionSize", "RegionVectors"]
 
-_MARK = b"AOSALPH1"
+
+class RegionSize(msgspec.Struct, frozen=True):
+    """How many states a region has, and how many vectors."""
+
+    states: int
+    vectors: int
 
 
 class RegionVectors(msgspec.Struct, frozen=True):
@@ -44,6 +55,38 @@ class AlphaVectors(msgspec.Struct, frozen=True):
     action_count: int
     regions: tuple[RegionVectors, ...]
 
+    @classmethod
+    def of_bytes(cls, action_count: int, sizes: Sequence[RegionSize], data: bytes) -> Self:
+        """Those of a file behind its line; ValueError if the length is wrong."""
+        regions, place = [], 0
+
+        def take(kind: str, count: int) -> NDArray[Any]:
+            nonlocal place
+            array = np.frombuffer(data, kind, count, place)
+            place += array.nbytes
+            return array
+
+        for size in sizes:
+            states = take("<u4", size.states).astype(np.int64)
+            actions = take("<u4", size.vectors).astype(np.int64)
+            values = take("<f8", size.states * size.vectors).reshape(size.vectors, size.states)
+            regions.append(RegionVectors(states, actions, values))
+        if place != len(data):
+            raise ValueError("its length is wrong")
+        return cls(action_count, tuple(regions))
+
+    def to_bytes(self) -> bytes:
+        """What a file has behind its line."""
+        return b"".join(
+            array.astype(kind).tobytes()
+            for region in self.regions
+            for array, kind in ((region.states, "<u4"), (region.actions, "<u4"), (region.values, "<f8"))
+        )
+
+    @property
+    def sizes(self) -> tuple[RegionSize, ...]:
+        return tuple(RegionSize(len(region.states), len(region.actions)) for region in self.regions)
+
     @property
     def count(self) -> int:
         return sum(len(region.actions) for region in self.regions)
@@ -73,38 +116,3 @@ class AlphaVectors(msgspec.Struct, frozen=True):
             values += best
             plans += np.bincount(region.actions, minlength=self.action_count)
         return Choice(int(np.argmax(values)), values, plans)
-
-
-def read_alpha_vectors(path: Path, action_count: int) -> AlphaVectors:
-    """What the solver has written; `cpp/policy_file.hpp` describes it."""
-    data = path.read_bytes()
-    if not data.startswith(_MARK):
-        raise PlanningError(f"{path} holds no alpha vectors", code="AOS321")
-    place = len(_MARK)
-
-    def take(kind: str, count: int) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-        nonlocal place
-        array = np.frombuffer(data, kind, count, place)
-        place += array.nbytes
-        return array.astype(np.int64)
-
-    regions, states, vectors = (int(number) for number in take("<u8", 3))
-    first = take("<u8", regions + 1)
-    listed = take("<u4", states)
-    actions: list[list[int]] = [[] for _ in range(regions)]
-    values: list[list[Floats]] = [[] for _ in range(regions)]
-    for _ in range(vectors):
-        region, action = (int(number) for number in take("<u4", 2))
-        length = int(first[region + 1] - first[region])
-        actions[region].append(action)
-        values[region].append(np.frombuffer(data, "<f8", length, place))
-        place += 8 * length
-    return AlphaVectors(
-        action_count,
-        tuple(
-            RegionVectors(
-                listed[first[number] : first[number + 1]], np.array(actions[number]), np.array(values[number])
-            )
-            for number in range(regions)
-        ),
-    )

@@ -12,7 +12,7 @@ import numpy as np
 from aos_protocol.errors import IntractableError
 from aos_solver.child.answers import Listed
 from aos_solver.child.engine import Engine
-from aos_solver.offline.explicit_model import ExplicitModel, FlatModel, Integers, Ragged, read_flat
+from aos_solver.offline.explicit_model import ExplicitModel, FlatModel, Floats, read_flat, with_more_outcomes
 
 __all__ = ["ENDED", "MAX_STATES", "Enumeration", "enumerate_model"]
 
@@ -79,19 +79,9 @@ def _with_an_end(
     """
     ended, rows = numbers.rewards.shape[0], numbers.outcomes.row_numbers
     row_count = (ended + 1) * len(actions)
-    missing = 1 - np.bincount(rows, numbers.outcomes.probabilities, row_count)
+    missing: Floats = (1 - np.bincount(rows, numbers.outcomes.probabilities, row_count)).astype(np.float64)
     ending = np.flatnonzero(missing > _NEXT_TO_NOTHING)
-    silent = len(numbers.likelihoods)
-    rows = np.r_[rows, ending]
-    order = np.argsort(rows, kind="stable")
-
-    def joined(known: Integers, value: int) -> Integers:
-        together: Integers = np.r_[known, np.full(len(ending), value)]
-        return together[order]
-
-    first = np.searchsorted(rows[order], np.arange(row_count + 1))
-    probabilities = np.r_[numbers.outcomes.probabilities, missing[ending]][order]
-    likelihoods = numbers.likelihoods
+    outcomes, sensings = with_more_outcomes(numbers, rows, row_count, ending, ended, missing[ending])
     return ExplicitModel(
         name=name,
         discount=numbers.discount,
@@ -99,12 +89,8 @@ def _with_an_end(
         actions=actions,
         observations=(*observations, ENDED),
         rewards=np.vstack([numbers.rewards, np.zeros((1, len(actions)))]),
-        outcomes=Ragged(first, joined(numbers.outcomes.numbers, ended), probabilities),
-        sensings=joined(numbers.sensings, silent),
-        likelihoods=Ragged(
-            np.r_[likelihoods.first, likelihoods.first[-1] + 1],
-            np.r_[likelihoods.numbers, len(observations)],
-            np.r_[likelihoods.probabilities, 1.0],
-        ),
+        outcomes=outcomes,
+        sensings=sensings,
+        likelihoods=numbers.likelihoods.with_certain_row(len(observations)),
         starts=numbers.starts,
     )

@@ -9,12 +9,23 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ExplicitModel", "FlatModel", "Floats", "ModelSize", "Ragged", "StartBelief", "read_flat"]
+__all__ = [
+    "ExplicitModel",
+    "FlatModel",
+    "Floats",
+    "ModelSize",
+    "Ragged",
+    "StartBelief",
+    "read_flat",
+    "with_more_outcomes",
+]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _MARK = b"AOSFLAT1"
+_ENTRY = np.dtype([("number", "<u4"), ("sensing", "<u4"), ("probability", "<f8")])
+"""An element of a row in a file. Only outcomes have a sensing."""
 
 
 class Ragged(msgspec.Struct, frozen=True):
@@ -26,6 +37,18 @@ class Ragged(msgspec.Struct, frozen=True):
 
     def __len__(self) -> int:
         return len(self.first) - 1
+
+    def with_certain_row(self, number: int) -> Ragged:
+        """With one row more, which has this number alone."""
+        first = np.r_[self.first, self.first[-1] + 1]
+        return Ragged(first, np.r_[self.numbers, number], np.r_[self.probabilities, 1.0])
+
+    def entries(self, sensings: Integers | int = 0) -> NDArray[Any]:
+        """The elements as they stand in a file."""
+        entries = np.empty(len(self.numbers), _ENTRY)
+        entries["number"], entries["sensing"] = self.numbers, sensings
+        entries["probability"] = self.probabilities
+        return entries
 
     def row(self, index: int) -> tuple[Integers, Floats]:
         """The numbers of a row and their probabilities."""
@@ -103,18 +126,36 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
                 ([self.discount], "<f8"),
                 (self.rewards, "<f8"),
                 (self.outcomes.first, "<u8"),
-                (self.outcomes.numbers, "<u4"),
-                (self.sensings, "<u4"),
-                (self.outcomes.probabilities, "<f8"),
+                (self.outcomes.entries(self.sensings), _ENTRY),
                 (self.likelihoods.first, "<u8"),
-                (self.likelihoods.numbers, "<u4"),
-                (self.likelihoods.probabilities, "<f8"),
+                (self.likelihoods.entries(), _ENTRY),
                 ([start.weight for start in self.starts], "<f8"),
                 (starts.first, "<u8"),
-                (starts.numbers, "<u4"),
-                (starts.probabilities, "<f8"),
+                (starts.entries(), _ENTRY),
             ):
                 np.asarray(array).astype(kind).tofile(file)
+
+
+def with_more_outcomes(
+    model: ExplicitModel | FlatModel,
+    rows: Integers,
+    row_count: int,
+    more: Integers,
+    state: int,
+    chances: Floats,
+) -> tuple[Ragged, Integers]:
+    """The model's outcomes and their sensings, with new numbers of their `rows`.
+
+    In each of the rows `more` there is one outcome more, which leads to `state`. What is observed then has a
+    sensing of its own, after the model's.
+    """
+    rows = np.r_[rows, more]
+    order = np.argsort(rows, kind="stable")
+    first = np.searchsorted(rows[order], np.arange(row_count + 1))
+    numbers = np.r_[model.outcomes.numbers, np.full(len(more), state)]
+    sensings = np.r_[model.sensings, np.full(len(more), len(model.likelihoods))]
+    probabilities = np.r_[model.outcomes.probabilities, chances]
+    return Ragged(first, numbers[order], probabilities[order]), sensings[order]
 
 
 class FlatModel(msgspec.Struct, frozen=True, kw_only=True):
@@ -133,24 +174,28 @@ def read_flat(path: Path) -> FlatModel:
     data = path.read_bytes()
     place = len(_MARK)
 
-    def take(kind: str, count: int) -> NDArray[Any]:
+    def take(kind: Any, count: int) -> NDArray[Any]:
         nonlocal place
         array = np.frombuffer(data, kind, count, place)
         place += array.nbytes
-        return array.astype(np.float64 if kind == "<f8" else np.int64)
+        return array
+
+    def rows(count: int, entries: int) -> tuple[Ragged, Integers]:
+        first, found = take("<u8", count + 1).astype(np.int64), take(_ENTRY, entries)
+        numbers, sensings = found["number"].astype(np.int64), found["sensing"].astype(np.int64)
+        return Ragged(first, numbers, found["probability"].copy()), sensings
 
     states, actions, _, outcomes, sensings, likelihoods, starts, entries = map(int, take("<u8", 8))
     discount = float(take("<f8", 1)[0])
     rewards = take("<f8", states * actions).reshape(states, actions)
-    first, after = take("<u8", states * actions + 1), take("<u4", outcomes)
-    sensing_of, probabilities = take("<u4", outcomes), take("<f8", outcomes)
-    sensed = Ragged(take("<u8", sensings + 1), take("<u4", likelihoods), take("<f8", likelihoods))
+    found, sensing_of = rows(states * actions, outcomes)
+    sensed, _ = rows(sensings, likelihoods)
     weights = take("<f8", starts)
-    beliefs = Ragged(take("<u8", starts + 1), take("<u4", entries), take("<f8", entries))
+    beliefs, _ = rows(starts, entries)
     return FlatModel(
         discount=discount,
         rewards=rewards,
-        outcomes=Ragged(first, after, probabilities),
+        outcomes=found,
         sensings=sensing_of,
         likelihoods=sensed,
         starts=tuple(StartBelief(float(weights[i]), *beliefs.row(i)) for i in range(starts)),

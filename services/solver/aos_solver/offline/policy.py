@@ -1,7 +1,6 @@
 """A solved policy as a file, and a mission that follows it.
 
-A `.policy` file is a line of JSON (`PolicyHeader`), and after it little-endian arrays without gaps: for every
-region, in the header's order, u32 states[states], u32 actions[vectors], f64 values[vectors][states].
+A `.policy` file is a line of JSON (`PolicyHeader`), and after it the alpha vectors (`alpha_vectors.py`).
 """
 
 from __future__ import annotations
@@ -19,18 +18,12 @@ from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue
 from aos_solver.child.answers import ExportedBelief, Plan
 from aos_solver.child.engine import Engine
-from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionVectors
-from aos_solver.offline.explicit_model import Floats
+from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionSize
 from aos_solver.search import Search
 
 __all__ = ["FORMAT", "Policy", "PolicyHeader", "PolicySearch"]
 
 FORMAT = "aos-policy-2"
-
-
-class _RegionSize(msgspec.Struct, frozen=True):
-    states: int
-    vectors: int
 
 
 class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
@@ -51,7 +44,7 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     stop_value: float | None = None
     actions: tuple[str, ...]
     states: tuple[str, ...]
-    regions: tuple[_RegionSize, ...] = ()
+    regions: tuple[RegionSize, ...] = ()
 
 
 class Policy(msgspec.Struct, frozen=True, dict=True):
@@ -62,15 +55,9 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
 
     def save(self, path: Path) -> None:
         """Writes the file; PlanningError AOS321 if it cannot be."""
-        parts = self.vectors.regions
-        sizes = tuple(_RegionSize(len(part.states), len(part.actions)) for part in parts)
+        header = msgspec.structs.replace(self.header, regions=self.vectors.sizes)
         try:
-            with path.open("wb") as file:
-                file.write(msgspec.json.encode(msgspec.structs.replace(self.header, regions=sizes)) + b"\n")
-                for part in parts:
-                    file.write(part.states.astype("<u4").tobytes())
-                    file.write(part.actions.astype("<u4").tobytes())
-                    file.write(part.values.astype("<f8").tobytes())
+            path.write_bytes(msgspec.json.encode(header) + b"\n" + self.vectors.to_bytes())
         except OSError as error:
             raise PlanningError(f"cannot write {path}: {error.strerror}", code="AOS321") from error
 
@@ -82,7 +69,7 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
             header = msgspec.json.decode(line, type=PolicyHeader)
             if header.format != FORMAT:
                 raise ValueError(f"its format is {header.format}")
-            return cls(header, _vectors(header, data))
+            return cls(header, AlphaVectors.of_bytes(len(header.actions), header.regions, data))
         except OSError as error:
             raise PlanningError(f"cannot read {path}: {error.strerror}", code="AOS321") from error
         except (msgspec.MsgspecError, ValueError) as error:
@@ -117,25 +104,6 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
             message = "the policy knows no state of the belief in which the mission goes on"
             raise PlanningError(message, code="AOS322")
         return self.vectors.choose(weights)
-
-
-def _vectors(header: PolicyHeader, data: bytes) -> AlphaVectors:
-    regions, place = [], 0
-
-    def take(kind: str, count: int) -> Floats:
-        nonlocal place
-        array = np.frombuffer(data, kind, count, place)
-        place += array.nbytes
-        return array
-
-    for size in header.regions:
-        states = take("<u4", size.states).astype(np.int64)
-        actions = take("<u4", size.vectors).astype(np.int64)
-        values = take("<f8", size.states * size.vectors).reshape(size.vectors, size.states)
-        regions.append(RegionVectors(states, actions, values))
-    if place != len(data):
-        raise ValueError("its length is wrong")
-    return AlphaVectors(len(header.actions), tuple(regions))
 
 
 class PolicySearch(Search, frozen=True, kw_only=True):

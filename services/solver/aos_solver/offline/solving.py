@@ -12,7 +12,7 @@ import msgspec
 
 from aos_protocol.errors import ModelError, PlanningError
 from aos_runtime.children import PIPE, Child, Limits, guarded
-from aos_solver.offline.alpha_vectors import AlphaVectors, read_alpha_vectors
+from aos_solver.offline.alpha_vectors import AlphaVectors, RegionSize
 from aos_solver.offline.explicit_model import ExplicitModel
 from aos_solver.offline.solver_program import build_solver
 
@@ -56,6 +56,12 @@ class Solution(msgspec.Struct, frozen=True):
     vectors: AlphaVectors
 
 
+class _Regions(msgspec.Struct, frozen=True):
+    """The line before the vectors in the solver's file."""
+
+    regions: tuple[RegionSize, ...]
+
+
 async def solve(
     model: ExplicitModel,
     limits: SolvingLimits,
@@ -76,7 +82,9 @@ async def solve(
         numbers = [repr(limits.precision), repr(limits.cpu_s), str(limits.memory_bytes)]
         command = [str(executable), str(flat), str(found), *numbers]
         history = await _run(command, on_progress, stop or asyncio.Event())
-        vectors = read_alpha_vectors(found, len(model.actions))
+        line, _, data = found.read_bytes().partition(b"\n")
+        sizes = msgspec.json.decode(line, type=_Regions).regions
+        vectors = AlphaVectors.of_bytes(len(model.actions), sizes, data)
     return Solution(history[-1], tuple(history), vectors)
 
 

@@ -61,16 +61,13 @@ class LowerBound {
  public:
   // Those of an action in the order of their lengths.
   void add_blind(AlphaVector vector) {
-    vectors_.push_back(std::move(vector));
+    add_initial(std::move(vector));
     ++blind_;
-    ++initial_;
-    ++kept_;
   }
   // After the blind ones, one for each state of the region or none at all.
   void add_initial(AlphaVector vector) {
-    vectors_.push_back(std::move(vector));
+    add(std::move(vector));
     ++initial_;
-    ++kept_;
   }
   void add(AlphaVector vector) {
     vectors_.push_back(std::move(vector));

@@ -95,19 +95,23 @@ class CertaintyEquivalent {
         rewards_.push_back(move.rewards[truth]);
         first_step_.push_back(steps_.size());
         for (const auto& flow : move.flows[truth]) {
-          for (const Step& step : of_target_[flow.target]) add_step(step.pair, flow.probability * step.probability);
+          for (const Step& step : of_target_[flow.target]) {
+            add(steps_, first_step_.back(), {step.pair, flow.probability * step.probability});
+          }
         }
       }
     }
     if (number + 1 == regions_.all.size()) first_step_.push_back(steps_.size());
   }
-  void add_step(std::size_t pair, double probability) {
-    for (std::size_t i = first_step_.back(); i < steps_.size(); ++i) {
-      if (steps_[i].pair != pair) continue;
-      steps_[i].probability += probability;
-      return;
+  // To the step with the same pair, if there is one from `first` on.
+  static void add(std::vector<Step>& steps, std::size_t first, const Step& step) {
+    const auto is_it = [&](const Step& known) { return known.pair == step.pair; };
+    const auto known = std::find_if(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(), is_it);
+    if (known == steps.end()) {
+      steps.push_back(step);
+    } else {
+      known->probability += step.probability;
     }
-    steps_.push_back({pair, probability});
   }
 
   // For every target of a move the pairs of states that follow, where `taken` is taken for granted.
@@ -122,14 +126,7 @@ class CertaintyEquivalent {
       const std::size_t size = regions_.all[observation_branch.region].states.size();
       const std::size_t first = first_of_[observation_branch.region] + likeliest(observation_branch) * size;
       for (const ObservationBranch::Successor& successor : observation_branch.successors) {
-        std::vector<Step>& steps = of_target_[successor.target];
-        const std::size_t pair = first + successor.local;
-        const auto known = std::find_if(steps.begin(), steps.end(), [&](const Step& step) { return step.pair == pair; });
-        if (known == steps.end()) {
-          steps.push_back({pair, successor.probability});
-        } else {
-          known->probability += successor.probability;
-        }
+        add(of_target_[successor.target], 0, {first + successor.local, successor.probability});
       }
     }
   }

@@ -34,7 +34,7 @@ struct Rows {
   std::vector<Element> elements;
 
   const Element* begin(std::size_t row) const { return elements.data() + first[row]; }
-  const Element* end(std::size_t row) const { return elements.data() + first[row + 1]; }
+  const Element* end(std::size_t row) const { return begin(row + 1); }
   std::span<const Element> operator[](std::size_t row) const { return {begin(row), end(row)}; }
 };
 
@@ -50,6 +50,10 @@ struct FlatModel {
   std::vector<Start> starts;
 
   std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }
+  // Of all actions in a state.
+  std::span<const Outcome> outcomes_of(std::size_t state) const {
+    return {outcomes.begin(row(state, 0)), outcomes.end(row(state, actions - 1))};
+  }
   // What a row's next states are worth on average, by their values.
   double later_value(std::size_t row, const std::vector<double>& values) const {
     double sum = 0;

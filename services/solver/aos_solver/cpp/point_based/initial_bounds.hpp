@@ -316,22 +316,21 @@ class InitialBounds {
   // The sum, and the size of what was added up.
   std::pair<double, double> informed_later(std::size_t row, const ActionValues& values, Gathered& gathered) const {
     const std::size_t actions = model_.actions;
-    const auto* const first_outcome = model_.outcomes.begin(row);
-    const auto* const last_outcome = model_.outcomes.end(row);
-    if (last_outcome - first_outcome == 1) {  // no observation tells more
-      const double later = first_outcome->probability * best_of(values, first_outcome->next);
+    const auto outcomes = model_.outcomes[row];
+    if (outcomes.size() == 1) {  // no observation tells more
+      const double later = outcomes[0].probability * best_of(values, outcomes[0].next);
       return {later, std::abs(later)};
     }
     auto& [slot_of, seen, sums] = gathered;
     seen.clear();
     sums.clear();
     double size = 0;
-    for (const auto* outcome = first_outcome; outcome != last_outcome; ++outcome) {
-      const double* next = values.data() + model_.row(outcome->next, 0);
+    for (const Outcome& outcome : outcomes) {
+      const double* next = values.data() + model_.row(outcome.next, 0);
       double largest = 0;
       for (std::size_t i = 0; i < actions; ++i) largest = std::max(largest, std::abs(next[i]));
-      size += outcome->probability * largest;
-      for (const auto& likelihood : model_.likelihoods[outcome->sensing]) {
+      size += outcome.probability * largest;
+      for (const auto& likelihood : model_.likelihoods[outcome.sensing]) {
         std::size_t& slot = slot_of[likelihood.observation];
         if (slot >= seen.size() || seen[slot] != likelihood.observation) {
           slot = seen.size();
@@ -339,7 +338,7 @@ class InitialBounds {
           sums.resize(seen.size() * actions, 0.0);
         }
         double* sum = sums.data() + slot * actions;
-        const double weight = outcome->probability * likelihood.probability;
+        const double weight = outcome.probability * likelihood.probability;
         for (std::size_t i = 0; i < actions; ++i) sum[i] += weight * next[i];
       }
     }

@@ -88,13 +88,10 @@ class Regions {
     for (bool has_changed = true; has_changed;) {
       has_changed = false;
       for (std::size_t state = 0; state < model_.states; ++state) {
-        if (!worthless[state]) continue;
-        const auto* first = model_.outcomes.begin(model_.row(state, 0));
-        const auto* last = model_.outcomes.end(model_.row(state, model_.actions - 1));
-        if (std::any_of(first, last, [&](const Outcome& outcome) { return !worthless[outcome.next]; })) {
-          worthless[state] = false;
-          has_changed = true;
-        }
+        const auto leads_on = [&](const Outcome& outcome) { return !worthless[outcome.next]; };
+        if (!worthless[state] || std::ranges::none_of(model_.outcomes_of(state), leads_on)) continue;
+        worthless[state] = false;
+        has_changed = true;
       }
     }
     return worthless;
@@ -117,9 +114,7 @@ class Regions {
       for (const auto& [state, probability] : start.belief) reach(state);
     }
     for (std::size_t i = 0; i < reached_.size(); ++i) {
-      const auto* first = model_.outcomes.begin(model_.row(reached_[i], 0));
-      const auto* last = model_.outcomes.end(model_.row(reached_[i], model_.actions - 1));
-      for (const auto* outcome = first; outcome != last; ++outcome) reach(outcome->next);
+      for (const Outcome& outcome : model_.outcomes_of(reached_[i])) reach(outcome.next);
     }
   }
 

@@ -40,23 +40,13 @@ class Sarsop {
   // What a policy is sure to give from the start, and what none can give more than; discounted.
   double lower() const { return over_roots(&Node::lower, -1); }
   double upper() const { return over_roots(&Node::upper, 1); }
-  // No state is worth more, or 0.
-  double max_value() const { return graph_.max_value(); }
-  // Some policy gives no less, wherever it begins; or 0.
-  double min_value() const { return graph_.min_value(); }
-  // Bounds that are so near, beside the values themselves, are as near as numbers tell.
-  double noise() const { return graph_.noise(); }
-  // Numbers that were multiplied so far.
-  std::uint64_t work() const { return graph_.work(); }
-  std::size_t beliefs() const { return graph_.size(); }
-  std::size_t bytes() const { return graph_.bytes(); }
+  const BeliefGraph& graph() const { return graph_; }
   std::uint64_t backups() const { return backups_.count(); }
   std::size_t vectors() const {
     std::size_t count = 0;
     for (std::uint32_t region = 0; region < regions_.all.size(); ++region) count += graph_.lower(region).kept();
     return count;
   }
-  const LowerBound& lower_of(std::uint32_t region) const { return graph_.lower(region); }
 
   // Forgets all that trials have found out.
   void start_over() {
@@ -68,7 +58,7 @@ class Sarsop {
 
   // Goes on from another belief; all that is known of other beliefs is kept, of alpha vectors only if there is no room.
   void move_to(const Start& start, std::size_t max_bytes) {
-    if (bytes() > max_bytes) {
+    if (graph_.bytes() > max_bytes) {
       prune();
       graph_.forget_beliefs();
     }

@@ -1,8 +1,5 @@
-// The alpha vectors that were found, as a file.
-//
-// The text "AOSALPH1", then little-endian and without gaps u64 regions, states, vectors; u64 first_state[regions + 1];
-// u32 states[states], those of one region after those of another; and for every vector u32 region, u32 action,
-// f64 values[states of the region].
+// The alpha vectors that were found, as a file: a line of JSON with the size of each region, and what alpha_vectors.py
+// describes.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "aos/base/json.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/sarsop.hpp"
@@ -24,24 +22,25 @@ using point_based::Sarsop;
 
 inline void write_policy(const std::string& path, const Regions& regions, const Sarsop& solver) {
   std::ofstream file{path, std::ios::binary};
-  const auto put = [&](const auto* first, std::size_t count) {
-    file.write(reinterpret_cast<const char*>(first), static_cast<std::streamsize>(count * sizeof *first));
+  const auto put = [&]<class Number>(const std::vector<Number>& numbers) {
+    file.write(reinterpret_cast<const char*>(numbers.data()), static_cast<std::streamsize>(numbers.size() * sizeof(Number)));
   };
-  std::vector<std::uint64_t> first_state{0};
-  for (const Region& region : regions.all) first_state.push_back(first_state.back() + region.states.size());
-  const std::uint64_t counts[] = {regions.all.size(), first_state.back(), solver.vectors()};
-  put("AOSALPH1", 8);
-  put(counts, 3);
-  put(first_state.data(), first_state.size());
-  for (const Region& region : regions.all) put(region.states.data(), region.states.size());
+  JsonWriter sizes;
+  sizes.begin_object().key("regions").begin_array();
   for (std::uint32_t number = 0; number < regions.all.size(); ++number) {
-    const LowerBound& bound = solver.lower_of(number);
+    sizes.begin_object().member("states", regions.all[number].states.size());
+    sizes.member("vectors", solver.graph().lower(number).kept()).end_object();
+  }
+  file << sizes.end_array().end_object().text() << '\n';
+  for (std::uint32_t number = 0; number < regions.all.size(); ++number) {
+    const LowerBound& bound = solver.graph().lower(number);
+    std::vector<std::uint32_t> actions;
     for (std::uint32_t i = 0; i < bound.size(); ++i) {
-      if (bound[i].is_gone()) continue;
-      const std::uint32_t head[] = {number, bound[i].action};
-      put(head, 2);
-      put(bound[i].values.data(), bound[i].values.size());
+      if (!bound[i].is_gone()) actions.push_back(bound[i].action);
     }
+    put(regions.all[number].states);
+    put(actions);
+    for (std::uint32_t i = 0; i < bound.size(); ++i) put(bound[i].values);
   }
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }

@@ -42,7 +42,7 @@ void report(Sarsop& solver, const char* ending) {
   aos::JsonWriter json;
   json.begin_object().member("seconds", cpu_seconds());
   json.member("lower", lower).member("upper", upper);
-  json.member("vectors", solver.vectors()).member("beliefs", solver.beliefs()).member("backups", solver.backups());
+  json.member("vectors", solver.vectors()).member("beliefs", solver.graph().size()).member("backups", solver.backups());
   json.member("ending", ending).end_object();
   std::puts(json.text().c_str());
   std::fflush(stdout);
@@ -58,7 +58,7 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
     }
     if (solver.upper() - solver.lower() <= precision) return "precision";
     if (cpu_seconds() >= seconds) return "time";
-    if (solver.bytes() >= memory_bytes) return "memory";
+    if (solver.graph().bytes() >= memory_bytes) return "memory";
     if (is_told_to_stop()) return "stopped";
     if (!solver.improve(precision, [] { return false; })) return "settled";
   }
