@@ -106,8 +106,7 @@ std::string observation_name(int action, Observation observation) {
 template <class Model>
 void print_state(JsonWriter& json, const typename Model::State& state) {
   json.begin_object();
-  const auto print = [&](const std::string& name, const Leaf& leaf) { json.member(name, leaf_text(leaf)); };
-  NamedLeavesCall leaves{print};
+  NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) { json.member(name, leaf_text(leaf)); }};
   visit_value(state, leaves);
   json.end_object();
 }

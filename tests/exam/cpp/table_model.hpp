@@ -108,11 +108,6 @@ struct TableModel {
   static std::size_t bytes_elsewhere() { return 0; }
   static std::string state_text(const State& state) { return std::to_string(number_of(state)); }
 
-  template <class Visitor>
-  static void visit(const State& state, Visitor&& visitor) {
-    aos::NamedLeavesCall leaves{visitor};
-    visit_values(state, leaves);
-  }
   static void visit_values(const State& state, aos::ValueVisitor& visitor) {
     visitor.begin_compound();
     for (std::size_t i = 0; i < problem_->variables; ++i) {

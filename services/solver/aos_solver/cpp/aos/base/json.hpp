@@ -49,7 +49,6 @@ class JsonWriter {
     text_ += '"';
     return *this;
   }
-  JsonWriter& null() { return put("null"); }
   // Text that is JSON already.
   JsonWriter& raw(std::string_view json) { return put(json); }
 

@@ -101,7 +101,7 @@ class Belief {
     try {
       if (is_drawn()) throw NotEnumerable{"the states were drawn"};
       enumerate_outcomes<Model>(particles_, action, ignored_numbers, max_enumerated_paths,
-                                [&](const State&, Observation seen, double weight) { add(seen, weight); });
+                                [&](const State&, const State&, Observation seen, double weight) { add(seen, weight); });
     } catch (const NotEnumerable&) {
       odds.clear();
       ParticleFilter<Model>{random}.draw_observations(particles_, action, add);
@@ -179,21 +179,16 @@ class Belief {
     return Belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
   }
 
-  // The same belief, for a model with the same states.
-  template <class To>
-  Belief<To> as() const {
-    Belief<To> result;
-    for (const auto& [state, weight] : particles_) result.particles_.push_back({state, weight});
-    result.cumulative_ = cumulative_;
-    result.error_bound_ = error_bound_;
-    result.source_ = static_cast<typename Belief<To>::Source>(source_);
-    return result;
+  // The same belief without what it knows of how it came to be.
+  Belief without_history() const {
+    Belief alone = *this;
+    alone.lineages_.clear();
+    alone.history_ = {};
+    return alone;
   }
 
  private:
   enum class Source { enumeration, drawing };
-  template <class>
-  friend class Belief;
 
   Belief() = default;
   Belief(const Gathering<Model>& gathering, double error_bound, Source source)
@@ -255,7 +250,7 @@ class Belief {
       Gathering<Model> gathering;
       const std::size_t limit = max_states(source_);
       double gone = 0;
-      const auto add = [&](const State& next, Observation seen, double weight) {
+      const auto add = [&](const State&, const State& next, Observation seen, double weight) {
         if ((step.is_observed && seen != step.observation) || weight <= 0) return;
         gathering.add(next, weight);
         if (gathering.size() > 2 * limit) gone += gathering.reduce(limit, random);

@@ -160,11 +160,12 @@ class Marginals {
   const std::vector<std::size_t>& variables_of(std::uint64_t shape, const State& state) {
     const auto [entry, is_new] = shapes_.try_emplace(shape);
     if (is_new) {
-      Model::visit(state, [&](const std::string& name, const Leaf&) {
+      NamedLeaves leaves{[&](const std::string& name, const Leaf&) {
         const auto [place, is_unknown] = names_.try_emplace(name, variables_.size());
         if (is_unknown) variables_.push_back({name, {}, {}, {}});
         entry->second.push_back(place->second);
-      });
+      }};
+      Model::visit_values(state, leaves);
     }
     return entry->second;
   }

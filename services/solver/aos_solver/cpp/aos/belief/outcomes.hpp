@@ -10,8 +10,8 @@
 
 namespace aos {
 
-// Calls `visit(next, observation, weight)` for nearly every outcome of an action, whose numbers go to `numbers`, and
-// returns the weight of the others.
+// Calls `visit(before, next, observation, weight)` for nearly every outcome of an action, whose numbers go to `numbers`,
+// and returns the weight of the others.
 // Throws NotEnumerable where a step cannot be enumerated, or where all together have more than `max_paths` paths, soon if
 // the first states tell.
 template <class Model, class Visit>
@@ -23,12 +23,12 @@ double enumerate_outcomes(const std::vector<Particle<Model>>& particles, int act
   std::size_t paths = 0;
   std::size_t states = 0;
   double left_out = 0;
-  for (const auto& [state, weight] : particles) {
-    left_out += weight * draws.for_nearly_each_path([&](Enumerator& path) {
+  for (const auto& particle : particles) {
+    left_out += particle.weight * draws.for_nearly_each_path([&](Enumerator& path) {
       if (++paths > max_paths) throw NotEnumerable{"too many outcomes"};
-      auto next = state;
+      auto next = particle.state;
       const Step step = Model::step(next, action, path);
-      visit(next, step.observation, weight * path.probability());
+      visit(particle.state, next, step.observation, particle.weight * path.probability());
     });
     if (++states == telling && paths / telling > 2 * max_paths / particles.size()) {
       throw NotEnumerable{"too many outcomes"};

@@ -45,18 +45,9 @@ Risks risks_of(const Belief<Model>& belief, int action, std::size_t max_paths, S
     return risks;
   }
   try {
-    Enumerator draws;
-    draws.report_to(&ignored_numbers);
-    std::size_t paths = 0;
-    double left_out = 0;
-    for (const auto& particle : belief.particles()) {
-      left_out += particle.weight * draws.for_nearly_each_path([&](Enumerator& path) {
-        if (++paths > max_paths) throw NotEnumerable{"too many outcomes"};
-        State next = particle.state;
-        Model::step(next, action, path);
-        add(particle.state, next, particle.weight * path.probability());
-      });
-    }
+    const double left_out = enumerate_outcomes<Model>(
+        belief.particles(), action, ignored_numbers, max_paths,
+        [&](const State& before, const State& next, Observation, double weight) { add(before, next, weight); });
     for (double& probability : risks.probabilities) probability += left_out;
   } catch (const NotEnumerable&) {
     risks = {std::vector<double>(count), true};

@@ -19,7 +19,6 @@
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
-#include "aos/model/correction.hpp"
 #include "aos/planning/planner.hpp"
 
 namespace aos {
@@ -28,7 +27,6 @@ template <class Model>
 class BeliefCommands {
  public:
   using State = typename Model::State;
-  using Corrected = CorrectedModel<Model>;
 
   // `kept_beliefs` is the path of the file for KeptBeliefs. The search is told how the belief changes.
   BeliefCommands(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs, Planner<Model>& search)
@@ -142,10 +140,10 @@ class BeliefCommands {
                                                        std::string_view locals, Uncorrected& uncorrected) {
     try {
       Model::read_locals(action, locals);
-      Corrected::made = observation;
-      const auto [posterior, log_probability] =
-          belief_.template as<Corrected>().posterior(action, observation, numbers, random_);
-      return {posterior.template as<Model>(), log_probability};
+      const typename Model::Correcting correcting{observation};
+      // Later, a replay of this step would not be corrected.
+      const auto [posterior, log_probability] = belief_.without_history().posterior(action, observation, numbers, random_);
+      return {posterior.without_history(), log_probability};
     } catch (const ModelFault& fault) {
       uncorrected = {fault.code, fault.text, blame::piece()};
     } catch (const std::exception& error) {

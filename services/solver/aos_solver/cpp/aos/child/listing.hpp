@@ -45,11 +45,7 @@ class Listing {
       states << Model::save_state(left_out.rest_of(space_[number])) << '\n';
     }
     if (!states.flush()) throw std::runtime_error("cannot write " + states_path);
-    json.begin_object().key("observations").begin_array();
-    for (std::uint32_t number = 0; number < space_.observations().size(); ++number) {
-      json.value(space_.observations()[number]);
-    }
-    json.end_array();
+    space_.observations().write(json.begin_object().key("observations"));
     left_out.write_names(json.key("left_out"));
     json.end_object();
   }

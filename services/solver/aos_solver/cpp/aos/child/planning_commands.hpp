@@ -36,11 +36,10 @@ class PlanningCommands {
     const auto processor_start = processor_time();
     const Budget budget = budget_of(command);
     const int horizon = horizon_of(command);
-    std::vector<int> barred_actions;
+    BarredActions barred;
     for (const auto item : command.items()) {
-      barred_actions.push_back(checked_action<Model>(detail::number_in<int>(item)));
+      barred.insert(static_cast<std::size_t>(checked_action<Model>(detail::number_in<int>(item))));
     }
-    const BarredActions barred{barred_actions};
     const auto planner = planner_kind(command.text("planner"));
     if (!planner) throw BadCommand{"there is no planner " + std::string{command.text("planner")}};
     if (horizon != planned_horizon_) search_.forget();

@@ -27,9 +27,7 @@ int action_of(const Command& command) {
 
 template <class Model>
 std::string text_of_response(int action, Observation observation) {
-  if (observation >= 0) return Model::response_name(Model::skill_of(action), static_cast<int>(observation));
-  if (observation == default_observation) return default_observation_text;
-  return std::string{observation_text(observation)};
+  return name_of_observation<Model>(Model::skill_of(action), observation);
 }
 
 template <class Model>

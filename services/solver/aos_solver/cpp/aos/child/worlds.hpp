@@ -3,7 +3,6 @@
 // of the same name are the same observation. Text responses are reported as texts.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -15,6 +14,7 @@
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/observation_numbers.hpp"
 
 namespace aos {
 
@@ -24,13 +24,10 @@ class Worlds {
   using State = typename Model::State;
 
   Worlds() {
-    names_.push_back(default_observation_text);
+    observed_.add(0, default_observation);
     for (int skill = 0; skill < Model::skill_count; ++skill) {
       has_texts_ = has_texts_ || Model::has_text_response(skill);
-      numbers_.emplace_back();
-      for (int response = 0; response < Model::response_count(skill); ++response) {
-        numbers_.back().push_back(number_of(Model::response_name(skill, response)));
-      }
+      for (int response = 0; response < Model::response_count(skill); ++response) observed_.add(skill, response);
     }
   }
 
@@ -41,9 +38,8 @@ class Worlds {
       worlds_.push_back({State{}, Sampler{seed}});
       start(worlds_.back());
     }
-    json.begin_object().key("observations").begin_array();
-    for (const std::string& name : names_) json.value(name);
-    json.end_array().member("has_texts", has_texts_).end_object();
+    observed_.write(json.begin_object().key("observations"));
+    json.member("has_texts", has_texts_).end_object();
   }
 
   std::size_t count() const { return worlds_.size(); }
@@ -76,12 +72,6 @@ class Worlds {
     Sampler random;
   };
 
-  int number_of(const std::string& name) {
-    const auto number = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
-    if (number == names_.size()) names_.push_back(name);
-    return static_cast<int>(number);
-  }
-
   static void start(World& world) {
     world.state = State{};
     Model::initial(world.state, world.random);
@@ -105,15 +95,12 @@ class Worlds {
     rewards_.push_back(step.reward);
     endings_.push_back(static_cast<std::uint8_t>(Model::ending(world.state)));
     const bool is_named = step.observation >= 0;
-    observations_.push_back(is_named ? numbers_[static_cast<std::size_t>(Model::skill_of(action))]
-                                               [static_cast<std::size_t>(step.observation)]
-                                     : 0);
-    if (has_texts_) texts_.emplace_back(is_named ? names_[static_cast<std::size_t>(observations_.back())]
-                                                 : observation_text(step.observation));
+    const std::uint32_t observation = is_named ? observed_.add(Model::skill_of(action), step.observation) : 0;
+    observations_.push_back(static_cast<std::int32_t>(observation));
+    if (has_texts_) texts_.emplace_back(is_named ? observed_[observation] : observation_text(step.observation));
   }
 
-  std::vector<std::string> names_;
-  std::vector<std::vector<int>> numbers_;  // by skill and response
+  ObservationNumbers<Model> observed_;
   bool has_texts_ = false;
   std::vector<World> worlds_;
 

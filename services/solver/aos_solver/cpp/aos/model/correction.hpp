@@ -58,18 +58,4 @@ void correct(const State& before, State& next, const auto& parameters, auto& ran
   blame::at(0);
 }
 
-// A model whose steps are corrected where they bring the observation that was made: what a belief is updated with.
-template <class Model>
-struct CorrectedModel : Model {
-  inline static Observation made = default_observation;
-
-  template <class Random>
-  static Step step(typename Model::State& state, int action, Random& random) {
-    const typename Model::State before = state;
-    const Step step = Model::step(state, action, random);
-    if (step.observation == made) Model::correct(before, state, action, random);
-    return step;
-  }
-};
-
 }  // namespace aos

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -57,12 +58,6 @@ struct ErasedModel {
   static void load_state(State& state, std::string_view saved, const SavedConstants& constants) {
     compiled_model.load_state(state.bytes, saved, constants);
   }
-  // Calls `visitor(name, leaf)` for every single value.
-  template <class Visitor>
-  static void visit(const State& state, Visitor&& visitor) {
-    NamedLeavesCall leaves{visitor};
-    compiled_model.visit(state.bytes, leaves);
-  }
   static void visit_values(const State& state, ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); }
   // The parts of a state that no reward, observation or ending depends on.
   static std::span<const ByteRange> irrelevant() {
@@ -74,9 +69,9 @@ struct ErasedModel {
   static std::byte* bytes_of(State& state) { return state.bytes; }
   // How many bytes a state takes beside those of the object.
   static std::size_t bytes_elsewhere() { return Size == 0 ? state_bytes() : 0; }
-  // Where the state's single values stand, in the order of `visit`.
+  // Where the state's single values stand, in the order in which they are visited.
   static std::vector<Place> places(const State& state) {
-    return places_in(state.bytes, [&](ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); });
+    return places_in(state.bytes, [&](ValueVisitor& visitor) { visit_values(state, visitor); });
   }
 
   template <class Random>
@@ -85,8 +80,20 @@ struct ErasedModel {
   }
   template <class Random>
   static Step step(State& state, int action, Random& random) {
+    if constexpr (!std::is_same_v<Random, Sampler>) {
+      if (corrected_) return corrected_step(state, action, random);
+    }
     return functions<Random>().step(state.bytes, action, random);
   }
+  // As long as it lives, steps that somebody directs are corrected where they bring this observation: what a belief is
+  // updated with.
+  class Correcting {
+   public:
+    explicit Correcting(Observation made) { corrected_ = made; }
+    Correcting(const Correcting&) = delete;
+    Correcting& operator=(const Correcting&) = delete;
+    ~Correcting() { corrected_.reset(); }
+  };
   static bool meets_precondition(const State& state, int action, DirectedDraws& random) {
     return compiled_model.meets_precondition(state.bytes, action, random);
   }
@@ -95,10 +102,6 @@ struct ErasedModel {
   static bool constraints_look_ahead() { return compiled_model.constraints_look_ahead; }
   static Violations violations(const State& before, const State& next, int action) {
     return compiled_model.violations(before.bytes, next.bytes, action);
-  }
-  template <class Random>
-  static void correct(const State& before, State& next, int action, Random& random) {
-    functions<Random>().correct(before.bytes, next.bytes, action, random);
   }
   // A whole rollout in one call: see rollout.hpp.
   static double rollout(const State& state, int horizon, Sampler& random) {
@@ -111,6 +114,15 @@ struct ErasedModel {
 
  private:
   static const GroundedAction& grounded(int action) { return (*compiled_model.actions)[static_cast<std::size_t>(action)]; }
+
+  static Step corrected_step(State& state, int action, DirectedDraws& random) {
+    const State before = state;
+    const Step step = compiled_model.directed.step(state.bytes, action, random);
+    if (step.observation == *corrected_) compiled_model.correct(before.bytes, state.bytes, action, random);
+    return step;
+  }
+
+  inline static std::optional<Observation> corrected_;
 
   template <class Random>
   static const auto& functions() {

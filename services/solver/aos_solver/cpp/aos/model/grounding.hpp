@@ -1,12 +1,14 @@
 // Grounded actions: a skill with values for its parameters. A model has them once, from its start on.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
+#include "aos/base/random.hpp"
 #include "aos/model/reflection.hpp"
 
 namespace aos {
@@ -92,39 +94,12 @@ void with_each_grounding(const std::vector<GroundedAction>& actions, auto&& use)
 }
 
 // Draws for code that runs once, before there is a particle: the likeliest outcome, the mean, the middle.
-struct FixedDraws {
-  bool Bernoulli(double probability) { return probability >= 0.5; }
-  int SampleDiscrete(int name, std::initializer_list<double> weights) { return name + 1 + likeliest(weights); }
-  template <class Weights>
-  int SampleDiscrete(int name, const Weights& weights) {
-    return name + 1 + likeliest(weights);
+struct FixedDraws : Draws<FixedDraws> {
+  static bool flag(double probability) { return probability >= 0.5; }
+  static int choose(const double* weights, int count, double) {
+    return static_cast<int>(std::max_element(weights, weights + count) - weights);
   }
-  template <class Weights = std::initializer_list<double>>
-  int SampleDiscrete(const Weights& weights) {
-    return likeliest(weights);
-  }
-  double SampleNormal(double mean, double) { return mean; }
-  double SampleUniform(double low, double high) { return (low + high) / 2; }
-  void SetNull(bool& value) { value = false; }
-  void Uninitialize(bool& value) { value = false; }
-  void Initialize(bool& value) { value = true; }
-  bool IsInitialized(bool value) { return value; }
-
- private:
-  template <class Weights>
-  static int likeliest(const Weights& weights) {
-    int best = 0;
-    double max_weight = -1;
-    int index = 0;
-    for (const double weight : weights) {
-      if (weight > max_weight) {
-        max_weight = weight;
-        best = index;
-      }
-      ++index;
-    }
-    return best;
-  }
+  static double uniform() { return 0.5; }
 };
 
 }  // namespace aos

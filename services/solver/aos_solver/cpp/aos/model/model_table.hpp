@@ -28,7 +28,6 @@ template <class Random>
 struct DrawingFunctions {
   void (*initial)(void* state, Random& random);
   Step (*step)(void* state, int action, Random& random);
-  void (*correct)(const void* before, void* next, int action, Random& random);
 };
 
 // The size of a state as text that the build finds in the object file, to link the engine for such states.
@@ -68,6 +67,7 @@ struct ModelTable {
 
   DrawingFunctions<Sampler> sampling;
   DrawingFunctions<DirectedDraws> directed;
+  void (*correct)(const void* before, void* next, int action, DirectedDraws& random);
   bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
   Violations (*violations)(const void* before, const void* next, int action);
   double (*rollout)(const void* state, int horizon, Sampler& random);
@@ -93,13 +93,6 @@ constexpr DrawingFunctions<Random> drawing_functions() {
             const Step step = Model::step(*static_cast<State*>(state), action, draws);
             blame::over();
             return step;
-          },
-      .correct =
-          [](const void* before, void* next, int action, Random& random) {
-            if constexpr (Model::has_corrections) {
-              ModelSource<Random> draws{random};
-              Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, draws);
-            }
           },
   };
 }
@@ -148,6 +141,13 @@ constexpr ModelTable table_of() {
           },
       .sampling = drawing_functions<Model, Sampler>(),
       .directed = drawing_functions<Model, DirectedDraws>(),
+      .correct =
+          [](const void* before, void* next, int action, DirectedDraws& random) {
+            if constexpr (Model::has_corrections) {
+              ModelSource<DirectedDraws> draws{random};
+              Model::correct(*static_cast<const State*>(before), *static_cast<State*>(next), action, draws);
+            }
+          },
       .meets_precondition =
           [](const void* state, int action, DirectedDraws& random) {
             ModelSource<DirectedDraws> draws{random};

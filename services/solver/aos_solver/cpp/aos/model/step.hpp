@@ -56,4 +56,12 @@ Observation text_observation(std::string_view text);
 // The text behind a number that this thread has made; empty if it has not.
 std::string_view observation_text(Observation number);
 
+// What a skill's documents call an observation.
+template <class Model>
+std::string name_of_observation(int skill, Observation observation) {
+  if (observation >= 0) return Model::response_name(skill, static_cast<int>(observation));
+  if (observation == default_observation) return default_observation_text;
+  return std::string{observation_text(observation)};
+}
+
 }  // namespace aos

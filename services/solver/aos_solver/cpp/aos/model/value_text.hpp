@@ -38,11 +38,9 @@ std::string leaf_text(const Leaf& leaf) {
 
 std::string leaves_text(AnyValue value) {
   std::string text;
-  const auto add = [&](const std::string& name, const Leaf& leaf) {
-    text += (text.empty() ? "" : ", ") + name + "=" + leaf_text(leaf);
-  };
-  NamedLeavesCall visitor{add};
-  value.visit(visitor);
+  NamedLeaves leaves{
+      [&](const std::string& name, const Leaf& leaf) { text += (text.empty() ? "" : ", ") + name + "=" + leaf_text(leaf); }};
+  value.visit(leaves);
   return text;
 }
 

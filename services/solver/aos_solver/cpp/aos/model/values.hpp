@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "aos/model/reflection.hpp"
@@ -52,47 +53,34 @@ inline std::string_view characters_of(const Leaf& leaf) {
   return *static_cast<const std::string*>(leaf.place);
 }
 
-// Visits every single value with its name: `v1.visited`, `grid[3]`, `cell[1,2]`.
-class NamedLeaves : public ValueVisitor {
+// Calls `use` for every single value with its name: `v1.visited`, `grid[3]`, `cell[1,2]`.
+class NamedLeaves final : public ValueVisitor {
  public:
-  virtual void named(const std::string& name, const Leaf& leaf) = 0;
+  explicit NamedLeaves(std::function<void(const std::string& name, const Leaf& leaf)> use) : use_(std::move(use)) {}
 
-  void leaf(const Leaf& leaf) final { named(name_, leaf); }
-  void begin_compound() final { owners_.push_back(name_.size()); }
-  void begin_sequence(std::size_t) final { owners_.push_back(name_.size()); }
-  void begin_mapping() final { owners_.push_back(name_.size()); }
-  void member(const char* name) final {
+  void leaf(const Leaf& leaf) override { use_(name_, leaf); }
+  void begin_compound() override { owners_.push_back(name_.size()); }
+  void begin_sequence(std::size_t) override { owners_.push_back(name_.size()); }
+  void begin_mapping() override { owners_.push_back(name_.size()); }
+  void member(const char* name) override {
     name_.resize(owners_.back());
     if (!name_.empty()) name_ += '.';
     name_ += name;
   }
-  void element(std::size_t index) final { entry(std::to_string(index)); }
-  void entry(const std::string& key) final {
+  void element(std::size_t index) override { entry(std::to_string(index)); }
+  void entry(const std::string& key) override {
     name_.resize(owners_.back());
     (name_ += '[').append(key) += ']';
   }
-  void end() final {
+  void end() override {
     name_.resize(owners_.back());
     owners_.pop_back();
   }
 
- protected:
-  ~NamedLeaves() = default;
-
  private:
+  std::function<void(const std::string& name, const Leaf& leaf)> use_;
   std::string name_;
   std::vector<std::size_t> owners_;  // how long the names are of what is visited now
-};
-
-// Calls `use(name, leaf)`.
-template <class Use>
-class NamedLeavesCall final : public NamedLeaves {
- public:
-  explicit NamedLeavesCall(Use& use) : use_(use) {}
-  void named(const std::string& name, const Leaf& leaf) override { use_(name, leaf); }
-
- private:
-  Use& use_;
 };
 
 // A single value as a number: equal values have equal numbers.
@@ -142,7 +130,7 @@ template <class Visit>
 std::vector<Place> places_in(const void* state, Visit&& visit) {
   std::vector<Place> places;
   std::string compound;
-  const auto add = [&](const std::string& name, const Leaf& leaf) {
+  NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
     const auto offset = static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) -
                                                  static_cast<const std::byte*>(state));
     const auto dot = name.rfind('.');
@@ -153,9 +141,8 @@ std::vector<Place> places_in(const void* state, Visit&& visit) {
       places.push_back({owner.empty() ? name : owner, offset, leaf.size});
     }
     compound = owner;
-  };
-  NamedLeavesCall visitor{add};
-  visit(visitor);
+  }};
+  visit(leaves);
   return places;
 }
 

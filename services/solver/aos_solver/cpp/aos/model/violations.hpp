@@ -11,7 +11,6 @@ namespace aos {
 
 // A bit for each of the mission's constraints.
 using Violations = std::uint32_t;
-inline constexpr int max_constraints = 32;
 
 // How a condition names a skill: a pointer to the parameters of the action, null where the action is of another skill.
 template <class Named, class Skill>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 namespace aos {
@@ -20,21 +21,7 @@ struct Budget {
 };
 
 // Actions that a decision may not take, since nobody could carry them out now. Later decisions may.
-class BarredActions {
- public:
-  BarredActions() = default;
-  explicit BarredActions(const std::vector<int>& actions) {
-    for (const int action : actions) {
-      if (static_cast<std::size_t>(action) >= is_barred_.size()) is_barred_.resize(static_cast<std::size_t>(action) + 1);
-      is_barred_[static_cast<std::size_t>(action)] = true;
-    }
-  }
-  bool operator==(const BarredActions&) const = default;
-  bool has(std::size_t action) const { return action < is_barred_.size() && is_barred_[action]; }
-
- private:
-  std::vector<bool> is_barred_;
-};
+using BarredActions = std::set<std::size_t>;
 
 // An action's value, from how many simulations (0: unknown), the standard error of their mean, and what it earns at once.
 struct ActionEstimate {

@@ -20,9 +20,9 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/arena.hpp"
 #include "aos/base/clock.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/room.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
@@ -45,9 +45,9 @@ class Despot {
 
   explicit Despot(MdpValues<Model>& values)
       : evaluation_(values),
-        nodes_(max_node_bytes / sizeof(Node)),
-        actions_(max_node_bytes / sizeof(ActionNode)),
-        scenarios_(max_scenario_bytes / scenario_bytes()) {}
+        nodes_(with_room_for<Node>(max_node_bytes / sizeof(Node))),
+        actions_(with_room_for<ActionNode>(max_node_bytes / sizeof(ActionNode))),
+        scenarios_(with_room_for<Scenario<Model>>(max_scenario_bytes / scenario_bytes())) {}
 
   // Runs the search and returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
@@ -191,9 +191,8 @@ class Despot {
   // Adds all actions of a node and their children; returns false where there is no room or no time.
   bool expand(std::uint32_t number) {
     const std::size_t max_new = action_count() * nodes_[number].scenarios;
-    if (!scenarios_.has_room_for(max_new) || !nodes_.has_room_for(max_new) || !actions_.has_room_for(action_count())) {
-      return false;
-    }
+    const bool has_room = has_room_for(scenarios_, max_new) && has_room_for(nodes_, max_new);
+    if (!has_room || !has_room_for(actions_, action_count())) return false;
     const auto first_action = static_cast<std::uint32_t>(actions_.size());
     for (std::size_t a = 0; a < action_count(); ++a) {
       if (a > 0 && !may_go_on()) {
@@ -232,7 +231,7 @@ class Despot {
 
     const auto action_number = static_cast<std::uint32_t>(actions_.size());
     const double earned = weight_at(depth) * reward - penalty_;
-    ActionNode& action = actions_.push_back({number, no_node, number == 0 ? 1u : 0u, earned, earned, earned});
+    ActionNode& action = actions_.emplace_back(ActionNode{number, no_node, number == 0 ? 1u : 0u, earned, earned, earned});
     const std::vector<ScenarioBounds>& bounds = evaluation_.bounds(outcomes_, depth + 1);
     for_each_history(outcomes_, [&](std::size_t first, std::size_t last) {
       const std::uint32_t child = add_node(first, last, depth + 1, action_number, bounds);
@@ -261,7 +260,7 @@ class Despot {
     node.lower = lower;
     node.upper = upper;
   }
-  bool is_barred(std::uint32_t number, std::size_t action) const { return number == 0 && barred_.has(action); }
+  bool is_barred(std::uint32_t number, std::size_t action) const { return number == 0 && barred_.contains(action); }
   std::size_t tried_actions(std::uint32_t number) const { return number == 0 ? deviations_.size() : action_count(); }
 
   // --- trials ----------------------------------------------------------------------------------------
@@ -349,9 +348,9 @@ class Despot {
   std::size_t scenario_count_ = 0;
   double origin_ = 0;  // what values are counted from
   double penalty_ = 0;
-  Arena<Node> nodes_;
-  Arena<ActionNode> actions_;
-  Arena<Scenario<Model>> scenarios_;
+  std::vector<Node> nodes_;
+  std::vector<ActionNode> actions_;
+  std::vector<Scenario<Model>> scenarios_;
   std::vector<Observed<Model>> outcomes_;  // of the action that is being tried
   std::vector<double> deviations_;  // standard errors of the root's actions that were tried
   std::vector<double> rewards_;     // what these earn at once, on average

@@ -46,7 +46,7 @@ class ExactSearch {
   int best(const BarredActions& barred) const {
     const ExactValue* best = nullptr;
     for (const ExactValue& value : values_) {
-      if (barred.has(static_cast<std::size_t>(&value - values_.data()))) continue;
+      if (barred.contains(static_cast<std::size_t>(&value - values_.data()))) continue;
       if (best == nullptr || value.is_better_than(*best)) best = &value;
     }
     return best == nullptr ? 0 : static_cast<int>(best - values_.data());

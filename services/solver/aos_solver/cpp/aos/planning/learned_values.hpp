@@ -151,16 +151,15 @@ class LearnedValues {
   bool find_variables() {
     std::vector<double> numbers;
     const State& any = examples_.front();
-    const auto add = [&](const std::string&, const Leaf& leaf) {
+    NamedLeaves leaves{[&](const std::string&, const Leaf& leaf) {
       const auto offset = static_cast<const std::byte*>(leaf.place) - Model::bytes_of(any);
       if (offset < 0 || offset >= static_cast<std::ptrdiff_t>(Model::state_bytes()) || is_text(leaf)) return;
       CellVariable variable{leaf, static_cast<std::size_t>(offset)};
       numbers.clear();
       for (const State& example : examples_) numbers.push_back(variable.number(Model::bytes_of(example)));
       if (variable.divide(numbers)) variables_.push_back(variable);
-    };
-    NamedLeavesCall visitor{add};
-    Model::visit_values(any, visitor);
+    }};
+    Model::visit_values(any, leaves);
     tables_ = CellTables{variables_};
     return !variables_.empty();
   }

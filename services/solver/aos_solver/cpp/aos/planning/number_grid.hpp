@@ -42,8 +42,6 @@ class NumberGrid {
   }
 
   std::size_t cells() const { return edges_.size() + 1; }
-  // What the small cells tell, in nats.
-  double information() const { return information_; }
   // What merging costs next at least; infinite where only one cell is left.
   double next_loss() const {
     if (losses_.empty()) return std::numeric_limits<double>::infinity();
@@ -119,7 +117,7 @@ class NumberGrid {
   std::vector<double> edges_;  // between cells; an edge belongs to the cell above it
   std::vector<std::vector<double>> joint_;  // by cell: its probability with each distribution
   std::vector<double> losses_;             // of merging a cell with the next
-  double information_ = 0;
+  double information_ = 0;  // that the small cells tell, in nats
 };
 
 }  // namespace aos

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "aos/base/json.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
@@ -17,18 +18,17 @@ class ObservationNumbers {
  public:
   ObservationNumbers() : of_responses_(static_cast<std::size_t>(Model::skill_count)) {}
 
-  // The number of what a grounded action lets the robot observe, which is `size()` if it is new.
-  std::uint32_t add(int action, Observation observation) {
-    if (observation < 0) return known(of_others_.try_emplace(observation, unknown).first->second, -1, observation);
-    const int skill = Model::skill_of(action);
+  // The number of what a skill lets the robot observe, which is `size()` if it is new.
+  std::uint32_t add(int skill, Observation observation) {
+    if (observation < 0) return known(of_others_.try_emplace(observation, unknown).first->second, skill, observation);
     auto& numbers = of_responses_[static_cast<std::size_t>(skill)];
     numbers.resize(static_cast<std::size_t>(Model::response_count(skill)), unknown);
     return known(numbers[static_cast<std::size_t>(observation)], skill, observation);
   }
 
-  // What a grounded action lets the robot observe under this number.
-  Observation of(int action, std::uint32_t number) const {
-    const auto& responses = of_responses_[static_cast<std::size_t>(Model::skill_of(action))];
+  // What a skill lets the robot observe under this number.
+  Observation of(int skill, std::uint32_t number) const {
+    const auto& responses = of_responses_[static_cast<std::size_t>(skill)];
     const auto response = std::find(responses.begin(), responses.end(), number);
     if (response != responses.end()) return response - responses.begin();
     const auto is_it = [&](const auto& other) { return other.second == number; };
@@ -37,20 +37,20 @@ class ObservationNumbers {
 
   std::size_t size() const { return texts_.size(); }
   const std::string& operator[](std::uint32_t number) const { return texts_[number]; }
+  void write(JsonWriter& json) const {
+    json.begin_array();
+    for (const std::string& text : texts_) json.value(text);
+    json.end_array();
+  }
 
  private:
   static constexpr std::uint32_t unknown = 0xffffffffu;
 
   std::uint32_t known(std::uint32_t& number, int skill, Observation observation) {
     if (number != unknown) return number;
-    const auto [named, is_new] = by_text_.try_emplace(text_of(skill, observation), static_cast<std::uint32_t>(texts_.size()));
+    const auto [named, is_new] = by_text_.try_emplace(name_of_observation<Model>(skill, observation), static_cast<std::uint32_t>(texts_.size()));
     if (is_new) texts_.push_back(named->first);
     return number = named->second;
-  }
-  static std::string text_of(int skill, Observation observation) {
-    if (observation >= 0) return Model::response_name(skill, static_cast<int>(observation));
-    if (observation == default_observation) return default_observation_text;
-    return std::string{observation_text(observation)};
   }
 
   std::vector<std::vector<std::uint32_t>> of_responses_;      // by skill

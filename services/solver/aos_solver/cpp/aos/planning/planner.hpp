@@ -85,7 +85,7 @@ class Planner {
   int choice(const std::vector<ActionEstimate>& estimates, const BarredActions& barred = {}) const {
     if (used_ == PlannerKind::exact) return exact_.best(barred);
     const auto is_barred = [&](const ActionEstimate& estimate) {
-      return barred.has(static_cast<std::size_t>(&estimate - estimates.data()));
+      return barred.contains(static_cast<std::size_t>(&estimate - estimates.data()));
     };
     std::uint32_t most = 0;
     for (const ActionEstimate& estimate : estimates) {
@@ -131,15 +131,10 @@ class Planner {
     if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon);
     why_ = "it was asked for";
     if (asked_for != PlannerKind::sarsop) return asked_for;
-    if (!space_.reach(belief)) {
-      why_ = "SARSOP cannot be used: " + space_.obstacle();
-      return PlannerKind::pomcp;
-    }
-    if (const std::string obstacle = point_based_obstacle(belief, horizon); !obstacle.empty()) {
-      why_ = "SARSOP cannot be used: " + obstacle;
-      return PlannerKind::pomcp;
-    }
-    return PlannerKind::sarsop;
+    const std::string obstacle = point_based_obstacle(belief, horizon);
+    if (obstacle.empty()) return PlannerKind::sarsop;
+    why_ = "SARSOP cannot be used: " + obstacle;
+    return PlannerKind::pomcp;
   }
 
   PlannerKind suited_kind(const Belief<Model>& belief, Budget budget, int horizon) {
@@ -164,6 +159,7 @@ class Planner {
   }
 
   std::string point_based_obstacle(const Belief<Model>& belief, int horizon) {
+    if (!space_.reach(belief)) return space_.obstacle();
     return space_.leaves_out_observations() ? space_.observations_obstacle() : point_based_.prepare(belief, horizon);
   }
 

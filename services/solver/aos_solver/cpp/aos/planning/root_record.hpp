@@ -36,11 +36,11 @@ class RootRecord {
   // Whether so many more simulations of any other action could not lift its value, and of the best one not lower it, to
   // where they meet, were they as good and as bad as the extremes seen.
   bool is_decided(const HistoryNode& root, const ActionNode* actions, const BarredActions& barred, double more) const {
-    if (root.n < settled_visits || barred.has(root.best)) return false;
+    if (root.n < settled_visits || barred.contains(root.best)) return false;
     const auto moved = [&](const ActionNode& node, double to) { return (node.n * node.q + more * to) / (node.n + more); };
     const double min_best = moved(actions[root.best], lowest_);
     for (std::size_t a = 0; a < rewards_.size(); ++a) {
-      if (a != root.best && !barred.has(a) && moved(actions[a], highest_) >= min_best) return false;
+      if (a != root.best && !barred.contains(a) && moved(actions[a], highest_) >= min_best) return false;
     }
     return true;
   }

@@ -1,6 +1,6 @@
 // The memory of a search tree: histories, and for each of them the actions that were tried after it.
 //
-// Nodes lie in arenas and are named by their numbers. The observations after an action are a list while they are few;
+// Nodes lie in two lists and are named by their numbers. The observations after an action are a list while they are few;
 // longer lists are indexed by one table for the whole tree. A history gets its actions when it is visited for the second
 // time, since most are visited once. When the memory is used up the tree stops growing, and goes on learning.
 //
@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "aos/base/arena.hpp"
 #include "aos/base/mixed.hpp"
 #include "aos/base/number_index.hpp"
+#include "aos/base/room.hpp"
 #include "aos/model/step.hpp"
 #include "aos/planning/budget.hpp"
 
@@ -52,8 +52,8 @@ class SearchTree {
   // Takes no more than `bytes` for nodes, and never memory that it does not use.
   SearchTree(int action_count, std::size_t bytes)
       : action_count_(static_cast<std::uint32_t>(action_count)),
-        histories_(bytes / 4 / sizeof(HistoryNode)),
-        actions_(bytes / 4 * 3 / sizeof(ActionNode)) {
+        histories_(with_room_for<HistoryNode>(bytes / 4 / sizeof(HistoryNode))),
+        actions_(with_room_for<ActionNode>(bytes / 4 * 3 / sizeof(ActionNode))) {
     clear();
   }
 
@@ -76,9 +76,9 @@ class SearchTree {
   // Returns false where there is no room for them.
   bool give_actions(std::uint32_t number) {
     if (histories_[number].first_action != no_node) return true;
-    if (!actions_.has_room_for(action_count_)) return false;
+    if (!has_room_for(actions_, action_count_)) return false;
     histories_[number].first_action = static_cast<std::uint32_t>(actions_.size());
-    for (std::uint32_t i = 0; i < action_count_; ++i) actions_.push_back({});
+    actions_.resize(actions_.size() + action_count_);
     return true;
   }
 
@@ -97,11 +97,9 @@ class SearchTree {
 
   // A new history; `no_node` where there is no room.
   std::uint32_t add_child(std::uint32_t action, Observation observation) {
-    if (!histories_.has_room_for(1)) return no_node;
+    if (!has_room_for(histories_, 1)) return no_node;
     const auto number = static_cast<std::uint32_t>(histories_.size());
-    HistoryNode node;
-    node.observation = observation;
-    histories_.push_back(node);
+    histories_.push_back({.observation = observation});
     hang(action, number);
     return number;
   }
@@ -159,8 +157,8 @@ class SearchTree {
   }
 
   std::uint32_t action_count_;
-  Arena<HistoryNode> histories_;
-  Arena<ActionNode> actions_;
+  std::vector<HistoryNode> histories_;
+  std::vector<ActionNode> actions_;
   NumberIndex index_;
   std::vector<std::uint32_t> sources_;  // while copying: the original of each history
 };

@@ -209,8 +209,9 @@ class StateSpace {
 
   std::uint32_t observation_of(int action, const Step& step) {
     if (skips_sensing_) return 0;
-    const std::uint32_t number = observations_.add(action, step.observation);
-    return reports_numbers_ ? reports_.add(Model::skill_of(action), number) : number;
+    const int skill = Model::skill_of(action);
+    const std::uint32_t number = observations_.add(skill, step.observation);
+    return reports_numbers_ ? reports_.add(skill, number) : number;
   }
 
   void add_outcomes() {

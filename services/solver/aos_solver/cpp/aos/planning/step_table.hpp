@@ -66,7 +66,6 @@ class StepTable {
   };
 
   void list(const StateSpace<Model>& space) {
-    const point_based::FlatModel& rows = space.rows();
     numbering_ = space.numbering();
     actions_ = space.actions();
     rows_.clear();
@@ -81,12 +80,12 @@ class StepTable {
 
   void add_row(const StateSpace<Model>& space, std::size_t row) {
     const point_based::FlatModel& rows = space.rows();
-    const auto action = static_cast<int>(row % actions_);
+    const int skill = Model::skill_of(static_cast<int>(row % actions_));
     outcomes_.clear();
     double running = 0;
     for (const auto& outcome : rows.outcomes[row]) {
       for (const auto& likelihood : rows.likelihoods[outcome.sensing]) {
-        const Step step{rows.rewards[row], space.observations().of(action, likelihood.observation)};
+        const Step step{rows.rewards[row], space.observations().of(skill, likelihood.observation)};
         outcomes_.push_back({{step, outcome.next}, outcome.probability * likelihood.probability});
       }
       running += outcome.probability;

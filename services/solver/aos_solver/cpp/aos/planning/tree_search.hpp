@@ -155,7 +155,7 @@ class TreeSearch {
     std::uint32_t best = 0;
     double best_bound = -std::numeric_limits<double>::infinity();
     for (std::uint32_t a = 0; a < action_count(); ++a) {
-      if (number == 0 && barred_.has(a)) continue;
+      if (number == 0 && barred_.contains(a)) continue;
       if (comes_first(actions[a], number == 0)) return a;
       const double bound = value_of(actions[a], a, history) + bonus.of(actions[a]);
       if (bound > best_bound) {
@@ -210,7 +210,7 @@ class TreeSearch {
   int turn() const {
     if (spread_.simulations() % turns != 0) return -1;
     const auto next = static_cast<int>(spread_.simulations() / turns % action_count());
-    return barred_.has(static_cast<std::size_t>(next)) ? -1 : next;
+    return barred_.contains(static_cast<std::size_t>(next)) ? -1 : next;
   }
 
   // What the step reports is drawn, too.
