@@ -8,7 +8,7 @@ move before anything moves.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Protocol
+from typing import Any, Protocol
 
 import msgspec
 
@@ -301,30 +301,19 @@ class Mission:
         return True
 
     def _move_to(self, phase: str, step: int, belief: BeliefSummary, *, remark: str = "") -> None:
-        self._set_state(
-            msgspec.structs.replace(
-                self.state,
-                phase=phase,
-                step=step,
-                goal_probability=belief.goal_probability,
-                remark=remark,
-                revision=self._model.revision,
-            )
+        self._change_state(
+            phase=phase,
+            step=step,
+            goal_probability=belief.goal_probability,
+            remark=remark,
+            revision=self._model.revision,
         )
 
     def _end(self, ending: Ending, remark: str) -> None:
         goal = self.records[-1].belief.goal_probability if self.records else 0.0
-        self._set_state(
-            msgspec.structs.replace(
-                self.state,
-                phase="ended",
-                ending=ending.value,
-                remark=remark,
-                goal_probability=goal,
-            )
-        )
+        self._change_state(phase="ended", ending=ending.value, remark=remark, goal_probability=goal)
 
-    def _set_state(self, state: MissionState) -> None:
-        self.state = state
-        self._ports.journal("mission", state)
-        self._ports.publish_state(state)
+    def _change_state(self, **changes: Any) -> None:
+        self.state = msgspec.structs.replace(self.state, **changes)
+        self._ports.journal("mission", self.state)
+        self._ports.publish_state(self.state)

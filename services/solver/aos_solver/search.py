@@ -17,7 +17,7 @@ SEEDS_PER_MISSION = 1000
 class Search(msgspec.Struct, frozen=True, kw_only=True):
     """The budget of one decision: `time_s` if given, else `simulations`. `horizon` None is the document's.
 
-    With a budget in time the search can go on while an action is carried out (`ponders_while_acting`). With
+    With a budget in time the search can go on while an action is carried out (`ponder_while_acting`). With
     one in simulations it never does: how far it came would depend on the machine, and decisions would not
     repeat.
     """
@@ -28,7 +28,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     horizon: int | None = None
     planner: Planner = "auto"
     threads: int = 1
-    ponders_while_acting: bool = True
+    ponder_while_acting: bool = True
 
     def seed_of(self, step: int) -> int:
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""
@@ -48,5 +48,5 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
 
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Look ahead below the action of decision `step` while it is carried out, if that is wanted."""
-        if self.time_s is not None and self.ponders_while_acting:
+        if self.time_s is not None and self.ponder_while_acting:
             await engine.ponder(index, seed=self.seed_of(step), time_s=self.time_s, threads=self.threads)

@@ -12,6 +12,8 @@ import contextlib
 import logging
 from pathlib import Path
 
+import msgspec
+
 from aos_protocol.errors import AosError, BusError
 from aos_protocol.messages import (
     Activate,
@@ -82,15 +84,7 @@ class _Solver:
         )
         self._name = Path(settings.run_dir).name
         self._running: RunningModel | None = None
-        self._search = Search(
-            simulations=settings.simulations,
-            time_s=settings.time_s,
-            seed=settings.seed,
-            horizon=settings.horizon,
-            planner=settings.planner,
-            threads=settings.threads,
-            ponders_while_acting=settings.ponder_while_acting,
-        )
+        self._search = msgspec.convert(settings, Search, from_attributes=True)
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()
@@ -211,11 +205,7 @@ class _Solver:
             self._name,
             self._next_epoch(),
             self._running,
-            MissionLimits(
-                goal_probability=settings.goal_probability,
-                step_limit=settings.step_limit,
-                stop_below_value=settings.stop_below_value,
-            ),
+            msgspec.convert(settings, MissionLimits, from_attributes=True),
             self._search,
             self,
             activation_timeout_s=settings.activation_timeout_s,

@@ -193,6 +193,9 @@ class _Build(msgspec.Struct, frozen=True):
         engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
         await self._link(staging, [engine / _ENGINE_OBJECT, usual / _NUMBERS_OBJECT])
 
+    def _ready_engine(self, state_bytes: int) -> Path | None:
+        return self.cache.find(_engine_name(self.compiler, state_bytes))
+
     async def _engine(self, state_bytes: int) -> Path:
         return await build_engine(
             self.cache.directory,
@@ -206,7 +209,7 @@ class _Build(msgspec.Struct, frozen=True):
         """Processor time for a model that somebody waits for; more for long ones, and on slow machines."""
         if self.options == _OPTIONS["thorough"]:
             return None
-        engine_s = _engine_seconds(self.cache.find(_engine_name(self.compiler, STATE_BYTES[0])))
+        engine_s = _engine_seconds(self._ready_engine(STATE_BYTES[0]))
         return int(max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self.emitted.cpp.count("\n") / LINES_PER_CPU_S)
 
     async def _compile(self, staging: Path) -> None:
@@ -222,7 +225,7 @@ class _Build(msgspec.Struct, frozen=True):
     @property
     def _precompiled(self) -> list[str]:
         """The options for what quick builds include, if that is compiled already."""
-        entry = self.cache.find(_engine_name(self.compiler, STATE_BYTES[0]))
+        entry = self._ready_engine(STATE_BYTES[0])
         if entry is None or self.options != _OPTIONS["quick"]:
             return []
         return self.compiler.precompiled(_SUPPORT, str(entry))
@@ -240,10 +243,8 @@ class _Build(msgspec.Struct, frozen=True):
 
     def _ready_size(self, state_bytes: int) -> int:
         """That size, or any size where a quick build would have to compile that engine first."""
-        is_there = self.cache.find(_engine_name(self.compiler, state_bytes)) is not None
-        is_other_there = self.cache.find(_engine_name(self.compiler, ANY_SIZE)) is not None
-        is_quick = self.options == _OPTIONS["quick"]
-        return ANY_SIZE if is_quick and is_other_there and not is_there else state_bytes
+        is_waiting = self.options == _OPTIONS["quick"] and self._ready_engine(state_bytes) is None
+        return ANY_SIZE if is_waiting and self._ready_engine(ANY_SIZE) is not None else state_bytes
 
     async def _link(self, staging: Path, engine: list[Path]) -> None:
         model = staging / _OBJECT

@@ -106,7 +106,7 @@ class EngineChild:
 
     async def begin(self, deadline_s: float) -> None:
         """Waits for the initial belief; ModelError if the model has none."""
-        self.description = await self._exchange(None, EngineDescription, deadline_s)
+        self.description = await self.ask(None, EngineDescription, deadline_s)
 
     @property
     def pid(self) -> int:
@@ -122,9 +122,23 @@ class EngineChild:
         """The number of the document code that runs now or ran last, 0 for none; of threads, the first's."""
         return 0 if self._blame is None else running_piece(self._blame)
 
-    async def ask(self, command: str, kind: type[A], deadline_s: float) -> A:
-        """The answer to a command; ModelError for a fault of model code."""
-        return await self._exchange(command, kind, deadline_s)
+    async def ask(self, command: str | None, kind: type[A], deadline_s: float) -> A:
+        """The answer to a command, or to none; ModelError for a fault of model code."""
+        child = self._child
+        try:
+            async with asyncio.timeout(deadline_s):
+                if command is not None:
+                    child.stdin.write(command.encode() + b"\n")
+                    await child.stdin.drain()
+                line = await child.stdout.readline()
+        except TimeoutError:
+            text = f"the model did not finish within {deadline_s:.0f} s"
+            raise await self._lost(EndlessCodeError, text) from None
+        except (ConnectionError, ValueError):
+            line = b""
+        if not line.endswith(b"\n"):
+            raise await self._lost(CodeFaultError, "model code ended the engine")
+        return self._decoded(line, kind)
 
     async def close(self) -> None:
         """Ends the child; closing twice does nothing."""
@@ -145,24 +159,6 @@ class EngineChild:
         hint = "Look at this piece of the document"
         diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)
         return error_from_code(code, f"{span}: {message}", hint=hint, diagnostics=(diagnostic,))
-
-    async def _exchange(self, command: str | None, kind: type[A], deadline_s: float) -> A:
-        """One line there and one back; `command` None only waits for the answer."""
-        child = self._child
-        try:
-            async with asyncio.timeout(deadline_s):
-                if command is not None:
-                    child.stdin.write(command.encode() + b"\n")
-                    await child.stdin.drain()
-                line = await child.stdout.readline()
-        except TimeoutError:
-            text = f"the model did not finish within {deadline_s:.0f} s"
-            raise await self._lost(EndlessCodeError, text) from None
-        except (ConnectionError, ValueError):
-            line = b""
-        if not line.endswith(b"\n"):
-            raise await self._lost(CodeFaultError, "model code ended the engine")
-        return self._decoded(line, kind)
 
     def _decoded(self, line: bytes, kind: type[A]) -> A:
         try:

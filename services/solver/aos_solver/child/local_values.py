@@ -6,20 +6,26 @@ The middleware tells them as text: JSON for plain data, Python's `repr` for the 
 
 from __future__ import annotations
 
-import math
 import struct
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Annotated, Any
 
 import msgspec
 
-from aos_protocol.local_types import LocalType
 from aos_solver.emission.program import Local
 
 __all__ = ["UnusableLocals", "local_values_line"]
 
-_INT_RANGE = range(-(2**31), 2**31)
 _SHOWN_CHARACTERS = 60
+_Int = Annotated[int, msgspec.Meta(ge=-(2**31), lt=2**31)]
+_TYPES: Mapping[str, tuple[Any, Any]] = {
+    "bool": (bool, list[bool]),
+    "int": (_Int, list[_Int]),
+    "float": (float, list[float]),
+    "double": (float, list[float]),
+    "string": (str, list[str]),
+}
+"""By element: the type of one value, and that of an array."""
 
 
 class UnusableLocals(ValueError):
@@ -33,9 +39,11 @@ def local_values_line(wanted: Iterable[Local], texts: Mapping[str, str]) -> str:
     for local in wanted:
         text = texts.get(local.name, "null")
         try:
-            numbers += _numbers(local.kind, msgspec.json.decode(text))
-        except (msgspec.DecodeError, TypeError):
+            value = msgspec.json.decode(text, type=_TYPES[local.kind.element][local.kind.is_array])
+        except msgspec.DecodeError:
             reasons.append(_reason(local, text))
+        else:
+            numbers += _numbers(value)
     if reasons:
         raise UnusableLocals("; ".join(reasons))
     return " ".join(map(str, numbers))
@@ -49,50 +57,14 @@ def _reason(local: Local, text: str) -> str:
     return f"{local.name} is {shown}, which is no {kind}"
 
 
-def _numbers(kind: LocalType, value: Any) -> Iterator[int]:
-    """TypeError if the value is of another type."""
-    to_numbers = _OF_ELEMENT[kind.element]
-    if not kind.is_array:
-        yield from to_numbers(value)
-        return
-    if not isinstance(value, list):
-        raise TypeError
-    yield len(value)
-    for item in value:
-        yield from to_numbers(item)
-
-
-def _of_bool(value: Any) -> Iterator[int]:
-    if not isinstance(value, bool):
-        raise TypeError
-    yield int(value)
-
-
-def _of_int(value: Any) -> Iterator[int]:
-    if not isinstance(value, int) or isinstance(value, bool) or value not in _INT_RANGE:
-        raise TypeError
-    yield value
-
-
-def _of_real(value: Any) -> Iterator[int]:
-    """The bits of the number as a signed integer."""
-    if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
-        raise TypeError
-    yield from struct.unpack("<q", struct.pack("<d", value))
-
-
-def _of_text(value: Any) -> Iterator[int]:
-    if not isinstance(value, str):
-        raise TypeError
-    characters = value.encode()
-    yield len(characters)
-    yield from characters
-
-
-_OF_ELEMENT: Mapping[str, Callable[[Any], Iterator[int]]] = {
-    "bool": _of_bool,
-    "int": _of_int,
-    "float": _of_real,
-    "double": _of_real,
-    "string": _of_text,
-}
+def _numbers(value: Any) -> Iterator[int]:
+    """A number as it is, of a real one the bits as a signed integer; of a list or a text its size first."""
+    if isinstance(value, float):
+        yield from struct.unpack("<q", struct.pack("<d", value))
+    elif isinstance(value, int):
+        yield int(value)
+    else:
+        items = value.encode() if isinstance(value, str) else value
+        yield len(items)
+        for item in items:
+            yield from _numbers(item)

@@ -11,9 +11,8 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
     Assignment,
     EnumType,
-    Environment,
     Iteration,
-    SkillModel,
+    Project,
     Snippet,
     TemporaryVariable,
 )
@@ -32,7 +31,7 @@ from aos_solver.emission.lower_types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
 from aos_solver.emission.rewrite import EnumValues, Rewriting, rewrite
 
-__all__ = ["Phase", "Pieces", "SectionLowering", "environment_sections", "skill_sections"]
+__all__ = ["Phase", "Pieces", "SectionLowering", "sections_of"]
 
 
 class Phase(msgspec.Struct, frozen=True):
@@ -53,24 +52,22 @@ GIVEN = Phase("a state given an observation", "state___", frozenset({"state___"}
 LOOKING = Phase("this section")
 
 
-def environment_sections(environment: Environment) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
-    """The environment's code by phase."""
+def sections_of(project: Project) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
+    """All code of a project, by phase."""
+    environment = project.environment
     yield BELIEF, environment.initial_belief
     yield EXTRINSIC, environment.extrinsic_changes
     yield LOOKING, environment.state_heuristic
     yield LOOKING, environment.print_state
     for special in environment.special_states:
         yield LOOKING, special.code
-
-
-def skill_sections(model: SkillModel) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
-    """A skill's code by phase."""
-    yield LOOKING, model.possible_parameters
-    yield LOOKING, model.precondition
-    yield LOOKING, model.execution_time
-    yield LOOKING, model.rollout_policy
-    yield DYNAMIC, model.dynamic_model
-    yield GIVEN, model.state_given_observation
+    for model in (skill.model for skill in project.skills):
+        yield LOOKING, model.possible_parameters
+        yield LOOKING, model.precondition
+        yield LOOKING, model.execution_time
+        yield LOOKING, model.rollout_policy
+        yield DYNAMIC, model.dynamic_model
+        yield GIVEN, model.state_given_observation
 
 
 class Pieces:

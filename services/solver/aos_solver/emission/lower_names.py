@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import Assignment, Environment, Project, SkillModel
+from aos_protocol.documents import Environment, Project
 from aos_protocol.findings import Findings
 from aos_runtime.cpp_keywords import CPP_KEYWORDS
+from aos_solver.emission.lower_code import sections_of
 
-__all__ = ["assignments_of", "check_names"]
+__all__ = ["check_names"]
 
 _OF_THE_LANGUAGE = frozenset({
     "AOS", "AOSUtils", "EOF", "INFINITY", "NAN", "NULL", "anyValue", "aos", "errno", "state", "state_",
@@ -44,16 +45,6 @@ def check_names(project: Project, findings: Findings) -> None:
             _check(rule.response, rule.span, findings, _OF_EMITTED_SKILLS)
 
 
-def assignments_of(model: SkillModel) -> Iterator[Assignment]:
-    """All blocks of a skill document."""
-    yield from model.possible_parameters
-    yield from model.precondition
-    yield from model.rollout_policy
-    yield from model.execution_time
-    yield from model.dynamic_model
-    yield from model.state_given_observation
-
-
 def _type_names(environment: Environment) -> Iterator[tuple[str, Span]]:
     yield from ((enum.name, enum.span) for enum in environment.enums)
     yield from ((compound.name, compound.span) for compound in environment.compounds)
@@ -64,16 +55,12 @@ def _member_names(project: Project) -> Iterator[tuple[str, Span]]:
     for compound in environment.compounds:
         yield from ((field.name, field.span) for field in compound.fields)
     yield from ((variable.name, variable.span) for variable in environment.variables)
-    blocks = [*environment.initial_belief, *environment.extrinsic_changes, *environment.state_heuristic]
-    blocks += environment.print_state
-    blocks += [block for special in environment.special_states for block in special.code]
     if project.low_level is not None:
         yield from ((constant.name, constant.span) for constant in project.low_level.constants)
     for skill in project.skills:
         yield skill.name, skill.model.span
         yield from ((parameter.name, parameter.span) for parameter in skill.model.parameters)
-        blocks += assignments_of(skill.model)
-    for block in blocks:
+    for block in (block for _, section in sections_of(project) for block in section):
         if (temporary := block.temporary) is not None:
             names = (temporary.name, temporary.enum_name, *temporary.enum_values)
             yield from ((name, temporary.span) for name in names if name)

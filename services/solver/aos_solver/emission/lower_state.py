@@ -10,7 +10,7 @@ from aos_protocol.local_types import reported_variables
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import read_cpp
 from aos_solver.emission.lower_capacities import Capacities
-from aos_solver.emission.lower_code import Pieces, environment_sections, skill_sections
+from aos_solver.emission.lower_code import Pieces, sections_of
 from aos_solver.emission.lower_types import Types, ordered_compounds
 from aos_solver.emission.lower_writes import Changes, drawing_defaults
 from aos_solver.emission.program import Compound, Field, ObjectList, ParameterValues, Variable
@@ -42,9 +42,7 @@ def capacities_of(project: Project) -> Capacities:
     for skill in project.skills:
         for name in reported_variables(skill.mapping, environment):
             capacities.fill_by_report(name)
-    sections = [*environment_sections(environment)]
-    sections += [section for skill in project.skills for section in skill_sections(skill.model)]
-    for _, assignments in sections:
+    for _, assignments in sections_of(project):
         capacities.read_code(cpp for _, cpp in snippets_of(assignments))
     return capacities
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from aos_protocol.documents import Assignment, Environment, Project
+from aos_protocol.documents import Environment, Project
 from aos_protocol.local_types import reported_variables
 from aos_runtime.cpp_facts import READING_FUNCTIONS
+from aos_runtime.cpp_flow import STATES
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
     Access,
@@ -22,11 +23,10 @@ from aos_runtime.snippets import (
     read_cpp,
     read_cpp_expression,
 )
-from aos_solver.emission.lower_code import Phase, environment_sections, skill_sections
+from aos_solver.emission.lower_code import sections_of
 
 __all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]
 
-_ALL_COPIES = frozenset({"state", "state_", "state__", "state___"})
 LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
 """Where a lambda begins."""
 
@@ -49,7 +49,7 @@ class Changes:
         passed_on = list(_passed_to_functions(cpp))
         changed_by_lambda = _changed_by_lambdas(cpp, passed_on)
         for mention in cpp.mentions:
-            if mention.path[0] not in _ALL_COPIES:
+            if mention.path[0] not in STATES:
                 continue
             if mention.extent.start in changed_by_lambda and mention.path[0] in copies:
                 self.variables |= self._names & changed_by_lambda[mention.extent.start]
@@ -84,10 +84,10 @@ def changes_of(project: Project) -> Changes:
     environment = project.environment
     for skill in project.skills:
         changes.variables.update(reported_variables(skill.mapping, environment))
-    for phase, assignments in _all_sections(project):
+    for phase, assignments in sections_of(project):
         copies = phase.changes
         if environment.is_one_state_model and phase.changes:
-            copies = _ALL_COPIES
+            copies = STATES
         for assignment in assignments:
             for loop in (*assignment.over_previous, *assignment.over_next):
                 changes.walk(loop.type)
@@ -119,12 +119,6 @@ def drawing_defaults(environment: Environment) -> Iterator[str]:
             mentions = read_cpp(snippet.code).mentions or read_cpp_expression(snippet.code).mentions
             if any(mention.path[0] in ("AOS", "AOSUtils") for mention in mentions):
                 yield variable.name
-
-
-def _all_sections(project: Project) -> Iterator[tuple[Phase, tuple[Assignment, ...]]]:
-    yield from environment_sections(project.environment)
-    for skill in project.skills:
-        yield from skill_sections(skill.model)
 
 
 def _passed_to_functions(cpp: Cpp) -> Iterator[range]:

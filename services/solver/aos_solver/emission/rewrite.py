@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
+from aos_runtime.cpp_flow import STATES
 from aos_runtime.observed import reports_in
 from aos_runtime.snippets import Call, Cpp, Extent
 from aos_solver.emission.program import Edit
@@ -16,7 +17,6 @@ from aos_solver.emission.rewrite_objects import object_edits
 __all__ = ["EnumValues", "Rewriting", "rewrite"]
 
 _SCOPE = re.compile(r"AOS(?:Utils)?")
-_STATES = frozenset({"state", "state_", "state__", "state___"})
 
 EnumValues = tuple[str, ...] | None
 """The values of an enum that does not count from 0 upwards; None for one that does."""
@@ -76,7 +76,7 @@ def _of_mentions(
             continue
         if scope := re.compile(r"AOSUtils\s*::").match(cpp.code, mention.root.start):
             yield _extent(cpp.code, scope.end() - 2, scope.end()), "."
-        if mention.path[0] not in _STATES or len(mention.path) < 2:
+        if mention.path[0] not in STATES or len(mention.path) < 2:
             continue
         after_root = mention.root.end
         if arrow := re.compile(r"\s*->").match(cpp.code, after_root):
@@ -111,21 +111,15 @@ def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Exte
     first = call.arguments[0]
     enum = code[first.start : first.end].strip()
     if enum in rewriting.containers:
-        # Where there are fewer values than weights, `at` tells it.
-        yield first, "-1"
-        yield call.extent.start, f"{enum}.at("
-        yield call.extent.end, ")"
-        return
-    if enum not in rewriting.enums:
-        return
-    values = rewriting.enums[enum]
-    yield first, "-1"
-    if values is None:
-        yield call.extent.start, f"{enum}("
-        yield call.extent.end, ")"
+        before = f"{enum}.at("  # Where there are fewer values than weights, `at` tells it.
+    elif enum in rewriting.enums:
+        values = rewriting.enums[enum]
+        before = f"{enum}(" if values is None else f"aos::nth({{{', '.join(values)}}}, "
     else:
-        yield call.extent.start, f"aos::nth({{{', '.join(values)}}}, "
-        yield call.extent.end, ")"
+        return
+    yield first, "-1"
+    yield call.extent.start, before
+    yield call.extent.end, ")"
 
 
 def _extent(code: str, start: int, end: int) -> Extent:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from aos_runtime.cpp_flow import STATES
 from aos_runtime.snippets import Access, Cpp, Declaration, DeclarationKind
 
 __all__ = ["container_edits"]
@@ -20,7 +21,6 @@ _ITERATOR = re.compile(
     r"((?:std\s*::\s*)?(?:vector|map|string)\b[^\n;(){}]*::\s*(?:const_)?(?:reverse_)?iterator)\s+$"
 )
 _VECTOR = re.compile(r"(?:^|[;{}])\s*((?:std\s*::\s*)?vector\s*<[^;(){}]*>\s*)$")
-_STATES = frozenset({"state", "state_", "state__", "state___"})
 _READING_METHODS = frozenset({"at", "back", "cbegin", "cend", "empty", "front", "size"})
 _LITERAL = re.compile(r"[-+\s{},]|\d[\w.]*|\.\d\w*")
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -52,20 +52,17 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
     if declaration.kind is DeclarationKind.PARAMETER:
         return re.search(r"\]\s*\([^()]*$", before) is not None
     initial = declaration.initial
-    if initial is None:
-        return False
-    return any(
-        mention.path[0] in _STATES and mention.extent.start == initial.start for mention in cpp.mentions
-    )
+    return initial is not None and initial.start in _places_of_state(cpp)
 
 
 def _mentions_state(cpp: Cpp, declaration: Declaration) -> bool:
     """Whether the state stands anywhere in what a variable starts with."""
     initial = declaration.initial
-    return initial is not None and any(
-        mention.path[0] in _STATES and initial.start <= mention.extent.start < initial.end
-        for mention in cpp.mentions
-    )
+    return initial is not None and any(initial.start <= at < initial.end for at in _places_of_state(cpp))
+
+
+def _places_of_state(cpp: Cpp) -> set[int]:
+    return {mention.extent.start for mention in cpp.mentions if mention.path[0] in STATES}
 
 
 def _is_constant_table(cpp: Cpp, declaration: Declaration, values: frozenset[str]) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from aos_runtime.cpp_flow import STATES
 from aos_runtime.snippets import Cpp, Declaration, DeclarationKind, Extent, strip_comments
 
 __all__ = ["object_edits"]
@@ -15,7 +16,6 @@ __all__ = ["object_edits"]
 _POINTER = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*\*\s*$")
 _REFERENCE = re.compile(r"(\bconst\s+)?\b([A-Za-z_]\w*)\s*&\s*$")
 _NO_OBJECT = frozenset({"", "0", "NULL", "nullptr", "{}", "{nullptr}"})
-_STATES = frozenset({"state", "state_", "state__"})
 _ALWAYS_WRITTEN = "state__"
 
 
@@ -81,7 +81,7 @@ def _copies_in(cpp: Cpp, type_name: str, extent: Extent | None = None) -> set[st
     return {
         mention.path[0]
         for mention in cpp.mentions
-        if mention.path[0] in _STATES
+        if mention.path[0] in STATES
         and mention.path[1:2] == (f"{type_name}Objects",)
         and (extent is None or extent.start <= mention.extent.start < extent.end)
     }
