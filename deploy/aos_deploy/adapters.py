@@ -83,7 +83,7 @@ def read_adapters(node: YamlMap, findings: Findings, world: str) -> tuple[Adapte
 
 
 def played_by_model(faults: Mapping[str, float] | None = None) -> tuple[AdapterPlan, ...]:
-    """Every skill is played by its own document, with these faults (`aos_solver.played_faults`)."""
+    """Every skill is played by its own document, with these faults (`aos_deploy.played_faults`)."""
     kind, options = adapter_kinds()[MODEL], {"faults": dict(faults)} if faults else {}
     return (AdapterPlan(name=MODEL, kind_name=MODEL, kind=kind, options=options, serves_others=True),)
 

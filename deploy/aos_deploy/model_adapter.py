@@ -15,12 +15,12 @@ from typing import Any
 
 import msgspec
 
+from aos_deploy.played_faults import FAILED_CALL, LOST_RESULT, NO_ANSWER, PlayedFaults
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.adapters import Call, Host, Observed
 from aos_solver.child.engine import Engine
 from aos_solver.hot_plug import build_project
-from aos_solver.played_faults import FAILED_CALL, LOST_RESULT, NO_ANSWER, PlayedFaults
 
 __all__ = ["ModelAdapter", "PlayedStep"]
 

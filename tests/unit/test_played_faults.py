@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from aos_deploy.played_faults import PlayedFaults
 from aos_deploy.shipped import shipped
 from aos_deploy.trials.setting import Setting, deployment_of
 from aos_protocol.errors import DeployError
-from aos_solver.played_faults import PlayedFaults
 
 SKILLS = ("pick", "serve")
 

@@ -11,8 +11,8 @@ from ruamel.yaml import YAML
 from aos_deploy.adapters import played_by_model
 from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file
+from aos_deploy.played_faults import PlayedFaults
 from aos_protocol.errors import DeployError
-from aos_solver.played_faults import PlayedFaults
 
 __all__ = ["Player", "Setting", "deployment_of"]
 
