@@ -8,7 +8,10 @@ import signal
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["descendants", "has_listener", "is_running", "kill", "until_ended"]
+__all__ = ["HANG_S", "descendants", "has_listener", "is_running", "kill", "until_ended"]
+
+HANG_S = 900.0
+"""How long tests wait for what takes seconds on a machine without other work: only a hang takes longer."""
 
 
 def is_running(pid: int) -> bool:
@@ -31,7 +34,7 @@ def descendants(pid: int) -> list[int]:
     return below
 
 
-async def until_ended(pids: list[int], timeout_s: float = 10.0) -> None:
+async def until_ended(pids: list[int], timeout_s: float = HANG_S) -> None:
     """Returns once none of them runs; TimeoutError if one goes on. They need not be children."""
     async with asyncio.timeout(timeout_s):
         for pid in pids:

@@ -17,9 +17,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from processes import HANG_S
+
 __all__ = ["refusing_ssh", "ssh_server", "stand_in"]
 
-PATIENCE_S = 20.0
 
 # As sshd it ends the command's input when it is ended, and nothing else of it.
 STAND_IN = """#!{python}
@@ -102,7 +103,7 @@ def ssh_server(folder: Path) -> Iterator[str]:
 
 
 def _until_it_listens(port: int) -> None:
-    deadline_s = time.monotonic() + PATIENCE_S
+    deadline_s = time.monotonic() + HANG_S
     while time.monotonic() < deadline_s:
         with socket.socket() as probe:
             if probe.connect_ex(("127.0.0.1", port)) == 0:

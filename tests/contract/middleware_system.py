@@ -11,6 +11,7 @@ from typing import Any
 
 import msgspec
 from mapping_documents import project_in, skill_of
+from processes import HANG_S
 
 from aos_middleware.settings import Settings
 from aos_protocol.documents import Project
@@ -34,7 +35,7 @@ from aos_runtime.children import PIPE, Child
 from aos_runtime.reported_state import state_when
 
 __all__ = [
-    "PATIENCE_S",
+    "HANG_S",
     "SENSE",
     "Adapter",
     "Registry",
@@ -45,7 +46,6 @@ __all__ = [
     "succeed",
 ]
 
-PATIENCE_S = 20.0
 
 SENSE = """\
 project: armadillo
@@ -165,7 +165,7 @@ class System:
         path.write_bytes(msgspec.json.encode(values))
         self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=PIPE)
         self._reading = asyncio.create_task(self._read_log(self.child))
-        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.live("middleware")) as present:
+        async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.live("middleware")) as present:
             async for _, is_alive in present:
                 if is_alive:
                     return
@@ -185,7 +185,7 @@ class System:
 
     async def state_when(self, holds: Callable[[MappingState], bool]) -> MappingState:
         return await state_when(
-            self.bus, self.keys.mapping_state, MappingQuery(), MappingState, holds, timeout_s=PATIENCE_S
+            self.bus, self.keys.mapping_state, MappingQuery(), MappingState, holds, timeout_s=HANG_S
         )
 
     async def activate(
@@ -197,11 +197,11 @@ class System:
         revision: int = 0,
     ) -> Outcome:
         request = Activate(ActivationId("m", 1, step), skill, parameters or {}, deadline_s, revision=revision)
-        return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=PATIENCE_S)
+        return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=HANG_S)
 
     async def logged(self, text: str) -> None:
         """Returns once the service has logged a text."""
-        async with asyncio.timeout(PATIENCE_S), self._has_logged:
+        async with asyncio.timeout(HANG_S), self._has_logged:
             await self._has_logged.wait_for(lambda: text in self._log)
 
     async def _read_log(self, child: Child) -> None:

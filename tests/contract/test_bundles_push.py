@@ -11,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 import pytest_asyncio
+from processes import HANG_S
 from typer.testing import CliRunner, Result
 
 from aos_deploy.cli import aos_app
@@ -28,7 +29,7 @@ async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncItera
     settings = Settings(robot="test", service="registry", endpoint=endpoint, run_dir=str(tmp_path))
     path = tmp_path / "registry.json"
     path.write_bytes(msgspec.json.encode(settings))
-    async with asyncio.timeout(20), bus.presence(keys.live("registry")) as presence:
+    async with asyncio.timeout(HANG_S), bus.presence(keys.live("registry")) as presence:
         child = await Child.start(
             [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
         )

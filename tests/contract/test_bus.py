@@ -12,6 +12,7 @@ from contextlib import asynccontextmanager
 import msgspec
 import pytest
 import zenoh
+from processes import HANG_S
 from zenoh.handlers import Callback
 
 from aos_protocol.codec import encode
@@ -136,7 +137,7 @@ async def test_who_knows_no_receipts_asks_and_answers_all_the_same(
         answer = encode(Catalogue((ENTRY,)), sender="outsider", stamp_ns=0)
         await other.answer(keys.catalogue, ProjectQuery, list_catalogue)
         replies = await asyncio.to_thread(
-            lambda: list(outsider.get(keys.catalogue, payload=question, timeout=5.0))
+            lambda: list(outsider.get(keys.catalogue, payload=question, timeout=HANG_S))
         )
         assert len(replies) == 1
         queryable = outsider.declare_queryable(
@@ -150,7 +151,7 @@ async def test_who_knows_no_receipts_asks_and_answers_all_the_same(
 
 async def until_answered(bus: Bus, key: str) -> None:
     """The router has taken in the outsider's declaration, and the answer is the one it gives."""
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(HANG_S):
         while True:
             try:
                 catalogue = await bus.ask(key, ProjectQuery("a"), Catalogue, timeout_s=5)
@@ -352,7 +353,7 @@ async def test_presence_ends_with_a_process_that_cannot_say_goodbye(
     async with (
         bus.presence(keys.all_live) as changes,
         running(sys.executable, "-c", ANNOUNCE, endpoint) as child,
-        asyncio.timeout(10),
+        asyncio.timeout(HANG_S),
     ):
         assert await anext(changes) == (keys.live("mortal"), True)
         os.kill(child.pid, death)
@@ -393,7 +394,7 @@ asyncio.run(main())
 
 
 async def test_an_interpreter_ends_though_its_bus_was_never_closed(endpoint: str) -> None:
-    async with running(sys.executable, "-c", NEVER_CLOSE, endpoint) as child, asyncio.timeout(20):
+    async with running(sys.executable, "-c", NEVER_CLOSE, endpoint) as child, asyncio.timeout(HANG_S):
         assert await child.wait() == 5
 
 

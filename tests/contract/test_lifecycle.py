@@ -12,7 +12,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from processes import descendants, until_ended
+from processes import HANG_S, descendants, until_ended
 from small_service import Settings
 
 from aos_protocol.keys import Keys
@@ -125,7 +125,7 @@ asyncio.run(main())
 async def test_a_service_ends_with_its_parent(host: Host, bus: Bus, keys: Keys, mood: str) -> None:
     argv = [sys.executable, "-c", START_A_SERVICE, str(host.settings("garden", mood))]
     parent = await Child.start(argv, env={"PYTHONPATH": str(TESTS)}, stdout=PIPE)
-    async with bus.presence(keys.live("garden")) as changes, asyncio.timeout(10):
+    async with bus.presence(keys.live("garden")) as changes, asyncio.timeout(HANG_S):
         pid = int(await parent.stdout.readline())
         assert await anext(changes) == (keys.live("garden"), True)
         below = [pid, *descendants(pid)]

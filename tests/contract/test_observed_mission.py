@@ -13,6 +13,7 @@ import msgspec
 import pytest
 import pytest_asyncio
 from models import built_text, engine_of
+from processes import HANG_S
 from scripted_models import text_project
 
 from aos_middleware.settings import Settings
@@ -41,8 +42,6 @@ from aos_solver.endings import MissionLimits
 from aos_solver.hot_plug import RunningModel
 from aos_solver.mission import Mission
 from aos_solver.search import Search
-
-PATIENCE_S = 20.0
 
 STOCK = {
     "stock.ef": """project: stock
@@ -170,7 +169,7 @@ class Robot:
 
     async def activate(self, request: Activate) -> Outcome:
         key = self._keys.activate(request.skill)
-        return await self._bus.ask(key, request, Outcome, timeout_s=PATIENCE_S)
+        return await self._bus.ask(key, request, Outcome, timeout_s=HANG_S)
 
     async def until_changed(self, timeout_s: float) -> None:
         """The adapter stays."""
@@ -185,7 +184,7 @@ class Robot:
             MappingQuery(),
             MappingState,
             lambda state: bool(state.skills),
-            timeout_s=PATIENCE_S,
+            timeout_s=HANG_S,
         )
 
 
@@ -197,7 +196,7 @@ async def start_middleware(bus: Bus, keys: Keys, endpoint: str, run_dir: Path) -
     path = run_dir / "middleware.json"
     path.write_bytes(msgspec.json.encode(settings))
     child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)])
-    async with asyncio.timeout(PATIENCE_S), bus.presence(keys.live("middleware")) as present:
+    async with asyncio.timeout(HANG_S), bus.presence(keys.live("middleware")) as present:
         async for _, is_alive in present:
             if is_alive:
                 break

@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 import pytest
 import pytest_asyncio
+from processes import HANG_S
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
@@ -26,8 +27,6 @@ from aos_protocol.messages import (
 from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
-
-PATIENCE_S = 30.0
 
 ROBOT = """
 import asyncio, time
@@ -98,7 +97,7 @@ class Robot:
 
     async def start(self, **bound: str) -> None:
         await self.launch(**bound)
-        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.all_serve) as present:
+        async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.all_serve) as present:
             paths: set[str] = set()
             async for key, _ in present:
                 serving = self.keys.serving_of(key)
@@ -109,10 +108,10 @@ class Robot:
 
     async def call(self, path: str, step: int = 1, **fields: Any) -> SkillResult:
         call = SkillCall(ActivationId("m", 1, step), path, fields, 20.0)
-        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=PATIENCE_S)
+        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
 
     async def cancel(self, path: str) -> Cancelled:
-        return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=PATIENCE_S)
+        return await self.bus.ask(self.keys.cancel(path), Cancel("enough"), Cancelled, timeout_s=HANG_S)
 
     async def refusal(self, path: str, step: int = 1, **fields: Any) -> AosError:
         with pytest.raises(AosError) as error:
@@ -134,7 +133,7 @@ async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: R
     await robot.start(drive="robot.py:drive")
     progress = robot.bus.listen(robot.keys.progress("/drive"), SkillProgress)
     poses = robot.bus.listen(robot.keys.topic("/pose"), TopicMessage)
-    async with asyncio.timeout(PATIENCE_S), progress, poses:
+    async with asyncio.timeout(HANG_S), progress, poses:
         result = await robot.call("/drive", x=1.5)
         assert (result.fields, result.published) == ({"success": True}, {"/pose": 1})
         assert (await anext(poses))[1].fields == {"x": 1.5, "y": 0.0}
@@ -174,7 +173,7 @@ async def test_what_goes_wrong_in_a_function_fails_that_call_alone(
 async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, function: str) -> None:
     await robot.start(skill=f"robot.py:{function}", drive="robot.py:drive")
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
-    async with asyncio.timeout(PATIENCE_S), progress:
+    async with asyncio.timeout(HANG_S), progress:
         running = asyncio.create_task(robot.refusal("/skill", 1))
         await anext(progress)
         assert (await robot.cancel("/skill")).ids == ("m-1-1",)
@@ -185,7 +184,7 @@ async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, fun
 async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown(robot: Robot) -> None:
     await robot.start(skill="robot.py:hang")
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
-    async with asyncio.timeout(PATIENCE_S), progress:
+    async with asyncio.timeout(HANG_S), progress:
         running = asyncio.create_task(robot.refusal("/skill", 1))
         async for _, each in progress:
             if each.state == "executing":
@@ -195,7 +194,7 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
     assert error.value.code == "AOS504"
     await running
     assert robot.child is not None
-    async with asyncio.timeout(PATIENCE_S):
+    async with asyncio.timeout(HANG_S):
         assert await robot.child.wait() == 1
     assert "/skill did not stop within 0.5 s" in (robot.folder / "python.log").read_text()
 
@@ -213,7 +212,7 @@ async def test_what_cannot_be_bound_ends_the_process_with_one_message(
     robot: Robot, target: str, text: str
 ) -> None:
     child = await robot.launch(skill=target)
-    async with asyncio.timeout(PATIENCE_S):
+    async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1
     log = (robot.folder / "python.log").read_text()
     assert text in log

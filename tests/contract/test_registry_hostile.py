@@ -17,6 +17,7 @@ from pathlib import Path
 import msgspec
 import pytest
 import pytest_asyncio
+from processes import HANG_S
 from test_registry_service import TIMEOUT_S, current, push, running_registry, written_settings
 
 from aos_protocol.errors import AosError
@@ -138,7 +139,7 @@ async def test_dropped_hostile_archives_do_not_take_the_registry_down(
 ) -> None:
     run_dir, child = registry
     chance = random.Random(SEED)
-    async with asyncio.timeout(60), bus.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, BundleReport) as reports:
         for number in range(DROPPED_ARCHIVES):
             form, data = hostile_archive(finer, chance)
             (run_dir / "drop" / f"{number:03}.{form}").write_bytes(data)

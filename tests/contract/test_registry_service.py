@@ -12,6 +12,7 @@ from pathlib import Path
 import msgspec
 import pytest
 import pytest_asyncio
+from processes import HANG_S
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DocumentError
@@ -32,8 +33,6 @@ from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 
-TIMEOUT_S = 20.0
-
 
 def written_settings(settings: Settings) -> Path:
     path = Path(settings.run_dir) / "registry.json"
@@ -49,7 +48,7 @@ async def running_registry(run_dir: Path, endpoint: str, bus: Bus, keys: Keys) -
         robot="test", service="registry", endpoint=endpoint, run_dir=str(run_dir), quiet_s=0.1
     )
     path = written_settings(settings)
-    async with asyncio.timeout(TIMEOUT_S), bus.presence(keys.live("registry")) as presence:
+    async with asyncio.timeout(HANG_S), bus.presence(keys.live("registry")) as presence:
         child = await Child.start(
             [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
         )
@@ -75,17 +74,17 @@ def finer(bundles: Path) -> dict[str, bytes]:
 
 
 async def push(bus: Bus, keys: Keys, files: dict[str, bytes]) -> BundleReport:
-    return await bus.ask(keys.push_bundle, PushBundle(files, "test"), BundleReport, timeout_s=TIMEOUT_S)
+    return await bus.ask(keys.push_bundle, PushBundle(files, "test"), BundleReport, timeout_s=HANG_S)
 
 
 async def current(bus: Bus, keys: Keys, project: str = "armadillo") -> ProjectRevision:
-    return await bus.ask(keys.project, ProjectQuery(project), ProjectRevision, timeout_s=TIMEOUT_S)
+    return await bus.ask(keys.project, ProjectQuery(project), ProjectRevision, timeout_s=HANG_S)
 
 
 async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
     registry: Path, bus: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:
-    async with asyncio.timeout(TIMEOUT_S), bus.listen(keys.announced, ProjectRevision) as announced:
+    async with asyncio.timeout(HANG_S), bus.listen(keys.announced, ProjectRevision) as announced:
         report = await push(bus, keys, finer)
         assert report.is_accepted
         assert report.revision == 1
@@ -100,7 +99,7 @@ async def test_a_pushed_bundle_is_announced_listed_and_given_to_whoever_asks(
             assert revision == await current(bus, keys)
             assert revision == await current(bus, keys, project="")
             break
-    catalogue = await bus.ask(keys.catalogue, CatalogueQuery(), Catalogue, timeout_s=TIMEOUT_S)
+    catalogue = await bus.ask(keys.catalogue, CatalogueQuery(), Catalogue, timeout_s=HANG_S)
     (entry,) = catalogue.entries
     assert (entry.project, entry.revision, entry.skills) == ("armadillo", 1, tuple(sorted(report.added)))
 
@@ -200,7 +199,7 @@ async def test_an_unknown_project_is_an_error_that_names_the_known_ones(
 async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
     registry: Path, bus: Bus, keys: Keys, bundles: Path
 ) -> None:
-    async with asyncio.timeout(TIMEOUT_S), bus.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, BundleReport) as reports:
         shutil.copytree(bundles / "armadillo-finer", registry / "drop" / "armadillo")
         async for _, report in reports:
             assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo")
@@ -215,7 +214,7 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
 
 
 async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Keys, bundles: Path) -> None:
-    async with asyncio.timeout(TIMEOUT_S), bus.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, BundleReport) as reports:
         shutil.make_archive(str(registry / "drop" / "armadillo"), "zip", bundles / "armadillo-finer")
         async for _, report in reports:
             assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo.zip")
@@ -225,10 +224,10 @@ async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Key
 async def test_every_push_and_removal_is_told_on_the_bus(
     registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
 ) -> None:
-    async with asyncio.timeout(TIMEOUT_S), other.listen(keys.bundle_report, BundleReport) as reports:
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
         pushed = await push(bus, keys, finer)
         request = RemoveDocuments("armadillo", "observe_holding")
-        removed = await bus.ask(keys.remove_bundle, request, BundleReport, timeout_s=TIMEOUT_S)
+        removed = await bus.ask(keys.remove_bundle, request, BundleReport, timeout_s=HANG_S)
         assert removed.removed == ("observe_holding",)
         told = [(await anext(aiter(reports)))[1] for _ in range(2)]
     assert told == [pushed, removed]

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import pytest_asyncio
+from processes import HANG_S
 from ros1_core import PYTHON, roscore, skip_without_ros1
 
 from aos_protocol.errors import AosError, BusError, SkillError
@@ -17,7 +18,6 @@ from aos_skills.ros1.node import Ros1Node
 
 ROBOT = Path(__file__).resolve().parents[1] / "ros1_robot.py"
 WITHOUT_ROS = ROBOT.parent / "data" / "python_without_ros.sh"
-DEADLINE_S = 20.0
 TEST = "actionlib/action/Test"
 
 
@@ -54,30 +54,28 @@ async def node(master: str) -> AsyncIterator[Ros1Node]:
 
 async def test_services_answer_and_their_errors_are_told(robot: Child, node: Ros1Node) -> None:
     stop = {"success": True, "message": "stands"}
-    assert await node.call("/robot/stop", {}, timeout_s=DEADLINE_S, discovery_s=DEADLINE_S) == stop
+    assert await node.call("/robot/stop", {}, timeout_s=HANG_S, discovery_s=HANG_S) == stop
     with pytest.raises(SkillError, match="the brake is worn") as raised:
-        await node.call("/robot/stop", {}, timeout_s=DEADLINE_S)
+        await node.call("/robot/stop", {}, timeout_s=HANG_S)
     assert raised.value.code == "AOS510"
     with pytest.raises(SkillError, match="is of type std_srvs/Trigger, not std_srvs/SetBool"):
-        await node.call("/robot/stop", {}, type_name="std_srvs/srv/SetBool", timeout_s=DEADLINE_S)
+        await node.call("/robot/stop", {}, type_name="std_srvs/srv/SetBool", timeout_s=HANG_S)
     with pytest.raises(SkillError, match="std_srvs/TriggerRequest has no field speed"):
-        await node.call("/robot/stop", {"speed": 1}, timeout_s=DEADLINE_S)
+        await node.call("/robot/stop", {"speed": 1}, timeout_s=HANG_S)
 
 
 async def test_actions_give_feedback_end_fail_and_are_cancelled(robot: Child, node: Ros1Node) -> None:
     await until(node, "/robot/drive", "action")
     feedback: list[Any] = []
-    end = await node.run_action(
-        "/robot/drive", {"goal": 5}, timeout_s=DEADLINE_S, on_feedback=feedback.append
-    )
+    end = await node.run_action("/robot/drive", {"goal": 5}, timeout_s=HANG_S, on_feedback=feedback.append)
     assert end == ("succeeded", {"result": 5})
     assert {"feedback": 4} in feedback
-    assert (await node.run_action("/robot/drive", {"goal": -1}, timeout_s=DEADLINE_S)).status == "aborted"
+    assert (await node.run_action("/robot/drive", {"goal": -1}, timeout_s=HANG_S)).status == "aborted"
     cancelled = asyncio.Event()
     end = await node.run_action(
         "/robot/drive",
         {"goal": 10_000},
-        timeout_s=DEADLINE_S,
+        timeout_s=HANG_S,
         cancelled=cancelled,
         on_feedback=lambda _: cancelled.set(),
     )
@@ -86,12 +84,12 @@ async def test_actions_give_feedback_end_fail_and_are_cancelled(robot: Child, no
 
 
 async def test_topics_are_found_by_name_and_latched_messages_come(robot: Child, node: Ros1Node) -> None:
-    found = await node.topic("/robot/said", DEADLINE_S)
+    found = await node.topic("/robot/said", HANG_S)
     assert found is not None
     assert found.type_name == "std_msgs/String"
     said: asyncio.Queue[Any] = asyncio.Queue()
     node.subscribe("/robot/said", found.type_name, said.put_nowait)
-    assert await asyncio.wait_for(said.get(), DEADLINE_S) == {"data": "ready"}
+    assert await asyncio.wait_for(said.get(), HANG_S) == {"data": "ready"}
 
 
 async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, node: Ros1Node) -> None:
@@ -102,7 +100,7 @@ async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, nod
     )
     await started.wait()
     robot.kill()
-    async with asyncio.timeout(DEADLINE_S):
+    async with asyncio.timeout(HANG_S):
         while node.kind_of("/robot/drive"):
             await node.changed()
         # actionlib itself would wait for its end for ever.
@@ -123,6 +121,6 @@ async def test_without_a_master_or_rospy_it_is_said_what_to_do(master: str) -> N
 
 
 async def until(node: Ros1Node, name: str, kind: str) -> None:
-    async with asyncio.timeout(DEADLINE_S):
+    async with asyncio.timeout(HANG_S):
         while node.kind_of(name) != kind:
             await node.changed()

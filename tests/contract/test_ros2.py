@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 import pytest_asyncio
+from processes import HANG_S
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
@@ -28,7 +29,6 @@ INTERFACES = ROOT / "tests" / "data" / "interfaces"
 ADD = "example_interfaces/srv/AddTwoInts"
 FIBONACCI = "example_interfaces/action/Fibonacci"
 STRING = "std_msgs/msg/String"
-DEADLINE_S = 20.0
 
 
 @asynccontextmanager
@@ -75,23 +75,23 @@ async def count_up(
 
 async def test_a_service_is_called_by_its_name_alone(robot: Node, node: Node) -> None:
     robot.serve("/lab/add", ADD, add)
-    assert await node.call("/lab/add", {"a": 20, "b": 22}, timeout_s=DEADLINE_S) == {"sum": 42}
+    assert await node.call("/lab/add", {"a": 20, "b": 22}, timeout_s=HANG_S) == {"sum": 42}
 
 
 async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
     robot: Node, node: Node
 ) -> None:
     robot.serve("/lab/add", ADD, add)
-    await node.service_type("/lab/add", ADD, DEADLINE_S)
+    await node.service_type("/lab/add", ADD, HANG_S)
     with pytest.raises(SkillError, match=r"no ROS 2 node serves /lab/sub .*/lab/add") as raised:
-        await node.call("/lab/sub", {}, timeout_s=DEADLINE_S, discovery_s=0.05)
+        await node.call("/lab/sub", {}, timeout_s=HANG_S, discovery_s=0.05)
     assert raised.value.code == "AOS505"
 
 
 async def test_a_service_of_another_type_than_given_is_an_error(robot: Node, node: Node) -> None:
     robot.serve("/lab/add", ADD, add)
     with pytest.raises(SkillError, match=f"/lab/add is of type {ADD}, not std_srvs/srv/Trigger"):
-        await node.call("/lab/add", {}, type_name="std_srvs/srv/Trigger", timeout_s=DEADLINE_S)
+        await node.call("/lab/add", {}, type_name="std_srvs/srv/Trigger", timeout_s=HANG_S)
 
 
 async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_silence(
@@ -103,7 +103,7 @@ async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_sile
     async with opened(endpoint, "other", tmp_path) as other:
         other.serve("/lab/add", ADD, add)
         with pytest.raises(SkillError, match=r"the node other defines .*AddTwoInts .*differently") as raised:
-            await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=DEADLINE_S)
+            await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S)
     assert raised.value.code == "AOS509"
 
 
@@ -113,7 +113,7 @@ async def test_a_type_that_is_not_known_here_names_the_file_to_add(
     robot.serve("/lab/add", ADD, add)
     async with opened(endpoint, "ignorant", tmp_path) as ignorant:
         with pytest.raises(DeployError, match=r"example_interfaces/srv/AddTwoInts\.srv"):
-            await ignorant.call("/lab/add", {"a": 1, "b": 2}, timeout_s=DEADLINE_S)
+            await ignorant.call("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S)
 
 
 async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node: Node) -> None:
@@ -130,8 +130,8 @@ async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node:
 async def test_humble_has_no_hashes_and_is_understood(endpoint: str, node: Node) -> None:
     async with await Node.open(endpoint, RosTypes("humble", [INTERFACES]), name="old") as old:
         old.serve("/lab/add", ADD, add)
-        assert (await node._server("/lab/add", ADD, DEADLINE_S)).key.endswith("/TypeHashNotSupported")
-        assert await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=DEADLINE_S) == {"sum": 3}
+        assert (await node._server("/lab/add", ADD, HANG_S)).key.endswith("/TypeHashNotSupported")
+        assert await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S) == {"sum": 3}
 
 
 async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node, node: Node) -> None:
@@ -141,7 +141,7 @@ async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node,
     publish({"data": "old"})
     publish({"data": "new"})
     node.subscribe("/lab/map", STRING, received.put_nowait, latched)
-    async with asyncio.timeout(DEADLINE_S):
+    async with asyncio.timeout(HANG_S):
         assert await received.get() == {"data": "new"}
         publish({"data": "newest"})
         # Zenoh may give what it kept more than once.
@@ -153,9 +153,7 @@ async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node,
 async def test_an_action_gives_feedback_and_its_result(robot: Node, node: Node) -> None:
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     feedback: list[Any] = []
-    end = await node.run_action(
-        "/lab/fibonacci", {"order": 6}, timeout_s=DEADLINE_S, on_feedback=feedback.append
-    )
+    end = await node.run_action("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S, on_feedback=feedback.append)
     assert end == ("succeeded", {"sequence": [0, 1, 1, 2, 3, 5]})
     assert feedback[-1] == {"sequence": [0, 1, 1, 2, 3, 5]}
 
@@ -166,7 +164,7 @@ async def test_an_action_is_cancelled_with_a_handshake(robot: Node, node: Node) 
     end = await node.run_action(
         "/lab/fibonacci",
         {"order": 1000},
-        timeout_s=DEADLINE_S,
+        timeout_s=HANG_S,
         cancelled=cancelled,
         on_feedback=lambda _: cancelled.set(),
     )
@@ -182,7 +180,7 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
         return {}
 
     robot.serve_action("/lab/fibonacci", FIBONACCI, wait)
-    await node.service_type("/lab/fibonacci/_action/get_result", "", DEADLINE_S)
+    await node.service_type("/lab/fibonacci/_action/get_result", "", HANG_S)
     with pytest.raises(SkillError, match=r"did not end within 2 s and was cancelled") as raised:
         await node.run_action("/lab/fibonacci", {"order": 1000}, timeout_s=2.0)
     assert raised.value.code == "AOS503"
@@ -191,7 +189,7 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
 
 async def test_an_action_that_fails_is_aborted(robot: Node, node: Node) -> None:
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
-    end = await node.run_action("/lab/fibonacci", {"order": -1}, timeout_s=DEADLINE_S)
+    end = await node.run_action("/lab/fibonacci", {"order": -1}, timeout_s=HANG_S)
     assert end.status == "aborted"
 
 
@@ -203,7 +201,7 @@ async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: st
             node.run_action(
                 "/lab/fibonacci",
                 {"order": 1000},
-                timeout_s=DEADLINE_S,
+                timeout_s=HANG_S,
                 on_feedback=lambda _: started.set(),
             )
         )
@@ -220,10 +218,10 @@ async def test_a_router_that_is_not_there_is_an_error_that_says_how_to_start_it(
 
 async def answered(node: Node, service: str, fields: dict[str, Any]) -> dict[str, Any]:
     """What the service answers once it does: the peer shows its token before it can."""
-    async with asyncio.timeout(DEADLINE_S):
+    async with asyncio.timeout(HANG_S):
         while True:
             try:
-                return await node.call(service, fields, timeout_s=DEADLINE_S, discovery_s=DEADLINE_S)
+                return await node.call(service, fields, timeout_s=HANG_S, discovery_s=HANG_S)
             except SkillError as error:
                 if error.code != "AOS504":
                     raise
@@ -250,8 +248,8 @@ async def test_an_independent_implementation_understands_us_and_we_it(
         )
         try:
             assert await answered(robot, "/sdk/add_two_ints", {"a": 20, "b": 22}) == {"sum": 42}
-            assert await robot.graph.wait_for(Kind.SUBSCRIPTION, "/to_sdk", DEADLINE_S)
-            async with asyncio.timeout(DEADLINE_S):
+            assert await robot.graph.wait_for(Kind.SUBSCRIPTION, "/to_sdk", HANG_S)
+            async with asyncio.timeout(HANG_S):
                 publish({"data": "loud"})
                 assert await received.get() == {"data": "LOUD"}
                 publish({"data": "call 1 2"})

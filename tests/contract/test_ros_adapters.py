@@ -18,6 +18,7 @@ from typing import Any
 import msgspec
 import pytest
 import pytest_asyncio
+from processes import HANG_S
 
 pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
@@ -43,7 +44,6 @@ from aos_runtime.children import Child
 from aos_skills.ros.node import RosNode
 from aos_skills.ros.types import RosTypes
 
-DEADLINE_S = 20.0
 INTERFACES = Path(__file__).resolve().parents[1] / "data" / "interfaces"
 FIBONACCI = "example_interfaces/action/Fibonacci"
 
@@ -117,14 +117,14 @@ class Lab:
             self.child = await Child.start(argv, stderr=log)
 
     async def until_served(self, path: str) -> None:
-        async with asyncio.timeout(DEADLINE_S), self.bus.presence(self.keys.all_serve) as present:
+        async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.all_serve) as present:
             async for key, is_alive in present:
                 if key.endswith(path) and is_alive:
                     return
 
     async def call(self, path: str, fields: dict[str, Any], step: int, limit_s: float = 10.0) -> SkillResult:
         call = SkillCall(ActivationId("m", 1, step), path, fields, limit_s)
-        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=DEADLINE_S)
+        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
 
 
 KINDS = {
@@ -216,7 +216,7 @@ async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
     assert (await lab.call("/sum", {"a": 20, "b": 22}, 1)).fields == {"total": 42}
     await lab.until_served("/count")
     topic = lab.keys.topic("/count/feedback")
-    async with asyncio.timeout(DEADLINE_S), lab.bus.listen(topic, TopicMessage) as feedback:
+    async with asyncio.timeout(HANG_S), lab.bus.listen(topic, TopicMessage) as feedback:
         # A ROS 1 server loses what it says before it knows the one who listens.
         for step in itertools.count(10):
             result = await lab.call("/count", {"order": 3}, step)
@@ -233,14 +233,14 @@ async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
 async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -> None:
     await lab.until_served("/count")
     async with lab.bus.listen(lab.keys.progress("/count"), SkillProgress) as progress:
-        running = asyncio.create_task(lab.call("/count", {"order": 1000}, 1, limit_s=DEADLINE_S))
-        async with asyncio.timeout(DEADLINE_S):
+        running = asyncio.create_task(lab.call("/count", {"order": 1000}, 1, limit_s=HANG_S))
+        async with asyncio.timeout(HANG_S):
             async for _, told in progress:
                 if told.state == "executing" and told.text:
                     assert told.text == '{"sequence": [0, 1, 2]}'
                     break
         cancelled = await lab.bus.ask(
-            lab.keys.cancel("/count"), Cancel("enough"), Cancelled, timeout_s=DEADLINE_S
+            lab.keys.cancel("/count"), Cancel("enough"), Cancelled, timeout_s=HANG_S
         )
         assert cancelled.ids == ("m-1-1",)
         with pytest.raises(AosError) as raised:
@@ -264,7 +264,7 @@ async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
     await lab.bus.answer(lab.keys.project, ProjectQuery, documents)
     lab.bus.tell(lab.keys.announced, revision)
     await lab.until_served("/lab/add")
-    async with asyncio.timeout(DEADLINE_S), lab.bus.listen(lab.keys.topic("/lab/said"), TopicMessage) as said:
+    async with asyncio.timeout(HANG_S), lab.bus.listen(lab.keys.topic("/lab/said"), TopicMessage) as said:
         # The adapter finds the publisher by itself, and what is said before that is lost.
         while not said.has_items:
             publish({"data": "done"})
@@ -276,7 +276,7 @@ async def test_documents_name_the_paths_and_topics(lab: Lab) -> None:
 
 
 async def test_a_robot_that_leaves_is_withdrawn(lab: Lab) -> None:
-    async with asyncio.timeout(DEADLINE_S), lab.bus.presence(lab.keys.all_serve) as present:
+    async with asyncio.timeout(HANG_S), lab.bus.presence(lab.keys.all_serve) as present:
         async for key, is_alive in present:
             if key.endswith("/sum"):
                 if not is_alive:
@@ -294,7 +294,7 @@ async def test_an_interface_that_is_not_known_ends_the_adapter_with_the_file_to_
     try:
         await lab.start(endpoint, KINDS[kind][0], options, bind={path: Binding()})
         assert lab.child is not None
-        assert await asyncio.wait_for(lab.child.wait(), DEADLINE_S) != 0
+        assert await asyncio.wait_for(lab.child.wait(), HANG_S) != 0
     finally:
         await robot.close()
         if lab.child is not None:
@@ -323,8 +323,8 @@ async def test_a_node_that_never_answers_does_not_hold_a_cancellation_up(
         await lab.start(endpoint, KINDS["ros2"][0], options, bind={"/lab/mute": Binding()})
         await lab.until_served("/lab/mute")
         running = asyncio.create_task(lab.call("/lab/mute", {"order": 1}, 1))
-        await asyncio.wait_for(asked.wait(), DEADLINE_S)
-        await bus.ask(keys.cancel("/lab/mute"), Cancel("enough"), Cancelled, timeout_s=DEADLINE_S)
+        await asyncio.wait_for(asked.wait(), HANG_S)
+        await bus.ask(keys.cancel("/lab/mute"), Cancel("enough"), Cancelled, timeout_s=HANG_S)
         with pytest.raises(AosError, match="was to be cancelled, and its node does not answer") as raised:
             await running
         assert raised.value.code == "AOS504"

@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 import pytest
 import pytest_asyncio
+from processes import HANG_S
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
@@ -21,7 +22,6 @@ from aos_runtime.children import Child
 
 pytestmark = pytest.mark.physics
 
-PATIENCE_S = 30.0
 ALL_PATHS = {path: Binding() for path in ("/navigate", "/pick", "/sense", "/serve")}
 FAR_AWAY = {"x": 4.0, "y": 0.0, "yaw": 0.0}
 
@@ -57,7 +57,7 @@ class Robot:
     async def start(self) -> None:
         """Starts the process; returns when it answers."""
         await self.launch()
-        async with asyncio.timeout(PATIENCE_S), self.bus.presence(self.keys.live("pybullet")) as present:
+        async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.live("pybullet")) as present:
             async for _, is_alive in present:
                 if is_alive:
                     return
@@ -72,7 +72,7 @@ class Robot:
         limit_s: float = 60.0,
     ) -> SkillResult:
         call = SkillCall(ActivationId("m", epoch, step), path, fields or {}, limit_s)
-        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=PATIENCE_S)
+        return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
 
     async def refusal(
         self, path: str, step: int = 1, fields: dict[str, Any] | None = None, **how: Any
@@ -85,7 +85,7 @@ class Robot:
     async def moving(self) -> None:
         """Returns when simulated time passes: the sensors publish while a skill runs."""
         async with (
-            asyncio.timeout(PATIENCE_S),
+            asyncio.timeout(HANG_S),
             self.bus.listen(self.keys.topic("/joints"), TopicMessage) as joints,
         ):
             async for _ in joints:
@@ -122,9 +122,7 @@ async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> N
     refused = await robot.refusal("/pick", 2)
     assert refused.code == "AOS502"
     assert "/navigate is running" in str(refused)
-    answer = await robot.bus.ask(
-        robot.keys.cancel("/pick"), Cancel("enough"), Cancelled, timeout_s=PATIENCE_S
-    )
+    answer = await robot.bus.ask(robot.keys.cancel("/pick"), Cancel("enough"), Cancelled, timeout_s=HANG_S)
     assert answer.ids == ("m-1-1",)
     assert (await driving).code == "AOS507"
     # It can move again, and what was refused never ran.
@@ -156,7 +154,7 @@ async def test_a_stopped_world_leaves_the_animated_picture_of_its_mission(robot:
     await robot.start()
     await robot.call("/sense")
     assert robot.child is not None
-    await robot.child.stop(PATIENCE_S)
+    await robot.child.stop(HANG_S)
     assert (robot.run_dir / "mission.gif").stat().st_size > 0
 
 
@@ -186,12 +184,12 @@ async def test_what_cannot_be_bound_ends_the_service_with_one_message(
     robot: Robot, settings: dict[str, Any], message: str
 ) -> None:
     child = await robot.launch(**settings)
-    async with asyncio.timeout(PATIENCE_S):
+    async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1
     assert message in (robot.run_dir / "pybullet.log").read_text()
 
 
 async def _first(messages: Any, count: int) -> AsyncIterator[Any]:
-    async with asyncio.timeout(PATIENCE_S):
+    async with asyncio.timeout(HANG_S):
         for _ in range(count):
             yield await anext(aiter(messages))

@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from processes import HANG_S
 
 BIN = Path(sys.executable).parent
-PATIENCE_S = 120.0
 
 
 @pytest.fixture(autouse=True)
@@ -28,7 +28,7 @@ def run(command: str) -> str:
     if name == "aos-up":
         arguments += ["--listen", "tcp/127.0.0.1:0"]
     done = subprocess.run(
-        [BIN / name, *arguments], capture_output=True, text=True, check=False, timeout=PATIENCE_S
+        [BIN / name, *arguments], capture_output=True, text=True, check=False, timeout=HANG_S
     )
     assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
     return done.stdout

@@ -15,12 +15,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from processes import descendants, has_listener, is_running, until_ended
+from processes import HANG_S, descendants, has_listener, is_running, until_ended
 
 from aos_runtime.journal import Journal
 
 BIN = Path(sys.executable).parent
-PATIENCE_S = 120.0
 ENDINGS = {"goal": 0, "failure": 4, "nothing_worthwhile": 5, "step_limit": 6}
 
 
@@ -96,7 +95,7 @@ class Up:
         """Reads to the end; the exit code."""
         assert self.process.stdout is not None
         self.events += [json.loads(line) for line in self.process.stdout]
-        return self.process.wait(PATIENCE_S)
+        return self.process.wait(HANG_S)
 
 
 @contextmanager
@@ -146,8 +145,8 @@ def mission(root: Path, deploy_file: Path) -> Mission:
             subprocess.Popen(example, stdout=subprocess.PIPE, text=True) as script,
         ):
             status = running.rest()
-            lines, _ = follower.communicate(timeout=PATIENCE_S)
-            printed, _ = script.communicate(timeout=PATIENCE_S)
+            lines, _ = follower.communicate(timeout=HANG_S)
+            printed, _ = script.communicate(timeout=HANG_S)
     return Mission(running, status, run, [json.loads(line) for line in lines.splitlines()], printed)
 
 

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from processes import HANG_S
 
 from aos_deploy.commands.machine import examine_machine
 from aos_protocol import __version__
@@ -17,7 +18,9 @@ BIN = Path(sys.executable).parent
 
 def run(*command: str, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
     name, *arguments = command
-    return subprocess.run([BIN / name, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
+    return subprocess.run(
+        [BIN / name, *arguments], cwd=folder, capture_output=True, text=True, timeout=HANG_S
+    )
 
 
 def test_help_has_an_example_and_every_exit_code() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from models import built_text
+from processes import HANG_S
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.answers import ExportedBelief
@@ -80,7 +81,7 @@ async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path,
     command = [str(executable[0]), str(tmp_path / "blame"), "", "1", "widen"]
     asked = "\n".join([command_line("list", max_states=100), *lines]) + "\n"
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
-    printed, _ = await asyncio.wait_for(engine.communicate(asked.encode()), timeout=120)
+    printed, _ = await asyncio.wait_for(engine.communicate(asked.encode()), timeout=HANG_S)
     answers = [json.loads(line) for line in printed.splitlines()[2:]]
     assert len(answers) == len(lacking) > 25
     texts = [answer["fault"]["text"] for answer in answers]

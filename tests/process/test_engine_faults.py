@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from models import built_text, engine_of
+from processes import HANG_S
 
 from aos_protocol.errors import ModelError
 from aos_registry.load import load_files
@@ -69,7 +70,7 @@ async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_p
     built = await built_text(LAMP, cache_dir)
     command = [str(built.executable), str(tmp_path / "blame"), "", "1", "widen"]
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
-    answers, _ = await asyncio.wait_for(engine.communicate(b"sing\n"), timeout=60)
+    answers, _ = await asyncio.wait_for(engine.communicate(b"sing\n"), timeout=HANG_S)
     assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS213"
 
 

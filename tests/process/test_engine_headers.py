@@ -9,6 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from processes import HANG_S
 
 from aos_solver.building.build import SOURCES
 from aos_solver.building.build_cache import BuildCache, digest_of
@@ -28,7 +29,7 @@ sentences = [
 def results(cache_dir: Path) -> dict[str, list[str]]:
     """What each test expected in vain."""
     executable = asyncio.run(built(BuildCache(cache_dir)))
-    done = subprocess.run([executable], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([executable], capture_output=True, text=True, timeout=HANG_S)
     told = [json.loads(line) for line in done.stdout.splitlines()]
     return {entry["test"]: entry["failures"] for entry in told}
 
@@ -59,5 +60,5 @@ def command(compiler: Compiler, source: Path, output: str) -> list[str]:
 
 
 def run(command: list[str], staging: Path) -> None:
-    done = subprocess.run(command, cwd=staging, capture_output=True, text=True, timeout=200)
+    done = subprocess.run(command, cwd=staging, capture_output=True, text=True, timeout=HANG_S)
     assert done.returncode == 0, done.stderr

@@ -14,10 +14,7 @@ from exam.families import FAMILIES, NEEDLES
 from exam.generation import named_problem, problems
 from exam.problem import RUNNING, Problem
 from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
-
-PATIENCE_S = 60
-
-pytestmark = pytest.mark.timeout(480)  # to compile the driver takes half a minute of an idle processor
+from processes import HANG_S
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +24,7 @@ def executable(cache_dir: Path) -> Path:
 
 @pytest.fixture
 def truth(executable: Path) -> Iterator[Driver]:
-    driver = Driver(executable, "values", {"truth": 5}, PATIENCE_S)
+    driver = Driver(executable, "values", {"truth": 5}, HANG_S)
     yield driver
     driver.close()
 
@@ -82,7 +79,7 @@ async def test_compiled_documents_mean_what_they_say(seed: int, truth: Driver, c
 def reports(
     executable: Path, what: str, options: dict[str, object], asked: list[Problem]
 ) -> Iterator[tuple[Problem, dict[str, object]]]:
-    driver = Driver(executable, what, options, PATIENCE_S)
+    driver = Driver(executable, what, options, HANG_S)
     try:
         yield from ((problem, driver.report(problem)) for problem in asked)
     finally:

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from processes import HANG_S
 
 pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-autonomy[gym]'")
 
@@ -178,8 +179,8 @@ def test_numbers_beside_a_response_have_columns(kettle: Path) -> None:
 
 def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> None:
     command = [Path(sys.executable).parent / "aos", "gym", str(kettle), "--steps", "100", "--worlds", "10"]
-    text = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+    text = subprocess.run(command, check=True, capture_output=True, text=True, timeout=HANG_S).stdout
     assert "actions       Discrete(1): heat" in text
     assert "observations  Discrete(3): DefaultObservation, cold, warm" in text
     program = text[text.index("from aos_deploy") :]
-    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=HANG_S)

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from lsprotocol import types
+from processes import HANG_S
 from pygls.exceptions import JsonRpcException
 from pygls.lsp.client import LanguageClient
 
 from aos_deploy.language_server.highlighting import TOKEN_KINDS
 
 AOS = Path(sys.executable).parent / "aos"
-DEADLINE_S = 20.0
 
 ENVIRONMENT = """project: lamp
 horizon: 3
@@ -66,7 +66,7 @@ class Editor(LanguageClient):
 
     async def findings(self, name: str) -> list[types.Diagnostic]:
         """The next findings about a file."""
-        async with asyncio.timeout(DEADLINE_S):
+        async with asyncio.timeout(HANG_S):
             while True:
                 told, found = await self.told.get()
                 if told == name:
@@ -95,7 +95,7 @@ def bundle(tmp_path: Path) -> Path:
 async def editor() -> AsyncIterator[Editor]:
     client = Editor()
     await client.start_io(str(AOS), "language-server")
-    async with asyncio.timeout(DEADLINE_S):
+    async with asyncio.timeout(HANG_S):
         await client.initialize_async(types.InitializeParams(types.ClientCapabilities()))
         client.initialized(types.InitializedParams())
         yield client
@@ -296,6 +296,6 @@ async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: 
     skill = bundle / "press.sd"
     skill.write_text(SKILL.replace("lit :", "bright :"))
     editor.open(skill)
-    async with asyncio.timeout(DEADLINE_S):
+    async with asyncio.timeout(HANG_S):
         name, _ = await editor.told.get()
     assert name.startswith("press.")

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from processes import HANG_S
 from ssh_host import refusing_ssh, ssh_server, stand_in
 
 BIN = Path(sys.executable).parent
-PATIENCE_S = 120.0
 
 FIRST_TIME_BAD = "test -e tried || { touch tried; exit 3; }; exec python3 fetch_robot.py"
 
@@ -53,7 +53,7 @@ def up(ssh: str, command: str, folder: Path) -> tuple[int, str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE_S,
+        timeout=HANG_S,
     )
     return done.returncode, done.stdout + done.stderr
 

@@ -55,7 +55,6 @@ def play(root: Path, out: Path, seeds: range, on: str, told: list[str] | None = 
 
 
 @needs_ray
-@pytest.mark.timeout(300)
 def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_twice(
     root: Path, tmp_path: Path
 ) -> None:
@@ -72,7 +71,6 @@ def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_tw
 
 
 @needs_ray
-@pytest.mark.timeout(120)
 def test_a_machine_with_another_aos_is_refused(
     root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -82,7 +80,6 @@ def test_a_machine_with_another_aos_is_refused(
 
 
 @needs_ray
-@pytest.mark.timeout(120)
 def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(root: Path, tmp_path: Path) -> None:
     with pytest.raises(DeployError) as caught:
         play(root, tmp_path, range(1, 2), "ray://127.0.0.1:9")

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from processes import HANG_S
 from ros1_core import roscore, skip_without_ros1
 
 from aos_runtime.parent import PARENT_VARIABLE
@@ -21,7 +22,6 @@ from aos_runtime.parent import PARENT_VARIABLE
 pytestmark = [pytest.mark.physics, pytest.mark.slow]
 
 BIN = Path(sys.executable).parent
-PATIENCE_S = 150.0
 
 ORIGINAL_INTERFACES = {
     "robotican_demos_upgrade/srv/pick_unknown.srv": """string robot
@@ -81,7 +81,7 @@ def up(arguments: list[str], cache_dir: Path) -> Iterator[subprocess.Popen[str]]
             yield process
         finally:
             process.send_signal(signal.SIGINT)
-            process.wait(PATIENCE_S)
+            process.wait(HANG_S)
 
 
 def events_of(process: subprocess.Popen[str]) -> Iterator[dict[str, Any]]:
@@ -155,7 +155,7 @@ def test_the_shipped_robot_serves_a_ros_2_program_of_others(
             env={**os.environ, PARENT_VARIABLE: str(os.getpid())},
             capture_output=True,
             text=True,
-            timeout=PATIENCE_S,
+            timeout=HANG_S,
         )
         assert program.stdout.splitlines()[-1:] == ["True 7"], program.stderr
     assert robot.returncode == 0

@@ -16,13 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from processes import HANG_S
 
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.run_directory import RunDirectory, RunRecord
 from aos_protocol.errors import BusError
 
 BIN = Path(sys.executable).parent
-PATIENCE_S = 120.0
 TIGER = """\
 aos: 1
 robot: tiger
@@ -46,14 +46,14 @@ class Up:
     def _read(self) -> None:
         assert self._process.stdout is not None
         for line in self._process.stdout:
-            event = json.loads(line)["event"]
-            if event == "decision":
-                self._said.put(event)
+            self._said.put(json.loads(line)["event"])
         self._said.put("end")
 
     def has_decided(self) -> bool:
-        """Whether it came to a decision before its end."""
-        return self._said.get(timeout=PATIENCE_S) == "decision"
+        """Whether it came to a decision before its end; it hangs where it says nothing for too long."""
+        while (event := self._said.get(timeout=HANG_S)) not in ("decision", "end"):
+            pass
+        return event == "decision"
 
     def end(self) -> tuple[int, str]:
         """Exit code and errors after Ctrl-C."""
@@ -64,8 +64,8 @@ class Up:
         """Exit code and errors."""
         assert self._process.stderr is not None
         error = self._process.stderr.read()
-        self._reader.join(PATIENCE_S)
-        return self._process.wait(PATIENCE_S), error
+        self._reader.join(HANG_S)
+        return self._process.wait(HANG_S), error
 
 
 class Place:
@@ -103,7 +103,7 @@ class Place:
             env=self.environment,
             capture_output=True,
             text=True,
-            timeout=PATIENCE_S,
+            timeout=HANG_S,
         )
 
 

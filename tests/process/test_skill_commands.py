@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from processes import HANG_S
 
 BIN = Path(sys.executable).parent
-PATIENCE_S = 120.0
 
 ROBOT = """
 import asyncio, os
@@ -64,7 +64,7 @@ class Running:
 
     def aos(self, *arguments: str) -> str:
         command = [BIN / "aos", *arguments, "--runs", "runs"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=HANG_S)
         return done.stdout + done.stderr
 
 
@@ -98,7 +98,7 @@ class _Started:
 
     def __exit__(self, *_: object) -> None:
         self._process.send_signal(signal.SIGINT)
-        self._process.communicate(timeout=PATIENCE_S)
+        self._process.communicate(timeout=HANG_S)
 
 
 def test_a_mission_that_holds_can_be_helped_by_hand_and_goes_on(mission: Running, folder: Path) -> None:

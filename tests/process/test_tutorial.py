@@ -8,8 +8,6 @@ from pathlib import Path
 import pytest
 from walk import Walk, steps_of
 
-pytestmark = pytest.mark.timeout(900)  # One fixture does all of the page.
-
 
 @pytest.fixture(scope="module")
 def walk(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Walk:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import until_ended
+from processes import HANG_S, until_ended
 from scripted_models import bundle_project, json_text, lowered, mapping_text, text_project
 
 from aos_protocol.errors import ModelError
@@ -162,15 +162,19 @@ async def test_an_error_outside_the_documents_names_the_emitted_file(cache_dir: 
     assert "Unheard of;" in text_of(kept)
 
 
-async def test_a_compiler_that_does_not_finish_is_stopped(tmp_path: Path) -> None:
-    pids, cache = tmp_path / "pids", tmp_path / "cache"
+async def test_a_compiler_that_does_not_finish_is_stopped_and_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pids, cache, scratch = tmp_path / "pids", tmp_path / "cache", tmp_path / "scratch"
     pids.touch()
-    endless = Compiler(("sh", "-c", f"echo $$ >> {pids}; exec sleep 1000"), "gcc", "endless 14.0")
+    scratch.mkdir()
+    monkeypatch.setenv("TMPDIR", str(scratch))
+    endless = Compiler(("sh", "-c", f"mktemp; echo $$ >> {pids}; exec sleep 1000"), "gcc", "endless")
     emitted = emitted_skill("state__.total = 6;")
     with pytest.raises(ModelError, match=r"did not finish .* within 0\.3 s") as raised:
         await build(emitted, cache_dir=cache, compiler=endless, deadline_s=0.3)
     assert raised.value.code == "AOS202"
-    assert entries(cache) == []
+    assert (entries(cache), entries(scratch)) == ([], [])
     await until_ended([int(pid) for pid in pids.read_text().split()])
 
 
@@ -210,7 +214,7 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
         options = [*build_module._OPTIONS["quick"], *more, "-H"]
         command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *options)
         done = await asyncio.to_thread(
-            subprocess.run, command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=60
+            subprocess.run, command, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=HANG_S
         )
         assert ("/aos/base/" in done.stderr) == (not more), done.stderr
         objects.append((tmp_path / "model.o").read_bytes())
@@ -231,7 +235,7 @@ async def answers(built: BuiltModel) -> dict[str, Any]:
         built.executable, "/dev/null", "/dev/null", "1", "widen",
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE,
     )  # fmt: skip
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(HANG_S):
         output, _ = await child.communicate()
     described: dict[str, Any] = json.loads(output.splitlines()[0])
     return described

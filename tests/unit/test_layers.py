@@ -7,13 +7,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+from processes import HANG_S
+
 LINT = Path(sys.executable).parent / "lint-imports"
 
 
 def broken(root: Path, configuration: Path) -> list[str]:
     """The contracts that the sources do not keep."""
     command = [LINT, "--config", configuration, "--no-cache"]
-    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=HANG_S, check=False)
     assert "Contracts: " in done.stdout, done.stdout + done.stderr
     return sorted(re.findall(r"^(.+) BROKEN$", done.stdout, re.MULTILINE))
 

@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from processes import HANG_S
 
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.tictactoe import KIND
@@ -145,7 +146,7 @@ def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make) -> None:
     said: list[str] = []
 
     def sit_at_the_terminal() -> None:
-        with socket.create_connection(("127.0.0.1", person.port), timeout=30) as terminal:
+        with socket.create_connection(("127.0.0.1", person.port), timeout=HANG_S) as terminal:
             for answer in ("10", "1", "2"):
                 said.append(terminal.recv(1000).decode())
                 terminal.sendall(answer.encode() + b"\n")

@@ -56,7 +56,7 @@ async def run_compiler(
     child = await Child.start(
         guarded(command, limits),
         cwd=directory,
-        env={"LC_ALL": "C"},
+        env={"LC_ALL": "C", "TMPDIR": str(directory)},  # What a compiler that is killed leaves goes with it.
         stdout=PIPE,
         stderr=asyncio.subprocess.STDOUT,
     )
