@@ -115,7 +115,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
         Row(
             "`aos lint` looks for goals and preconditions that nothing leads to",
-            "aos_solver.reachability._TIME_S", "s", "it tells how far it looked",
+            "aos_deploy.reachability._TIME_S", "s", "it tells how far it looked",
         ),
     ),
     "Missions": (

@@ -112,8 +112,8 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
     import asyncio  # These would make the other commands start slower.
 
     from aos_deploy.program import cache_dir
+    from aos_deploy.reachability import reachability_findings
     from aos_solver.hot_plug import build_project, lowered
-    from aos_solver.reachability import reachability_findings
 
     async def findings() -> tuple[Diagnostic, ...]:
         built = await build_project(project, cache_dir(), tell)
