@@ -119,9 +119,6 @@ struct TableModel {
     visitor.leaf(aos::leaf_of(state.ending));
     visitor.end();
   }
-  static std::vector<aos::Place> places(const State& state) {
-    return aos::places_in(&state, [&](aos::ValueVisitor& visitor) { visit_values(state, visitor); });
-  }
 
   template <class Random>
   static void initial(State& state, Random& random) {

@@ -150,7 +150,7 @@ async def build_engine(
         deadline_s = 5 * compiler.deadline_s
         started_s = time.monotonic()
         runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
-        for output, status in await _together(runs):
+        for output, status in await _together(*runs):
             if status != 0:
                 raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
         (staging / _SECONDS).write_text(f"{time.monotonic() - started_s:.1f}")
@@ -182,14 +182,8 @@ class _Build(msgspec.Struct, frozen=True):
 
     async def make(self, staging: Path) -> None:
         self.on_progress(f"compiling {self.emitted.project} with {self.compiler.version}")
-        try:
-            async with asyncio.TaskGroup() as tasks:
-                usual_engine = tasks.create_task(self._engine(STATE_BYTES[0]))
-                await self._compile(staging)
-        except ExceptionGroup as errors:
-            raise errors.exceptions[0] from None
+        usual, _ = await _together(self._engine(STATE_BYTES[0]), self._compile(staging))
         state_bytes = self._state_bytes(staging / _OBJECT)
-        usual = usual_engine.result()
         engine = usual if state_bytes == STATE_BYTES[0] else await self._engine(self._ready_size(state_bytes))
         await self._link(staging, [engine / _ENGINE_OBJECT, usual / _NUMBERS_OBJECT])
 
@@ -309,7 +303,7 @@ def _circumstances(compiler: Compiler) -> str:
     return digest_of([compiler.version, *compiler.compilation("", "", ""), *texts])
 
 
-async def _together(runs: list[Coroutine[Any, Any, tuple[str, int]]]) -> list[tuple[str, int]]:
+async def _together(*runs: Coroutine[Any, Any, Any]) -> list[Any]:
     """The results of all; if one fails, the others are stopped and its error is raised."""
     try:
         async with asyncio.TaskGroup() as tasks:

@@ -73,8 +73,8 @@ std::uint64_t OnlineSarsop::improve(std::uint64_t max_work, const IsOver& is_ove
   });
 }
 
-std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over) {
-  return solver_->repeat(max_work, is_over,
+std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, const IsOver& is_over) {
+  return solver_->repeat(0, is_over,
                          [&] { return solver_->sarsop.improve_below(action, solver_->precision(), is_over); });
 }
 

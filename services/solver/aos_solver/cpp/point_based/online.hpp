@@ -46,8 +46,8 @@ class OnlineSarsop {
   // Runs trials, one at least, until `is_over()`, until so much work is done (0: no limit), or until nothing is left to
   // find out. Returns the work: how many numbers were multiplied, of states by what they lead to or by alpha vectors.
   std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over);
-  // The same below an action that is carried out.
-  std::uint64_t improve_below(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over);
+  // The same below an action that is carried out, without a limit of the work.
+  std::uint64_t improve_below(std::uint32_t action, const IsOver& is_over);
 
   // Of all actions, of the belief moved to; discounted, of so many decisions as the horizon has.
   // These and `bounds` hold as they stand, rounding included.

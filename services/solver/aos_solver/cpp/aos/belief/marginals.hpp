@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "aos/base/json.hpp"
+#include "aos/base/mixed.hpp"
+#include "aos/base/number_index.hpp"
 #include "aos/belief/gathering.hpp"
 #include "aos/model/values.hpp"
 
@@ -65,27 +67,17 @@ class Marginals {
     std::string name;
     std::vector<Value> values;
     std::vector<std::string> texts;  // of those that are reported
-    std::unordered_map<std::uint64_t, std::size_t> places;  // of many values
+    NumberIndex places;
 
     void add(const Value& added) {
-      const std::size_t place = place_of(added.number);
-      if (place < values.size()) {
+      const auto known = static_cast<std::uint32_t>(values.size());
+      const auto is_it = [&](std::uint32_t place) { return values[place].number == added.number; };
+      const std::uint32_t place = places.find_or_add(mixed(0, added.number), known, is_it);
+      if (place < known) {
         values[place].weight += added.weight;
       } else {
         values.push_back(added);
       }
-    }
-
-   private:
-    static constexpr std::size_t few = 8;
-
-    std::size_t place_of(std::uint64_t number) {
-      if (values.size() <= few) {
-        const auto found = std::find_if(values.begin(), values.end(), [&](const Value& v) { return v.number == number; });
-        if (found != values.end() || values.size() < few) return static_cast<std::size_t>(found - values.begin());
-        for (std::size_t i = 0; i < values.size(); ++i) places.try_emplace(values[i].number, i);
-      }
-      return places.try_emplace(number, values.size()).first->second;
     }
   };
 

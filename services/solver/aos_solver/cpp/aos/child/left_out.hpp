@@ -3,6 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <string>
 #include <vector>
 
 #include "aos/base/json.hpp"
@@ -16,15 +19,15 @@ class LeftOut {
  public:
   using State = typename Model::State;
 
-  LeftOut() : stand_in_(some_state()) {
-    for (const Place& place : Model::places(stand_in_)) {
-      if (is_irrelevant(place)) places_.push_back(place);
-    }
+  LeftOut() : stand_in_(some_state()), places_(all_places()) {
+    std::erase_if(places_, [](const Place& place) { return !is_irrelevant(place); });
   }
 
   State rest_of(const State& state) const {
     State rest = state;
-    for (const Place& place : places_) copy_place<Model>(place, stand_in_, rest);
+    for (const auto& [name, offset, size] : places_) {
+      std::memcpy(Model::bytes_of(rest) + offset, Model::bytes_of(stand_in_) + offset, size);
+    }
     return rest;
   }
 
@@ -35,6 +38,31 @@ class LeftOut {
   }
 
  private:
+  // Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
+  struct Place {
+    std::string name;
+    std::size_t offset;
+    std::size_t size;
+  };
+
+  std::vector<Place> all_places() const {
+    std::vector<Place> places;
+    std::string compound;
+    NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
+      const auto offset = static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) - Model::bytes_of(stand_in_));
+      const auto dot = name.rfind('.');
+      const std::string owner = dot == std::string::npos ? "" : name.substr(0, dot);
+      if (!owner.empty() && owner == compound) {
+        places.back().size = offset + leaf.size - places.back().offset;
+      } else {
+        places.push_back({owner.empty() ? name : owner, offset, leaf.size});
+      }
+      compound = owner;
+    }};
+    Model::visit_values(stand_in_, leaves);
+    return places;
+  }
+
   // Always the same one.
   static State some_state() {
     Sampler random{1};

@@ -41,13 +41,8 @@ Observation observation_of(int action, std::string_view response) {
 }
 
 inline const char* ending_text(Ending ending) {
-  switch (ending) {
-    case Ending::running: return "";
-    case Ending::goal: return "goal";
-    case Ending::failure: return "failure";
-    case Ending::over: return "over";
-  }
-  return "";
+  static constexpr const char* texts[ending_count] = {"", "goal", "failure", "over"};
+  return texts[static_cast<std::size_t>(ending)];
 }
 
 // Each number is its name's number, its index and its value.

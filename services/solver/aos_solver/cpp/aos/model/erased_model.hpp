@@ -25,7 +25,7 @@ struct ErasedModel {
   inline static const char* const project = compiled_model.project;
   inline static const int horizon = compiled_model.horizon;
   inline static const double discount = compiled_model.discount;
-  inline static const int skill_count = compiled_model.skill_count;
+  inline static const int skill_count = static_cast<int>(compiled_model.skills.size());
   inline static const bool has_rollout_policy = compiled_model.has_rollout_policy;
   inline static const bool has_state_heuristic = compiled_model.has_state_heuristic;
 
@@ -40,8 +40,7 @@ struct ErasedModel {
   // How many numbers, and arrays of numbers, its steps may report besides a response.
   static int number_count(int skill) { return compiled_model.skills[skill].number_count; }
   static bool reports_numbers() {
-    return std::any_of(compiled_model.skills, compiled_model.skills + skill_count,
-                       [](const SkillFacts& skill) { return skill.number_count > 0; });
+    return std::ranges::any_of(compiled_model.skills, [](const SkillFacts& skill) { return skill.number_count > 0; });
   }
   static void write_parameters(int action, JsonWriter& json) {
     compiled_model.skills[skill_of(action)].write_parameters(grounded(action).parameters, json);
@@ -60,19 +59,13 @@ struct ErasedModel {
   }
   static void visit_values(const State& state, ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); }
   // The parts of a state that no reward, observation or ending depends on.
-  static std::span<const ByteRange> irrelevant() {
-    return {compiled_model.irrelevant, compiled_model.irrelevant_count};
-  }
+  static std::span<const ByteRange> irrelevant() { return compiled_model.irrelevant; }
   // How many bytes of a state the model uses; the others are 0.
   static std::size_t state_bytes() { return compiled_model.state_bytes; }
   static const std::byte* bytes_of(const State& state) { return state.bytes; }
   static std::byte* bytes_of(State& state) { return state.bytes; }
   // How many bytes a state takes beside those of the object.
   static std::size_t bytes_elsewhere() { return Size == 0 ? state_bytes() : 0; }
-  // Where the state's single values stand, in the order in which they are visited.
-  static std::vector<Place> places(const State& state) {
-    return places_in(state.bytes, [&](ValueVisitor& visitor) { visit_values(state, visitor); });
-  }
 
   template <class Random>
   static void initial(State& state, Random& random) {

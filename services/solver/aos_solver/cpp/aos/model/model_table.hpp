@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -45,14 +46,12 @@ struct ModelTable {
   const char* project;
   int horizon;
   double discount;
-  int skill_count;
-  const SkillFacts* skills;
+  std::span<const SkillFacts> skills;
   const std::vector<GroundedAction>* actions;
   bool has_rollout_policy;
   bool has_state_heuristic;
   std::size_t ending_offset;
-  const ByteRange* irrelevant;  // parts of a state
-  std::size_t irrelevant_count;
+  std::span<const ByteRange> irrelevant;  // parts of a state
   int constraint_count;
   bool constraints_look_ahead;
 
@@ -108,14 +107,12 @@ constexpr ModelTable table_of() {
       .project = Model::project,
       .horizon = Model::horizon,
       .discount = Model::discount,
-      .skill_count = static_cast<int>(Model::skills.size()),
-      .skills = Model::skills.data(),
+      .skills = Model::skills,
       .actions = &Model::grounded_actions(),
       .has_rollout_policy = Model::has_rollout_policy,
       .has_state_heuristic = Model::has_state_heuristic,
       .ending_offset = offsetof(State, aos_ending),
-      .irrelevant = Model::irrelevant.data(),
-      .irrelevant_count = Model::irrelevant.size(),
+      .irrelevant = Model::irrelevant,
       .constraint_count = [] {
         if constexpr (is_constrained) return Model::constraint_count;
         return 0;

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <iterator>
+#include <map>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "aos/base/fault.hpp"
@@ -85,34 +86,16 @@ Objects<State, T, Members...> objects(State& state) {
   return Objects<State, T, Members...>{state};
 }
 
-// The values that parameters of one type take, by the name `state.<variable>`, in the order of names.
+// The values that parameters of one type take, by the name `state.<variable>`.
 template <class T>
-class NamedValues {
- public:
-  using value_type = std::pair<std::string, T>;
-
-  void add(std::string name, const T& value) { values_.emplace_back(std::move(name), value); }
-  std::size_t size() const { return values_.size(); }
-  bool empty() const { return values_.empty(); }
-  auto begin() const { return values_.begin(); }
-  auto end() const { return values_.end(); }
-  auto cbegin() const { return values_.begin(); }
-  auto cend() const { return values_.end(); }
-  auto find(std::string_view name) const {
-    auto it = begin();
-    while (it != end() && it->first != name) ++it;
-    return it;
-  }
-  std::size_t count(std::string_view name) const { return find(name) == end() ? 0 : 1; }
+struct NamedValues : std::map<std::string, T, std::less<>> {
+  void add(const char* name, const T& value) { this->emplace(name, value); }
   const T& operator[](std::string_view name) const {
-    const auto found = find(name);
-    if (found == end()) throw ModelFault{"AOS215", "no parameter value is called " + std::string{name}};
+    const auto found = this->find(name);
+    if (found == this->end()) throw ModelFault{"AOS215", "no parameter value is called " + std::string{name}};
     return found->second;
   }
   const T& at(std::string_view name) const { return (*this)[name]; }
-
- private:
-  std::vector<value_type> values_;
 };
 
 }  // namespace aos

@@ -111,39 +111,4 @@ struct LeafNumbers final : ValueVisitor {
   void begin_sequence(std::size_t size) override { shape = mixed(shape, size); }
 };
 
-// Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
-struct Place {
-  std::string name;
-  std::size_t offset;
-  std::size_t size;
-  friend bool operator==(const Place&, const Place&) = default;
-};
-
-// Gives a state what stands at a place of another one.
-template <class Model>
-void copy_place(const Place& place, const typename Model::State& from, typename Model::State& to) {
-  std::memcpy(Model::bytes_of(to) + place.offset, Model::bytes_of(from) + place.offset, place.size);
-}
-
-// The places of a state, without overlap; it is visited by `visit(visitor)`.
-template <class Visit>
-std::vector<Place> places_in(const void* state, Visit&& visit) {
-  std::vector<Place> places;
-  std::string compound;
-  NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
-    const auto offset = static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) -
-                                                 static_cast<const std::byte*>(state));
-    const auto dot = name.rfind('.');
-    const std::string owner = dot == std::string::npos ? "" : name.substr(0, dot);
-    if (!owner.empty() && owner == compound) {
-      places.back().size = offset + leaf.size - places.back().offset;
-    } else {
-      places.push_back({owner.empty() ? name : owner, offset, leaf.size});
-    }
-    compound = owner;
-  }};
-  visit(leaves);
-  return places;
-}
-
 }  // namespace aos

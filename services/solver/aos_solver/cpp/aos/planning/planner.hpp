@@ -24,15 +24,14 @@
 
 namespace aos {
 
-enum class PlannerKind { pomcp, despot, sarsop, exact, automatic };
+enum class PlannerKind { pomcp, despot, sarsop, automatic, exact };
+inline constexpr const char* planner_names[] = {"pomcp", "despot", "sarsop", "auto", "exact"};
 
-// Nothing where there is no such planner.
+// One that can be asked for; nothing where there is no such planner.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
-  if (name == "pomcp") return PlannerKind::pomcp;
-  if (name == "despot") return PlannerKind::despot;
-  if (name == "sarsop") return PlannerKind::sarsop;
-  if (name == "auto") return PlannerKind::automatic;
-  return std::nullopt;
+  const auto* const last = std::end(planner_names) - 1;
+  const auto* const found = std::find(planner_names, last, name);
+  return found == last ? std::nullopt : std::optional{static_cast<PlannerKind>(found - planner_names)};
 }
 
 template <class Model>
@@ -63,14 +62,7 @@ class Planner {
   }
 
   // The planner of the last search, and why it was that one.
-  const char* name() const {
-    switch (used_) {
-      case PlannerKind::exact: return "exact";
-      case PlannerKind::despot: return "despot";
-      case PlannerKind::sarsop: return "sarsop";
-      default: return "pomcp";
-    }
-  }
+  const char* name() const { return planner_names[static_cast<std::size_t>(used_)]; }
   const std::string& why() const { return why_; }
 
   std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {

@@ -83,7 +83,7 @@ class PointBased {
   template <class IsOver>
   void ponder(int action, Budget budget, IsOver&& is_over) {
     if (running_ <= 0 || budget.seconds <= 0) return;
-    known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), 0, until(budget, is_over)));
+    known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), until(budget, is_over)));
   }
 
   // What each action is worth at least. `n` is how many trials began with it, and the look at where it leads.
