@@ -40,7 +40,7 @@ class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
     """What ends a mission: `goal_probability` holds for the goal and for the other endings alike.
 
     `stop_below_value` is an expected return: when even the best action promises less, the robot does better
-    by doing nothing, which is worth 0. None never stops for that reason.
+    by doing nothing, which is worth 0. With None no mission stops for that reason.
     """
 
     goal_probability: float = 0.9
@@ -76,7 +76,7 @@ def ending_of_belief(belief: BeliefSummary, steps_taken: int, limits: MissionLim
 def ending_after_planning(best: ActionValue, limits: MissionLimits) -> Ending | None:
     """The ending that the search's best action calls for.
 
-    Twice the standard error is given as the benefit of the doubt.
+    The action has the benefit of the doubt: twice its standard error.
     """
     if limits.stop_below_value is None:
         return None

@@ -17,7 +17,8 @@ OnFailure = Literal["observe", "retry", "hold", "end"]
 class SkillRule(msgspec.Struct, frozen=True, kw_only=True):
     """What the deploy file says about one skill; see docs/deploy-file.md.
 
-    `timeout_s` None is the mission's limit. `retries` None is one for `retry`, and else none.
+    Where `timeout_s` is None the mission's limit counts. Where `retries` is None the action is tried again
+    once with `retry`, and else not.
     """
 
     retries: int | None = None

@@ -4,7 +4,7 @@ A revision is built and started in the background. At a decision boundary the mi
 model that is ready on both sides, here and in the middleware, and the belief moves over. That works
 between models with the same state layout; others are refused before they are stored (AOS112).
 
-What is used at once is a quick build. A thorough one is made meanwhile, for the next start: within a mission
+A mission uses a quick build at once. A thorough build is made meanwhile for the next start: within a mission
 it would win less than is lost with the search tree, which does not move over.
 """
 
@@ -39,8 +39,8 @@ _LAST = 19
 _UNHURRIED_DEADLINE_S = 1800.0
 
 _PATIENCE_S = 1.0
-"""How long a decision waits for a revision that is on its way: it was compiled when it was checked, so that
-only its engine and the middleware's module have to start."""
+"""How long a decision waits for a revision that is on its way. The revision was compiled when it was checked,
+so that only its engine and the middleware's module have to start."""
 
 _ASK_AGAIN_S = 0.02
 
@@ -78,7 +78,7 @@ def lowered(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
 def emitted_model(project: Project) -> EmittedModel:
     """The C++ of a project; ModelError as from `build_project`.
 
-    It is remembered: documents are checked before they are used, and a change may be taken back.
+    The result is remembered: documents are checked before they are used, and a change may be taken back.
     """
     program, diagnostics = lowered(project)
     if program is None or has_errors(diagnostics):
@@ -147,7 +147,7 @@ class ModelShelf:
         return await build_project(constrained, self._cache_dir, self._on_progress)
 
     async def _put(self, model: RunningModel) -> None:
-        """On the shelf, instead of what nobody has taken."""
+        """Puts a model on the shelf, in place of one that nobody has taken."""
         try:
             async with self._shelf:
                 outdated, self._ready, self._fault = self._ready, model, None
@@ -159,7 +159,7 @@ class ModelShelf:
             await outdated.engine.close()
 
     async def _build_thoroughly(self, emitted: EmittedModel) -> None:
-        """Into the cache; the running mission needs none, so all else goes first and a fault is only told."""
+        """Builds into the cache. Nobody waits for it: all other work goes first, and a fault is logged."""
         try:
             await build(
                 emitted,
@@ -192,7 +192,7 @@ class ModelShelf:
     async def newest(self, running: RunningModel) -> RunningModel:
         """The running model, or its successor with the belief carried over and the old engine closed.
 
-        One that is on its way is waited for, but not long; one that cannot take the belief is given up.
+        A successor on its way is waited for, but not long. One that cannot take the belief is given up.
         """
         await self._until_made()
         async with self._shelf:
@@ -222,7 +222,7 @@ class ModelShelf:
                     pass
 
     async def _is_mapped(self, revision: int) -> bool:
-        """Whether the middleware runs the revision too; it is waited for once."""
+        """Whether the middleware runs the revision too. The middleware is waited for once."""
         with suppress(TimeoutError):
             async with asyncio.timeout(_PATIENCE_S):
                 while await self._mapping_revision() < revision:

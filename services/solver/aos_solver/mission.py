@@ -36,7 +36,7 @@ FAILURE_LIMIT = 3
 """Activations in a row without an observation before a mission ends, unless it is told another number."""
 
 RAN_PROBABILITY = 0.5
-"""That a skill did its work which brought no observation; the belief is the mixture."""
+"""How probable it is that a skill without an observation did its work. The belief is the mixture of both."""
 
 
 class Ports(Protocol):
@@ -208,7 +208,7 @@ class Mission:
         )
 
     async def _hold(self, why: str, step: int, belief: BeliefSummary, goes_on: Callable[[], bool]) -> None:
-        """Decides nothing until it goes on by itself or somebody resumes the mission, which has a limit."""
+        """Decides nothing until the mission goes on by itself or is resumed, for `hold_s` at most."""
         ends_at_s = self._ports.clock.monotonic_s() + self._hold_s
         self._is_resumed = False
         self._move_to("holding", step, belief, remark=why)

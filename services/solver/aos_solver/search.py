@@ -17,8 +17,8 @@ SEEDS_PER_MISSION = 1000
 class Search(msgspec.Struct, frozen=True, kw_only=True):
     """The budget of one decision: `time_s` if given, else `simulations`. `horizon` None is the document's.
 
-    With a budget in time the search can go on while an action is carried out (`ponder_while_acting`). With
-    one in simulations it never does: how far it came would depend on the machine, and decisions would not
+    With a budget in time the search can go on while an action is carried out (`ponder_while_acting`). With a
+    budget in simulations it never does: how far it came would depend on the machine, and decisions would not
     repeat.
     """
 

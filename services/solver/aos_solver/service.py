@@ -148,7 +148,7 @@ class _Solver:
     # --- models --------------------------------------------------------------------------------------
 
     async def _make_current(self) -> None:
-        """Build what the registry holds already; without it the announcement will come."""
+        """Builds what the registry holds already. Where it holds nothing, an announcement will come."""
         try:
             revision = await self._bus.ask(
                 self._keys.project,
@@ -217,7 +217,7 @@ class _Solver:
         log.info("the mission ended: %s, %s", state.ending, state.remark)
 
     async def _await_mappings(self, revision: int) -> None:
-        """Until the middleware has dealt with a revision, or the deadline; then activations tell."""
+        """Waits until the middleware has dealt with a revision. After the deadline activations tell of it."""
         try:
             state = await state_when(
                 self._bus,

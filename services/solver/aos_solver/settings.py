@@ -16,9 +16,9 @@ __all__ = ["Settings"]
 class Settings(ServiceSettings, frozen=True, kw_only=True):
     """The deploy file's `solver:`, `mission:` and `skills:` parts.
 
-    The planning budget is `time_s` if given, else `simulations`. `horizon` None takes the environment
-    document's. With a `policy` file decisions come from it, without a search. `project` names the documents
-    to ask the registry for.
+    The planning budget is `time_s` if given, else `simulations`. Where `horizon` is None the environment
+    document's counts. With a `policy` file decisions come from that, without a search. `project` names the
+    documents to ask the registry for.
     """
 
     project: str

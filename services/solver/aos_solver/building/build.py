@@ -1,11 +1,11 @@
 """From the emitted C++ to an executable, through a cache.
 
-The model is compiled for itself. The engine is compiled once for all models whose states have up to so many
-bytes, and linked to it: it is four times as much code, and models change while a robot waits. What models
-include is compiled with the engine, too: reading it is a quarter of the time that a model takes.
+A model is compiled by itself and linked to the engine. The engine is compiled once for all models whose
+states have up to so many bytes: it is four times as much code, and models change while a robot waits. The
+headers that models include are precompiled with the engine: to read them is a quarter of a model's build.
 
-There are two builds of a model, which decide alike. The quick one is there sooner. In the thorough one steps
-are faster, searches hardly: most of a search is the engine.
+A model has two builds, which decide alike. The quick build is there sooner. The thorough build makes faster
+steps, and hardly faster searches: most of a search is the engine.
 """
 
 from __future__ import annotations
@@ -53,11 +53,11 @@ _OPTIONS: dict[BuildKind, tuple[str, ...]] = {
 MODEL_CPU_S = 4.0
 ENGINE_SHARE = 1 / 8
 LINES_PER_CPU_S = 250
-"""How much processor time a quick build of a model may take: so much, or a share of what the engine took
-where that is more, and a second more for so many lines. Usual models need half a second, the engine 25 s."""
+"""A quick build may take `MODEL_CPU_S` of processor time, or `ENGINE_SHARE` of the engine's where that is
+more, and a second more for `LINES_PER_CPU_S` lines. A usual model takes half a second, the engine 25 s."""
 
 _LIMITS = ("-ftemplate-depth=100",)
-"""What models' templates need is a third of it; document code that recurses without end is told at once."""
+"""Models' templates need a third of this depth. Document code that recurses without end is told at once."""
 
 _COMPILE_TIME_CODE = re.compile(r"\b(?:template|constexpr|consteval|\w*(?:_constant|_sequence))\b|\]\s*<")
 
@@ -67,7 +67,7 @@ _SOURCE = "compiled.cpp"
 _OBJECT = "part.o"
 _ENGINE_OBJECT = "engine.o"
 _NUMBERS_OBJECT = "point_based.o"
-"""Point-based search: mostly loops over numbers, and the same for states of any size."""
+"""Point-based search is mostly loops over numbers, and the same for states of any size."""
 _EXECUTABLE = "model"
 _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
@@ -164,7 +164,7 @@ def _part(compiler: Compiler, part: str, option: str) -> list[str]:
 
 
 def _engine_name(compiler: Compiler, state_bytes: int) -> str:
-    # Clang looks there for what was precompiled.
+    # Clang looks for what was precompiled by the path of the sources.
     place = [] if compiler.family == "gcc" else [str(SOURCES)]
     return f"engine-{state_bytes}-{digest_of([_circumstances(compiler), *place])}"
 
@@ -200,7 +200,7 @@ class _Build(msgspec.Struct, frozen=True):
 
     @property
     def _cpu_s(self) -> int | None:
-        """Processor time for a model that somebody waits for; more for long ones, and on slow machines."""
+        """The limit for a model that somebody waits for. Long models and slow machines have more."""
         if self.options == _OPTIONS["thorough"]:
             return None
         engine_s = _engine_seconds(self._ready_engine(STATE_BYTES[0]))
@@ -236,7 +236,7 @@ class _Build(msgspec.Struct, frozen=True):
         return next((state_bytes for state_bytes in STATE_BYTES if needed <= state_bytes), ANY_SIZE)
 
     def _ready_size(self, state_bytes: int) -> int:
-        """That size, or any size where a quick build would have to compile that engine first."""
+        """`state_bytes`, or `ANY_SIZE` where a quick build would have to compile that engine first."""
         is_waiting = self.options == _OPTIONS["quick"] and self._ready_engine(state_bytes) is None
         return ANY_SIZE if is_waiting and self._ready_engine(ANY_SIZE) is not None else state_bytes
 
@@ -274,7 +274,7 @@ class _Build(msgspec.Struct, frozen=True):
         return internal_error(project, "\n".join(report.outside) or output, status, self._kept_source())
 
     def _limit_error(self) -> ModelError:
-        """At the first document code that may compute while it is compiled, if there is any."""
+        """The error at the first document code that may compute while it is compiled, if there is any."""
         message = f"the compiler ran out of time or memory on {self.emitted.project}"
         suspects = (piece for piece in self.emitted.pieces if _COMPILE_TIME_CODE.search(piece.text))
         spans = tuple(piece.locate(1, 1) for piece in suspects)

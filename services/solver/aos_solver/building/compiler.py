@@ -1,7 +1,7 @@
 """Which C++ compiler this machine has, and how it is called.
 
-In this order: what $CXX names, g++, clang++, and the `ziglang` wheel, which brings clang and a C++ library
-with it for machines without a compiler.
+The first of these that is new enough counts: what $CXX names, g++, clang++, and the `ziglang` wheel, which
+brings clang and a C++ library with it for machines without a compiler.
 """
 
 from __future__ import annotations
@@ -61,18 +61,18 @@ class Compiler(msgspec.Struct, frozen=True):
             # A null pointer shall crash where it is used, and not be optimised into a trap elsewhere.
             own += ["-ferror-limit=40", "-fno-delete-null-pointer-checks"]
         if self.family == "zig":
-            # It adds checks and information for debuggers by itself.
+            # Zig adds checks and information for debuggers by itself.
             own += ["-fno-sanitize=all", "-g0"]
         return [*self.command, *common, *own, *more, "-I", include]
 
     def precompilation(self, header: str, include: str, *more: str) -> list[str]:
         """The command that reads a header for all files that include it first.
 
-        What comes of it is put below the directory where the command runs. There a compilation finds it that
-        has the same options `more` and those of `precompiled`.
+        The result is put below the directory where the command runs. A compilation finds it there that has
+        the same options `more` and those of `precompiled`.
         """
         suffix = "gch" if self.family == "gcc" else "pch"
-        # Clang would refuse it once the header has been written anew, although it says the same.
+        # Clang would refuse the result once the header has been written anew, even with the same text.
         own = [] if self.family == "gcc" else ["-Xclang", "-fno-pch-timestamp"]
         language = ["-x", "c++-header", f"{include}/{header}"]
         return [*self._command(include, *more, *own), *language, "-o", f"{header}.{suffix}"]
@@ -80,8 +80,8 @@ class Compiler(msgspec.Struct, frozen=True):
     def precompiled(self, header: str, directory: str) -> list[str]:
         """The options that make a compilation use a header precompiled in a directory.
 
-        Gcc reads the header itself where that does not fit. To clang the header has to be there still, at the
-        place where it was.
+        Gcc reads the header itself where the precompiled one does not fit. Clang wants the header to be still
+        where it was.
         """
         return ["-I", directory] if self.family == "gcc" else ["-include", f"{directory}/{header}"]
 

@@ -68,7 +68,7 @@ def _without_repeats(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
 
 
 def _messages(output: str) -> list[_Message]:
-    """Errors with the places that led to them: before them for g++, after them for clang."""
+    """Errors with the places that led to them, which g++ tells before an error, and clang after it."""
     messages: list[_Message] = []
     led_by: list[tuple[str, int, int]] = []
     for line in output.splitlines():

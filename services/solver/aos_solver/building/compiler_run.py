@@ -15,7 +15,7 @@ LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
 """What to do about a compiler that runs out of time or memory over a model."""
 
 _OUR_LIMIT_HINT = "The machine is too busy or too small for it; try again when less runs"
-"""The same over our own sources."""
+"""What to do about a compiler that runs out of time over our own sources."""
 
 _OUT_OF = (
     "memory exhausted",
@@ -46,7 +46,7 @@ async def run_compiler(
     `cpu_s` limits each of its processes in seconds of processor time; see `ran_out`.
     """
     memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
-    # The deadline is of the wall clock; this is for what outlives even the guard's end. Zig has threads.
+    # The deadline is of the wall clock. This limit ends what outlives even the guard. Zig has threads.
     limits = Limits(
         address_space_bytes=memory,
         cpu_s=cpu_s or int(deadline_s * 4) + 1,

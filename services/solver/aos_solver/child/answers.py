@@ -54,8 +54,8 @@ class EngineDescription(msgspec.Struct, frozen=True):
 class Plan(msgspec.Struct, frozen=True):
     """A decision: the index of the best action, and what the search found about each, in their order.
 
-    `planner` is the one that made it, with so many `threads`, and `why` it was that one. `known_simulations`
-    were in the tree before.
+    `planner` has made it with so many `threads`, and `why` says why that planner did. `known_simulations`
+    were in the tree before the search.
     """
 
     index: int
@@ -91,7 +91,7 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
 
     With numbers P is a density, in units of the numbers. `has_other_numbers` says that the model reports no
     such numbers with that response, so that the response counted alone. `uncorrected` is why the local
-    variables of the outcome did not correct the belief, `remark` both for people.
+    variables of the outcome did not correct the belief. `remark` tells people of both.
     """
 
     log_probability: float
@@ -110,7 +110,7 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
     def surprise(self) -> float:
         """-log P(observation | belief, action) in nats; 0 for an impossible one, which is marked as such.
 
-        Rounding makes no certain response surprising; a density may be above 1, and its surprise negative.
+        Rounding makes no certain response surprising. A density may be above 1, and its surprise negative.
         """
         is_certain = abs(self.log_probability) < _ROUNDING
         return 0.0 if self.is_impossible or is_certain else -self.log_probability
@@ -138,9 +138,9 @@ class ReachedAction(msgspec.Struct, frozen=True):
 
 
 class Reach(msgspec.Struct, frozen=True):
-    """What the actions can lead to; `limit` says why there may be more, and is empty where there is not.
+    """What the actions can lead to. `limit` says why there may be more, and is empty where there is no more.
 
-    The search ends early when nothing is missing. `depth` is in actions from the start.
+    The search ends early when a goal and all preconditions are met. `depth` counts actions from the start.
     """
 
     has_goal: bool

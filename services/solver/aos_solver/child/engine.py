@@ -67,11 +67,11 @@ log = logging.getLogger(__name__)
 A = TypeVar("A")
 
 _PARAMETER = re.compile(r"(\w+)=(\w+)")
-"""In the name of an action whose parameters are values of state variables, which are in it by name."""
+"""A parameter in the name of an action, and the name of the state variable that is its value."""
 
 ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
-"""For budgets in simulations; a budget in time adds ANSWER_DEADLINE_S to it."""
+"""Of a search with a budget in simulations. A budget in time leaves ANSWER_DEADLINE_S beyond it."""
 LISTING_DEADLINE_S = 600.0
 REACH_MARGIN_S = 2.5
 EXACT_TIME_S = 300.0
@@ -108,8 +108,8 @@ class Engine:
     ) -> Self:
         """Starts the child on the initial belief; ModelError if the model cannot even begin.
 
-        A child that is started again gets the belief, of which each child keeps a copy in our memory; or,
-        without `keeps_belief`, the initial one.
+        A child that is started again gets the belief, of which each child keeps a copy in our memory. Without
+        `keeps_belief` it gets the initial belief.
         """
         engine = cls(built, seed, impossible_observation)
         if keeps_belief:
@@ -189,9 +189,9 @@ class Engine:
         return await self._ask(command, Plan, deadline_s=deadline_s)
 
     async def ponder(self, index: int, *, seed: int, time_s: float, threads: int = 1) -> None:
-        """Begins to search below an action that is carried out now, so that the next plan starts with it.
+        """Begins to search below an action that is carried out now, so that the next plan starts with that.
 
-        Returns at once. It goes on for `time_s`, or until something else is asked.
+        Returns at once. The search goes on for `time_s`, or until something else is asked.
         """
         budget = {"simulations": 0, "seconds": time_s, "threads": threads}
         await self._ask(command_line("ponder", action=index, seed=seed, **budget), _Done)
@@ -220,8 +220,8 @@ class Engine:
         )
 
     async def list_states(self, max_states: int = 0) -> Listed:
-        """What one more decision leads to, from the current belief on with `max_states`, else where the last
-        call has ended; IntractableError where outcomes cannot be counted, or there are too many states."""
+        """Lists what one more decision leads to: from the current belief on where `max_states` is given, else
+        from where the last call has ended. IntractableError where outcomes or states are too many."""
         return await self._ask(
             command_line("list", max_states=max_states), Listed, deadline_s=LISTING_DEADLINE_S
         )
@@ -312,7 +312,7 @@ class Engine:
     async def export_belief(self, *, is_whole: bool = True) -> ExportedBelief:
         """The whole belief, however many pieces it takes; nobody changes it meanwhile.
 
-        States are told without what does not matter if it need not be whole.
+        Without `is_whole` states are told without what does not matter.
         """
         belief = await self._ask(command_line("export_belief", first=0, is_whole=is_whole), ExportedBelief)
         particles = list(belief.particles)
@@ -358,7 +358,7 @@ class Engine:
         return await self._ask(command_line("step_worlds", actions=b64encode(indices).decode()), WorldSteps)
 
     async def rate(self, seconds: float, seed: int, stepping: Stepping = "code") -> SampleCount:
-        """Draws samples with random actions for so long; by a table none at all where searches use none."""
+        """Draws samples with random actions for so long; by a table none where searches use no table."""
         command = command_line("rate" if stepping == "code" else "rate_by_table", seconds=seconds, seed=seed)
         return await self._ask(command, SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S)
 

@@ -35,7 +35,7 @@ HANG_STATUS = 71
 
 ADDRESS_SPACE_BYTES = 8 * 1024**3
 ANSWER_LIMIT_BYTES = 32 * 1024**2
-"""Of one answer; what may be longer comes in pieces."""
+"""The most that one answer has. What may be longer comes in pieces."""
 
 _MEMORY_HINT = (
     "Document code that writes past a plain array or through a pointer may have harmed the engine's memory "

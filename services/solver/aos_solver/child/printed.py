@@ -8,13 +8,13 @@ from typing import BinaryIO
 __all__ = ["PRINT_LIMIT_BYTES", "pass_on"]
 
 PRINT_LIMIT_BYTES = 1_000_000
-"""For each engine child."""
+"""What an engine child may print in its life."""
 
 _CHUNK_BYTES = 65536
 
 
 async def pass_on(printed: asyncio.StreamReader, out: BinaryIO) -> None:
-    """Copies until the end. Past the limit it reads on, so that the model never waits, and says so once."""
+    """Copies until the end. Past the limit all is read and dropped, so that the model never waits."""
     left = PRINT_LIMIT_BYTES
     while chunk := await printed.read(_CHUNK_BYTES):
         if left <= 0:

@@ -1,8 +1,8 @@
 """Which statement failed: what failed is run again by a build of the model that tells of every statement.
 
 A running model tells only the piece of document code that runs. After a fault the model is built once more,
-traced and without optimisation, and asked the same from the same belief; if that goes well, random actions
-are tried. The fault stays where it was told if it does not come again.
+traced and without optimisation, and asked the same from the same belief. If that goes well, random actions
+are tried. A fault that does not come again stays where it was told.
 """
 
 from __future__ import annotations

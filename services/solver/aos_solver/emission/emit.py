@@ -32,7 +32,7 @@ _OWN_NAMES = (
 )  # fmt: skip
 _MAX_COLUMNS = 110
 _COMMA = re.compile(r'"(?:[^"\\]|\\.)*"|(, )')
-"""Text in quotes, or a comma outside."""
+"""Text in quotes, or a comma outside of quotes."""
 _PLAIN_VALUE = re.compile(r"[\w.+-]*")
 
 

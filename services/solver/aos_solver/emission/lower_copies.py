@@ -1,7 +1,7 @@
 """Which copies of the state a step makes.
 
 Where no code reads an older copy of a variable after it has changed a newer one, the two are one object.
-Where the text leaves a doubt, the copy is made: it costs time, and leaving it out would change the model.
+Where the text leaves a doubt, the copy is made: a copy costs time, and a missing copy would change the model.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ __all__ = ["Copies", "copies_of"]
 _WHOLE_STATE = "*"
 _READING_METHODS = frozenset({"at", "back", "contains", "count", "empty", "front", "length", "size"})
 _REPEATED = re.compile(r"\b(?:for|while|do|goto)\b")
-"""Where, as in lambdas, the order of the text is not that of the run."""
+"""Words after which, as in lambdas, the order of the text is not that of the run."""
 
 
 class Copies(msgspec.Struct, frozen=True):
@@ -130,7 +130,7 @@ def _makes_handle(mention: Mention) -> bool:
 
 
 def _bound(cpp: Cpp) -> Iterator[Extent]:
-    """What references and pointers are made of, the constant ones as well."""
+    """What references and pointers are made of, also those to constants."""
     for declaration in cpp.declarations:
         if declaration.initial is not None and declaration.type.endswith(("&", "*", "_view")):
             yield declaration.initial

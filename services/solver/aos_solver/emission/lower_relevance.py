@@ -71,7 +71,7 @@ def sensing_draws(project: Project) -> Mapping[Snippet, frozenset[int]]:
 def _sections(project: Project) -> Iterator[tuple[Assignment, ...]]:
     """The code that decides on rewards, observations and states: no rollout policies, heuristics and prints.
 
-    What is told about a state by a real observation corrects beliefs, which hold all variables.
+    What a real observation tells about a state corrects beliefs, which hold all variables.
     """
     environment = project.environment
     yield environment.initial_belief

@@ -47,8 +47,9 @@ def ordered_compounds(compounds: Iterable[CompoundType]) -> list[CompoundType]:
 
 
 class Types:
-    """Resolves type texts. `members` are all names of variables, fields and parameters: a type of the same
-    name as one of them has to be qualified where that one is in scope.
+    """Resolves type texts.
+
+    `members` are all names of variables, fields and parameters. A type with such a name has to be qualified.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
 """Which state variables the code can change: the others are constants, and no particle holds them.
 
-Where the text leaves a doubt, the variable counts as changed. A change that is missed all the same cannot
-pass: constants are constant to the compiler.
+Where the text leaves a doubt, the variable counts as changed. A change that is missed all the same does not
+compile: constants are constant to the compiler.
 """
 
 from __future__ import annotations

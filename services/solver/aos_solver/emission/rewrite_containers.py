@@ -1,6 +1,6 @@
 """Edits for what documents do with containers of the standard library.
 
-State variables are not std::vector, std::string and std::map, though they convert to them. And a table that a
+State variables are not std::vector, std::string and std::map, though they convert to these. A table that a
 block of code fills with constants anew in each run costs more than the rest of the step.
 """
 

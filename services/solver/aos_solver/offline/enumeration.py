@@ -21,7 +21,7 @@ ENDED = "ended"
 """The name of the state that stands for all in which the mission is over."""
 
 _NEXT_TO_NOTHING = 1e-12
-"""So much is missing from a row's probabilities by rounding."""
+"""What may be missing from a row's probabilities by rounding."""
 
 
 class Enumeration(msgspec.Struct, frozen=True):

@@ -31,8 +31,8 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
 
     `model_digest` is the compiled model's, or the problem file's. `states` are the engine's texts of states,
     without what does not matter, or the problem file's names. From the start the policy gives at least
-    `lower`, and none gives more than `upper`; both discounted. With a `stop_value` the last action is to end
-    the mission, which is worth that.
+    `lower`, and no policy gives more than `upper`; both are discounted. With a `stop_value` the last action
+    ends the mission, which is worth so much.
     """
 
     format: str = FORMAT

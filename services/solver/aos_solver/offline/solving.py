@@ -33,7 +33,7 @@ class SolvingLimits(msgspec.Struct, frozen=True, kw_only=True):
 
 class Bounds(msgspec.Struct, frozen=True):
     """What is known after so many seconds of computing: the policy gives at least `lower` from the start,
-    and none gives more than `upper`; both discounted."""
+    and no policy gives more than `upper`. Both are discounted."""
 
     seconds: float
     lower: float
