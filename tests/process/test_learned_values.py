@@ -85,7 +85,7 @@ if (state.left == 0) {
     .replace("state.full[box] ? 1 : 0;", "-1;\nstate__.left -= state.full[box];"),
     "open.am": BOXES["open.am"],
 }
-"""Four of 40 boxes hold a coin, and an opening costs 1: what a state is worth follows from how many coins are left."""
+"""Four of 40 boxes hold a coin, and an opening costs 1: the coins that are left say what a state is worth."""
 
 BERRIES = {
     "berries.ef": """project: berries
@@ -117,7 +117,7 @@ __moduleResponse = picked ? found : nothing;
     .replace("/open", "/go")
     .replace("box", "by"),
 }
-"""A ring of 24 bushes, of which a number has a bit each: no table of few values tells where the berries are."""
+"""A ring of 24 bushes, of which a number has a bit each: no table of few values tells of the berries."""
 
 
 async def _why(documents: dict[str, str], cache_dir: Path) -> str:

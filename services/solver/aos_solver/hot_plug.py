@@ -243,7 +243,13 @@ class ModelShelf:
             span = project.environment.span
             return (Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),)
         if running is not None and built.emitted.state_digest != running.built.emitted.state_digest:
-            return (_state_changed(project),)
+            message = (
+                "the state variables differ from the running mission's, whose belief cannot be carried over"
+            )
+            hint = (
+                "Keep the state variables as they are, or end the mission and start it with the new documents"
+            )
+            return (Diagnostic(Severity.ERROR, "AOS112", message, project.environment.span, hint),)
         return ()
 
     async def close(self) -> None:
@@ -253,13 +259,3 @@ class ModelShelf:
             unused, self._ready = self._ready, None
         if unused is not None:
             await unused.engine.close()
-
-
-def _state_changed(project: Project) -> Diagnostic:
-    return Diagnostic(
-        Severity.ERROR,
-        "AOS112",
-        "the state variables differ from the running mission's, whose belief cannot be carried over",
-        project.environment.span,
-        "Keep the state variables as they are, or end the mission and start it with the new documents",
-    )

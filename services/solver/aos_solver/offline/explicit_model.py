@@ -78,8 +78,8 @@ class ModelSize(msgspec.Struct, frozen=True):
     outcomes: int
 
 
-class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
-    """A POMDP with `discount`; states, actions and observations are numbered as their names stand here.
+class FlatModel(msgspec.Struct, frozen=True, kw_only=True):
+    """A POMDP without names: states, actions and observations are numbers.
 
     `rewards` (states, actions) are expected immediate rewards. Row `state * actions + action` of `outcomes`
     holds the next states; `sensings` beside them names for each a row of `likelihoods`, the distribution of
@@ -87,16 +87,21 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
     action decide about it.
     """
 
-    name: str
     discount: float
-    states: tuple[str, ...]
-    actions: tuple[str, ...]
-    observations: tuple[str, ...]
     rewards: Floats
     outcomes: Ragged
     sensings: Integers
     likelihoods: Ragged
     starts: tuple[StartBelief, ...]
+
+
+class ExplicitModel(FlatModel, frozen=True, kw_only=True):
+    """One with names, by the numbers of states, actions and observations."""
+
+    name: str
+    states: tuple[str, ...]
+    actions: tuple[str, ...]
+    observations: tuple[str, ...]
 
     @property
     def size(self) -> ModelSize:
@@ -137,7 +142,7 @@ class ExplicitModel(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def with_more_outcomes(
-    model: ExplicitModel | FlatModel,
+    model: FlatModel,
     rows: Integers,
     row_count: int,
     more: Integers,
@@ -156,17 +161,6 @@ def with_more_outcomes(
     sensings = np.r_[model.sensings, np.full(len(more), len(model.likelihoods))]
     probabilities = np.r_[model.outcomes.probabilities, chances]
     return Ragged(first, numbers[order], probabilities[order]), sensings[order]
-
-
-class FlatModel(msgspec.Struct, frozen=True, kw_only=True):
-    """What such a file holds: an `ExplicitModel` without names."""
-
-    discount: float
-    rewards: Floats
-    outcomes: Ragged
-    sensings: Integers
-    likelihoods: Ragged
-    starts: tuple[StartBelief, ...]
 
 
 def read_flat(path: Path) -> FlatModel:

@@ -17,84 +17,80 @@ namespace aos {
 
 [[noreturn, gnu::cold]] void bad_distribution(const char* text);
 
-namespace detail {
-
-inline constexpr double impossible = -std::numeric_limits<double>::infinity();
-
-}  // namespace detail
-
-void Normal::check() const {
-  if (!std::isfinite(mean_)) bad_distribution("the mean of a reported number is not finite");
-  if (!(deviation_ > 0) || !std::isfinite(deviation_)) {
-    bad_distribution("the deviation of a reported number is not above 0; a number without noise has no density");
+void Distribution::check() const {
+  if (kind_ == Kind::normal) {
+    if (!std::isfinite(first_)) bad_distribution("the mean of a reported number is not finite");
+    if (!(second_ > 0) || !std::isfinite(second_)) {
+      bad_distribution("the deviation of a reported number is not above 0; a number without noise has no density");
+    }
+  } else if (kind_ == Kind::uniform && (first_ == second_ || !std::isfinite(second_ - first_))) {
+    bad_distribution("a reported number is uniform between bounds that have nothing between them");
   }
 }
-double Normal::draw(Sampler& random) const {
-  check();
-  return random.SampleNormal(mean_, deviation_);
-}
-double Normal::log_density(double value) const {
-  check();
-  const double distance = (value - mean_) / deviation_;
-  return -0.5 * distance * distance - std::log(deviation_) - 0.5 * std::log(2 * std::numbers::pi);
-}
-void Normal::describe(DescribedDistribution& description) const {
-  check();
-  description = {DescribedDistribution::Kind::normal, {mean_, deviation_}};
-}
 
-void Uniform::check() const {
-  const bool has_width = low_ != high_ && std::isfinite(high_ - low_);
-  if (!has_width) bad_distribution("a reported number is uniform between bounds that have nothing between them");
-}
-double Uniform::draw(Sampler& random) const {
+double Distribution::draw(Sampler& random) const {
   check();
-  return random.SampleUniform(low_, high_);
-}
-double Uniform::log_density(double value) const {
-  check();
-  const bool is_inside = std::min(low_, high_) <= value && value <= std::max(low_, high_);
-  return is_inside ? -std::log(std::abs(high_ - low_)) : detail::impossible;
-}
-void Uniform::describe(DescribedDistribution& description) const {
-  check();
-  description = {DescribedDistribution::Kind::uniform, {std::min(low_, high_), std::max(low_, high_)}};
-}
-
-double Bernoulli::draw(Sampler& random) const { return random.flag(probability_) ? 1 : 0; }
-double Bernoulli::log_density(double value) const {
-  const double probability = std::clamp(probability_, 0.0, 1.0);
-  if (value == 1) return std::log(probability);
-  return value == 0 ? std::log1p(-probability) : detail::impossible;
-}
-void Bernoulli::describe(DescribedDistribution& description) const {
-  const double probability = std::clamp(probability_, 0.0, 1.0);
-  description = {DescribedDistribution::Kind::discrete, {0, 1 - probability, probability}};
-}
-
-double Discrete::draw(Sampler& random) const {
-  const std::span<const double> weights{first_, count_};
-  return is_normalised_ ? random.SampleDiscrete(-1, weights) : random.SampleDiscrete(weights);
-}
-std::pair<double, double> Discrete::total_and_whole() const {
-  double total = 0;
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (!(first_[i] >= 0)) bad_weights("a weight is negative or not a number");
-    total += first_[i];
+  const std::span<const double> weights{weights_, count_};
+  switch (kind_) {
+    case Kind::normal: return random.SampleNormal(first_, second_);
+    case Kind::uniform: return random.SampleUniform(first_, second_);
+    case Kind::bernoulli: return random.flag(first_) ? 1 : 0;
+    case Kind::discrete: return random.SampleDiscrete(weights);
+    default: return random.SampleDiscrete(-1, weights);
   }
-  if (is_normalised_ && total <= 0) bad_weights("all weights of a draw are zero");
-  return {total, is_normalised_ || total > 1 - weight_rounding ? total : 1};
 }
-double Discrete::log_density(double value) const {
+
+double Distribution::log_density(double value) const {
+  constexpr double impossible = -std::numeric_limits<double>::infinity();
+  check();
+  if (kind_ == Kind::normal) {
+    const double distance = (value - first_) / second_;
+    return -0.5 * distance * distance - std::log(second_) - 0.5 * std::log(2 * std::numbers::pi);
+  }
+  if (kind_ == Kind::uniform) {
+    const bool is_inside = std::min(first_, second_) <= value && value <= std::max(first_, second_);
+    return is_inside ? -std::log(std::abs(second_ - first_)) : impossible;
+  }
+  if (kind_ == Kind::bernoulli) {
+    const double probability = std::clamp(first_, 0.0, 1.0);
+    return value == 1 ? std::log(probability) : value == 0 ? std::log1p(-probability) : impossible;
+  }
   const auto [total, whole] = total_and_whole();
   if (value == -1) return std::log((whole - total) / whole);
   const bool is_index = value >= 0 && value < static_cast<double>(count_) && value == std::floor(value);
-  return is_index ? std::log(first_[static_cast<std::size_t>(value)] / whole) : detail::impossible;
+  return is_index ? std::log(weights_[static_cast<std::size_t>(value)] / whole) : impossible;
 }
-void Discrete::describe(DescribedDistribution& description) const {
-  const auto [total, whole] = total_and_whole();
-  description = {DescribedDistribution::Kind::discrete, {-1, (whole - total) / whole}};
-  for (std::size_t i = 0; i < count_; ++i) description.numbers.push_back(first_[i] / whole);
+
+double Distribution::spread() const {
+  return kind_ == Kind::normal ? second_ : kind_ == Kind::uniform ? 0.3 * std::abs(second_ - first_) : 0.25;
+}
+
+void Distribution::describe(DescribedDistribution& description) const {
+  using Described = DescribedDistribution::Kind;
+  check();
+  if (kind_ == Kind::normal) {
+    description = {Described::normal, {first_, second_}};
+  } else if (kind_ == Kind::uniform) {
+    description = {Described::uniform, {std::min(first_, second_), std::max(first_, second_)}};
+  } else if (kind_ == Kind::bernoulli) {
+    const double probability = std::clamp(first_, 0.0, 1.0);
+    description = {Described::discrete, {0, 1 - probability, probability}};
+  } else {
+    const auto [total, whole] = total_and_whole();
+    description = {Described::discrete, {-1, (whole - total) / whole}};
+    for (std::size_t i = 0; i < count_; ++i) description.numbers.push_back(weights_[i] / whole);
+  }
+}
+
+std::pair<double, double> Distribution::total_and_whole() const {
+  const bool is_normalised = kind_ == Kind::normalised;
+  double total = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!(weights_[i] >= 0)) bad_weights("a weight is negative or not a number");
+    total += weights_[i];
+  }
+  if (is_normalised && total <= 0) bad_weights("all weights of a draw are zero");
+  return {total, is_normalised || total > 1 - weight_rounding ? total : 1};
 }
 
 }  // namespace aos

@@ -5,8 +5,8 @@
 // wrong with it shows when it is used, as a ModelFault.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <iterator>
 #include <utility>
@@ -17,61 +17,46 @@ namespace aos {
 struct DescribedDistribution;
 class Sampler;
 
+// One of those below.
 class Distribution {
  public:
-  virtual double draw(Sampler& random) const = 0;
-  virtual double log_density(double value) const = 0;
+  double draw(Sampler& random) const;
+  double log_density(double value) const;
   // The distance at which two draws from it begin to tell something apart.
-  virtual double spread() const = 0;
-  virtual void describe(DescribedDistribution& description) const = 0;
+  double spread() const;
+  void describe(DescribedDistribution& description) const;
 
  protected:
-  ~Distribution() = default;
+  enum class Kind : std::uint8_t { normal, uniform, bernoulli, discrete, normalised };
+
+  Distribution(Kind kind, double first, double second) : kind_(kind), first_(first), second_(second) {}
+  Distribution(Kind kind, const double* weights, std::size_t count) : kind_(kind), weights_(weights), count_(count) {}
+
+  Kind kind_;
+  double first_ = 0;   // the mean, a bound, or the probability of 1
+  double second_ = 0;  // the deviation, or the other bound
+  const double* weights_ = nullptr;
+  std::size_t count_ = 0;
+
+ private:
+  void check() const;
+  // Of the weights, and of what can happen.
+  std::pair<double, double> total_and_whole() const;
 };
 
 // Its deviation is positive: a number without noise has no density.
-class Normal final : public Distribution {
- public:
-  Normal(double mean, double deviation) : mean_(mean), deviation_(deviation) {}
-  double draw(Sampler& random) const override;
-  double log_density(double value) const override;
-  double spread() const override { return deviation_; }
-  void describe(DescribedDistribution& description) const override;
-
- private:
-  void check() const;
-  double mean_;
-  double deviation_;
+struct Normal : Distribution {
+  Normal(double mean, double deviation) : Distribution(Kind::normal, mean, deviation) {}
 };
 
 // There is something between its bounds.
-class Uniform final : public Distribution {
- public:
-  Uniform(double low, double high) : low_(low), high_(high) {}
-  double draw(Sampler& random) const override;
-  double log_density(double value) const override;
-  double spread() const override { return 0.3 * std::abs(high_ - low_); }
-  void describe(DescribedDistribution& description) const override;
-
- private:
-  void check() const;
-  double low_;
-  double high_;
+struct Uniform : Distribution {
+  Uniform(double low, double high) : Distribution(Kind::uniform, low, high) {}
 };
 
-inline constexpr double discrete_spread = 0.25;
-
 // 0 or 1.
-class Bernoulli final : public Distribution {
- public:
-  explicit Bernoulli(double probability) : probability_(probability) {}
-  double draw(Sampler& random) const override;
-  double log_density(double value) const override;
-  double spread() const override { return discrete_spread; }
-  void describe(DescribedDistribution& description) const override;
-
- private:
-  double probability_;
+struct Bernoulli : Distribution {
+  explicit Bernoulli(double probability) : Distribution(Kind::bernoulli, probability, 0) {}
 };
 
 struct Normalised {};
@@ -79,40 +64,26 @@ inline constexpr Normalised normalised{};
 
 // An index. Weights are divided by their sum where that is asked for; else the index is -1 where they leave room. They have
 // to stay where they are.
-class Discrete final : public Distribution {
+class Discrete : public Distribution {
  public:
-  explicit Discrete(std::initializer_list<double> weights) : first_(weights.begin()), count_(weights.size()) {}
-  Discrete(Normalised, std::initializer_list<double> weights) : Discrete(weights) { is_normalised_ = true; }
+  explicit Discrete(std::initializer_list<double> weights) : Distribution(Kind::discrete, weights.begin(), weights.size()) {}
   template <class Weights>
-  explicit Discrete(const Weights& weights) {
-    if constexpr (requires { first_ = std::data(weights); }) {
-      first_ = std::data(weights);
-      count_ = std::size(weights);
+  explicit Discrete(const Weights& weights) : Distribution(Kind::discrete, nullptr, std::size(weights)) {
+    if constexpr (requires { weights_ = std::data(weights); }) {
+      weights_ = std::data(weights);
     } else {
       copied_.assign(std::begin(weights), std::end(weights));
-      first_ = copied_.data();
-      count_ = copied_.size();
+      weights_ = copied_.data();
     }
   }
-  template <class Weights>
+  template <class Weights = std::initializer_list<double>>
   Discrete(Normalised, const Weights& weights) : Discrete(weights) {
-    is_normalised_ = true;
+    kind_ = Kind::normalised;
   }
   Discrete(const Discrete&) = delete;
   Discrete& operator=(const Discrete&) = delete;
 
-  double draw(Sampler& random) const override;
-  double log_density(double value) const override;
-  double spread() const override { return discrete_spread; }
-  void describe(DescribedDistribution& description) const override;
-
  private:
-  // Of the weights, and of what can happen.
-  std::pair<double, double> total_and_whole() const;
-
-  const double* first_ = nullptr;
-  std::size_t count_ = 0;
-  bool is_normalised_ = false;
   std::vector<double> copied_;  // of numbers that are not of type double
 };
 
