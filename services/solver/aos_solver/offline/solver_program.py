@@ -12,7 +12,7 @@ from aos_solver.building.compiler_run import internal_error, run_compiler
 __all__ = ["build_solver"]
 
 _SOURCE = Path(__file__).parent / "cpp" / "sarsop.cpp"
-_SHARED = (SOURCES / "aos/base/json.hpp", *sorted((SOURCES / "point_based").iterdir()))
+_SHARED = (*sorted((SOURCES / "aos/base").iterdir()), *sorted((SOURCES / "point_based").iterdir()))
 _OBJECT = "sarsop.o"
 _EXECUTABLE = "sarsop"
 

@@ -6,11 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <exception>
 
+#include "aos/base/clock.hpp"
 #include "aos/base/json.hpp"
 #include "point_based/flat_file.hpp"
 #include "point_based/flat_model.hpp"
@@ -26,11 +27,7 @@ using namespace aos::point_based;
 constexpr int crossed_status = 3;
 
 // Of this process, so that a busy machine changes nothing.
-double cpu_seconds() {
-  timespec time{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+double cpu_seconds() { return std::chrono::duration<double>(aos::processor_time()).count(); }
 
 bool is_told_to_stop() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
