@@ -143,8 +143,8 @@ class CertaintyEquivalent {
     return local;
   }
 
-  // Values rise from what no plan can give less than to what these plans give; every sum is moved down by what rounding may have added.
-  // Returns the largest change.
+  // Values rise from what no plan can give less than to what these plans give. Every sum is moved down by what rounding may
+  // have added. Returns the largest change.
   double renew() {
     double change = 0;
     for (std::size_t pair = 0; pair < values_.size(); ++pair) {

@@ -5,7 +5,8 @@
 // far too high say little about what is worth improving, and the lower bound is what is carried out. So of three trials one
 // follows the highest middle of both bounds, and one the highest lower bound, with a look at all actions. The first trials
 // from a belief do the same action again and again before that: what lies behind a long detour is hardly found by
-// bounds. Actions whose upper bound is below the belief's lower bound are dropped, and alpha vectors that are best at no remaining belief.
+// bounds. Actions whose upper bound is below the belief's lower bound are dropped, and alpha vectors that are best at no
+// remaining belief.
 #pragma once
 
 #include <algorithm>

@@ -14,8 +14,9 @@ inline constexpr std::size_t page_bytes = 65536;  // the largest page that Linux
 inline constexpr std::size_t line_words = 64 / sizeof(std::uint32_t);  // a cache line, so that no thread waits
 inline constexpr int max_threads = 64;
 
-// Two numbers for each thread, at the start of its line: what runs, and how often it came to an end. The engine child lays a page that outlives the process over
-// this one: at a fixed place, since a pointer to it could point to anything that a step looks at.
+// Two numbers for each thread, at the start of its line: what runs, and how often it came to an end. The engine child lays
+// a page that outlives the process over this one. Its place is fixed, since a pointer to it could point to anything that a
+// step looks at.
 alignas(page_bytes) inline volatile std::uint32_t page[page_bytes / sizeof(std::uint32_t)];
 
 inline thread_local std::size_t place = 0;

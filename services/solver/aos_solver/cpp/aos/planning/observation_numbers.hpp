@@ -48,7 +48,8 @@ class ObservationNumbers {
 
   std::uint32_t known(std::uint32_t& number, int skill, Observation observation) {
     if (number != unknown) return number;
-    const auto [named, is_new] = by_text_.try_emplace(name_of_observation<Model>(skill, observation), static_cast<std::uint32_t>(texts_.size()));
+    const auto next = static_cast<std::uint32_t>(texts_.size());
+    const auto [named, is_new] = by_text_.try_emplace(name_of_observation<Model>(skill, observation), next);
     if (is_new) texts_.push_back(named->first);
     return number = named->second;
   }
