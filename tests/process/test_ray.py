@@ -87,6 +87,25 @@ def test_a_cluster_that_cannot_be_reached_is_told_with_what_to_look_at(root: Pat
     assert "ray://127.0.0.1:9 cannot be reached" in caught.value.message
 
 
+class HeadWithFaults:
+    """A head whose first processes for clients do not come up."""
+
+    def __init__(self, faults: int) -> None:
+        self.faults = faults
+
+    def init(self, address: str, **options: object) -> None:
+        self.faults -= 1
+        if self.faults >= 0:
+            raise ConnectionAbortedError("Initialization failure from server:\n\nno process came up")
+
+
+def test_a_head_whose_process_for_this_client_did_not_come_up_is_asked_once_more() -> None:
+    ray_cluster._connect(HeadWithFaults(1), "ray://127.0.0.1:9")
+    with pytest.raises(DeployError) as caught:
+        ray_cluster._connect(HeadWithFaults(2), "ray://127.0.0.1:9")
+    assert caught.value.message.endswith("Initialization failure from server: no process came up")
+
+
 def test_without_ray_the_command_says_how_to_install_it(
     root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

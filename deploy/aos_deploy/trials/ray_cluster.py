@@ -110,7 +110,11 @@ def _connect(ray: Any, address: str) -> None:
     try:
         if address == OWN:
             ray.init(include_dashboard=False, **quiet)
-        else:
+            return
+        try:
+            ray.init(address, **quiet)
+        except ConnectionAbortedError:
+            # The head starts a process for each client, and now and then one of them does not come up.
             ray.init(address, **quiet)
     except RuntimeError as error:
         # Ray compares its own version and Python's, and tells both.
@@ -205,7 +209,11 @@ async def _answer(reference: Any, timeout_s: float, what: str) -> Any:
 
 
 def _first_line(error: BaseException) -> str:
-    return next((line.strip() for line in str(error).splitlines() if line.strip()), type(error).__name__)
+    """What an error says, with the next line where the first one only announces it."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    if not lines:
+        return type(error).__name__
+    return " ".join(lines[:2]) if lines[0].endswith(":") else lines[0]
 
 
 def _unusable(message: str, hint: str) -> DeployError:
