@@ -5,6 +5,7 @@
 // nearly always accepted, where one draw at a time would take as many moves as there are draws.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -27,9 +28,14 @@ class FreeDraws {
     return chosen_;
   }
 
+  // How many of the proposals to make so, by how often that has succeeded lately. Half are left to draws that were felt, and
+  // to those of later steps.
+  double share() const { return std::clamp(acceptance_, 0.25, 0.5); }
+
   // Whether the draws that were chosen last could be made anew together. Where not, those are blamed more that have been
   // free less often.
   void note(bool was_accepted) {
+    acceptance_ += 0.02 * ((was_accepted ? 1 : 0) - acceptance_);
     double doubts = 0;
     for (const std::size_t draw : chosen_) doubts += doubt(draw);
     for (const std::size_t draw : chosen_) {
@@ -46,6 +52,7 @@ class FreeDraws {
   // Nothing is trusted fully, since later observations may feel it.
   double doubt(std::size_t draw) const { return 1.02 - scores_[draw]; }
 
+  double acceptance_ = 0.5;
   std::vector<double> scores_;  // in [0, 1]
   std::vector<std::size_t> chosen_;
 };

@@ -30,7 +30,6 @@ inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
 inline constexpr std::size_t proposals_that_tell = 500;
 inline constexpr std::size_t min_accepted = 1;          // of them; else there is little to be gained
-inline constexpr double refreshing = 0.5;               // of the proposals make draws of the origin anew
 
 template <class Model>
 class Moves {
@@ -48,7 +47,7 @@ class Moves {
     std::size_t accepted = 0;
     while (steps_ < max_moving_steps) {
       for (Copy& copy : copies_) {
-        accepted += (random_.flag(refreshing) ? refresh(copy) : move(copy)) ? 1 : 0;
+        accepted += (random_.flag(free_draws_.share()) ? refresh(copy) : move(copy)) ? 1 : 0;
         if (++proposed == proposals_that_tell && accepted < min_accepted) return cloud;
         if (steps_ >= max_moving_steps) break;
       }
@@ -140,7 +139,6 @@ class Moves {
     const std::vector<const Block*> blocks = blocks_of(copy.trace);
     if (blocks[0]->draws == 0) return false;
     const std::vector<std::size_t>& anew = free_draws_.choose(blocks[0]->draws, random_);
-    if (anew.empty()) return false;
     std::vector<double> values;
     State before{};
     Sampler later{blocks[0]->seed};

@@ -39,7 +39,7 @@ inline constexpr double dear_trial = 50;                // in runs; of cheap one
 inline constexpr double nearly_all = 1 - 1e-8;          // of the weight is covered
 inline constexpr double few_effective = 0.2 * particle_count;
 inline constexpr double few_origins = 250;
-inline constexpr double too_few_effective = 50;
+inline constexpr double too_few_effective = 150;
 inline constexpr int max_rescues = 2;
 inline constexpr int max_rescues_of_none = 3;           // where no particle is left
 
