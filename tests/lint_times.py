@@ -94,10 +94,10 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         scratch = Path(folder)
-        bundles = {path.name: path for path in options.bundles} or dict(wrong_bundles(scratch))
+        bundles = [(path.name, path) for path in options.bundles] or list(wrong_bundles(scratch))
         for state_bytes in (STATE_BYTES[0], ANY_SIZE):
             asyncio.run(build_engine(scratch / "cache", state_bytes=state_bytes))
-        spent = [one_lint(name, path, scratch) for name, path in bundles.items()]
+        spent = [one_lint(name, path, scratch) for name, path in bundles]
     sys.stdout.write(
         f"{len(spent)} bundles: {min(spent):.2f} to {max(spent):.2f} s of processor time, "
         f"median {statistics.median(spent):.2f} s\n"
