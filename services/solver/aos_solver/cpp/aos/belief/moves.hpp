@@ -7,6 +7,11 @@
 // that was drawn freely must bring what was observed then. A step that was guided is guided anew from where the trace is
 // now, and its likelihood counts (pseudo-marginal: Andrieu and Roberts, 2009). So variables of two particles are never
 // mixed, and what all histories have in common stays.
+//
+// Another kind of proposal makes many draws of the origin anew that nothing observed seems to have felt (free_draws.hpp). All
+// later steps are replayed with their own draws, guided ones too, which costs one run a step. A guided step keeps the
+// likelihood that was estimated for it. It has to draw from the same weights as before, so that other draws would have
+// been guided alike. Nobody compares the parameters of continuous draws: there the kept likelihood is an approximation.
 #pragma once
 
 #include <algorithm>
@@ -133,8 +138,7 @@ class Moves {
     return true;
   }
 
-  // Many draws of the origin made anew at once; all later steps run as they did, with the same draws. A guided step has to
-  // draw from the same weights as before, so that what its likelihood was estimated from is as likely as it was.
+  // A proposal to make many draws of the origin anew at once.
   bool refresh(Copy& copy) {
     const std::vector<const Block*> blocks = blocks_of(copy.trace);
     if (blocks[0]->draws == 0) return false;
@@ -163,8 +167,8 @@ class Moves {
     return true;
   }
 
-  // Runs all steps from either origin, to their last states. Whether the second brings what was observed, drawn by how
-  // likely the numbers are with either.
+  // Runs all steps from either origin, to their last states. Returns whether the second origin is accepted in place of the
+  // first: it has to bring what was observed, and the densities of the numbers decide by chance.
   bool still_brings(const std::vector<const Block*>& blocks, State& before, State& after) {
     double ratio = 1;
     for (std::size_t i = 1; i < blocks.size(); ++i) {
@@ -289,7 +293,7 @@ class Moves {
     return trace;
   }
 
-  // Of the weights that a step draws from.
+  // Tells whether two steps draw from the same weights.
   class Weights final : public DrawWatcher {
    public:
     void start() { digest_ = 0; }
