@@ -10,7 +10,8 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from middleware_system import PATIENCE_S, System
+from middleware_system import System
+from processes import HANG_S
 
 from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.children import Child
@@ -63,7 +64,7 @@ async def test_an_adapter_that_ends_at_once_may_have_begun(
         child = await launch(system, endpoint, tmp_path, "import os\ndef sense(call):\n    os._exit(1)\n")
         await system.state_when(lambda state: "sense" not in state.unavailable)
         assert (await system.activate("sense", step)).status == "unknown"
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(HANG_S):
             await child.wait()
         await system.state_when(lambda state: "sense" in state.unavailable)
 

@@ -8,7 +8,8 @@ from typing import Any
 import msgspec
 import pytest
 from mapping_documents import skill_of
-from middleware_system import PATIENCE_S, SENSE, System, answering, hang
+from middleware_system import SENSE, System, answering, hang
+from processes import HANG_S
 
 from aos_protocol.errors import SkillError
 from aos_protocol.messages import Outcome, SkillCall, SkillResult, Stray
@@ -96,7 +97,7 @@ async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -
     assert (await system.activate("sense", 1)).status == "timed_out"
     system.adapter.is_cancelled.clear()
     waiting = asyncio.create_task(system.activate("sense", 2))
-    await asyncio.wait_for(system.adapter.is_cancelled.wait(), PATIENCE_S)
+    await asyncio.wait_for(system.adapter.is_cancelled.wait(), HANG_S)
     assert [call.id.step for call in system.adapter.calls] == [1]
     is_still.set()
     assert (await waiting).status == "observed"

@@ -18,7 +18,7 @@ import msgspec
 import pytest
 import pytest_asyncio
 from processes import HANG_S
-from test_registry_service import TIMEOUT_S, current, push, running_registry, written_settings
+from test_registry_service import current, push, running_registry, written_settings
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
@@ -177,7 +177,7 @@ async def test_a_second_registry_on_the_bus_is_the_one_that_goes(
     second = Settings(robot="test", service="registry", endpoint=endpoint, run_dir=str(tmp_path / "second"))
     command = [sys.executable, "-m", "aos_registry", str(written_settings(second))]
     child = await Child.start(command, env={"AOS_LOG": "CRITICAL"})
-    async with asyncio.timeout(TIMEOUT_S):
+    async with asyncio.timeout(HANG_S):
         assert await child.wait() == 1
     fault = msgspec.json.decode((tmp_path / "second" / "faults" / "registry.json").read_bytes())
     assert fault["code"] == "AOS803"
