@@ -1,5 +1,5 @@
-// Draws from a finite distribution by one random number and one comparison: Walker's alias method, its columns made as by
-// Vose (1991). Nothing branches on what is drawn.
+// Draws from a finite distribution by Walker's alias method. A draw takes one random number and one
+// comparison, and no branch depends on the outcome. The columns are made as in Vose (1991).
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace aos {
 
-// One of as many equally likely columns as there are outcomes: the first of its two outcomes below the threshold.
+// One of n equally likely columns for n outcomes. A draw below the threshold gives the first outcome.
 template <class Outcome>
 struct AliasColumn {
   std::uint64_t threshold = 0;  // in units of 2^-64
   Outcome outcomes[2]{};
 };
 
-// The outcome that 64 random bits stand for, off by less than `count` units of 2^-64.
+// The outcome that 64 random bits stand for. Its probability is off by less than `count` units of 2^-64.
 template <class Outcome>
 const Outcome& drawn(const AliasColumn<Outcome>* columns, std::uint32_t count, std::uint64_t bits) {
   const auto product = static_cast<unsigned __int128>(bits) * count;
@@ -23,7 +23,7 @@ const Outcome& drawn(const AliasColumn<Outcome>* columns, std::uint32_t count, s
   return column.outcomes[static_cast<std::uint64_t>(product) >= column.threshold];
 }
 
-// Makes the columns of distributions; keeps its memory between them.
+// Makes the columns of distributions. The working memory is kept from one distribution to the next.
 template <class Outcome>
 class AliasColumns {
  public:
@@ -32,7 +32,7 @@ class AliasColumns {
     double weight;  // positive
   };
 
-  // Appends as many columns as there are outcomes; `total` is the sum of their weights.
+  // Appends one column for each outcome. `total` is the sum of the outcomes' weights.
   void append(const std::vector<Weighted>& outcomes, double total, std::vector<AliasColumn<Outcome>>& columns) {
     const std::size_t first = columns.size();
     light_.clear();
@@ -44,7 +44,8 @@ class AliasColumns {
       shares_.push_back(weight * static_cast<double>(outcomes.size()) / total);
       (shares_.back() < 1 ? light_ : heavy_).push_back(i);
     }
-    // A light outcome fills a part of its column, and a heavy one the rest of it. What rounding leaves over fills its own.
+    // A light outcome fills a part of its column, and a heavy outcome fills the rest of it. Rounding may
+    // leave outcomes over; each of these fills its own column.
     while (!light_.empty() && !heavy_.empty()) {
       const std::size_t light = light_.back();
       const std::size_t heavy = heavy_.back();
@@ -61,7 +62,7 @@ class AliasColumns {
  private:
   std::vector<std::size_t> light_;
   std::vector<std::size_t> heavy_;
-  std::vector<double> shares_;  // of a column
+  std::vector<double> shares_;  // how many columns an outcome still has to fill
 };
 
 }  // namespace aos

@@ -1,4 +1,5 @@
-// Arrays of numbers within a line of text: their bytes, as they are in memory, in base64 (RFC 4648) with padding.
+// Arrays of numbers as text without line breaks. The numbers' bytes, in the order of this machine's memory,
+// are encoded in base64 (RFC 4648) with padding.
 #pragma once
 
 #include <array>
@@ -48,7 +49,7 @@ std::string to_base64(const std::vector<Number>& numbers) {
   return text;
 }
 
-// Nothing if the text is no base64, or not of whole numbers.
+// Returns nothing if the text is not base64, or if its bytes do not fill a whole number of `Number`s.
 template <class Number>
 std::optional<std::vector<Number>> from_base64(std::string_view text) {
   static_assert(std::is_arithmetic_v<Number>);

@@ -1,11 +1,11 @@
-// What a thorough build of a model spends its time on, and a quick one (AOS_QUICK) does not.
+// Builds of a model: a thorough one compiles longer for faster code, a quick one (AOS_QUICK) does not.
 #pragma once
 
 #include <type_traits>
 
 #include "aos/base/random.hpp"
 
-// Before a function that is to have all that it calls inlined into it.
+// An attribute of functions: in a thorough build, everything that the function calls is inlined into it.
 #ifdef AOS_QUICK
 #define AOS_INLINING_ALL
 #else
@@ -20,7 +20,7 @@ constexpr bool is_quick_build = true;
 constexpr bool is_quick_build = false;
 #endif
 
-// What model code draws from, made of a source: the source itself, to which the code then is compiled, or any source.
+// What model code draws from. A thorough build is compiled for each kind of source, a quick build once for any source.
 template <class Random>
 using ModelSource = std::conditional_t<is_quick_build, AnySource, Random&>;
 

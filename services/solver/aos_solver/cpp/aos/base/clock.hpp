@@ -1,5 +1,5 @@
-// The clock of planning budgets: real time, or the processor time of this process, which is the fairer measure of a
-// planner on a machine that has other work to do.
+// The clock of planning budgets. It counts real time, or the processor time of this process. Processor time
+// is the fairer measure of a planner on a machine that has other work.
 #pragma once
 
 #include <chrono>

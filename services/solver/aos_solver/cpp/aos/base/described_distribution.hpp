@@ -1,5 +1,5 @@
-// A distribution of reported numbers by its own numbers: what it takes to tell it from others, and to work out how
-// likely its draws are to fall somewhere.
+// A distribution of a reported number, described by its parameters. The description suffices to compare
+// distributions and to compute the probability that a draw falls into an interval.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,13 @@ struct DescribedDistribution {
   enum class Kind : std::uint8_t { normal, uniform, discrete };
 
   Kind kind = Kind::normal;
-  // Mean and deviation; the lower and the upper bound; or the first value, with the probabilities of it and of the next.
+  // Normal: mean and deviation. Uniform: lower and upper bound. Discrete: the first value, then the
+  // probabilities of this value and of those that follow in steps of 1.
   std::vector<double> numbers{};
 
   bool operator==(const DescribedDistribution&) const = default;
 
-  // The probability of a draw that is less; right to 1e-15.
+  // The probability that a draw is less than `value`, with an error below 1e-15.
   double below(double value) const {
     switch (kind) {
       case Kind::normal: return 0.5 * std::erfc((numbers[0] - value) / (numbers[1] * std::numbers::sqrt2));
@@ -32,7 +33,8 @@ struct DescribedDistribution {
     return std::min(sum, 1.0);
   }
 
-  // Values that part its draws into pieces, none of which is much likelier than half a deviation's.
+  // Appends values that part the draws into pieces. A piece is half a deviation of a normal distribution, an
+  // eighth of a uniform one, or one value of a discrete one.
   void add_edges(std::vector<double>& edges) const {
     constexpr int parts = 4;
     switch (kind) {

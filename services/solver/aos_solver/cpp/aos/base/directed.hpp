@@ -1,4 +1,4 @@
-// Draws of which somebody decides what they give: to walk all of them, to repeat them, to try one after another.
+// A source of draws whose subclass decides each outcome. `Enumerator` walks all outcomes; `Replay` repeats given ones.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace aos {
 
 class DirectedDraws : public Draws<DirectedDraws> {
  public:
-  // What is certain is no draw.
+  // A certain flag makes no draw, so that it adds no choice to the path.
   bool flag(double probability) {
     if (probability <= 0) return false;
     if (probability >= 1) return true;
@@ -18,22 +18,22 @@ class DirectedDraws : public Draws<DirectedDraws> {
     return choose(weights, 2, 1.0) == 1;
   }
 
-  // An index of a positive weight.
+  // Returns an index whose weight is positive.
   virtual int choose(const double* weights, int count, double total) = 0;
-  // In [0, 1).
+  // Returns a number in [0, 1).
   virtual double uniform() = 0;
 
-  // For a draw that shapes only what is observed.
+  // The source of draws that shape only what is observed.
   SensingDraws<DirectedDraws> sensing() { return SensingDraws<DirectedDraws>{*this}; }
   bool skips_sensing() {
     meets_sensing_ = true;
     return skips_sensing_;
   }
   void skip_sensing(bool skips) { skips_sensing_ = skips; }
-  // Whether there was such a draw until now.
+  // Whether such a draw has been made so far.
   bool meets_sensing() const { return meets_sensing_; }
 
-  // For a draw that goes into the reward alone. Nobody directs draws to learn of luck.
+  // The source of draws that enter the reward alone. They give their means: directed draws serve expectations.
   AveragedDraws<DirectedDraws> averaged() { return AveragedDraws<DirectedDraws>{*this}; }
   static bool gives_means() { return true; }
 
@@ -41,18 +41,18 @@ class DirectedDraws : public Draws<DirectedDraws> {
     if (sink_ == nullptr) return ignore_number();
     sink_->take(key, distribution);
   }
-  // Returns the sink before.
+  // Sets the sink of reported numbers and returns the one before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
  protected:
   ~DirectedDraws() = default;
 
-  // A number is reported, and there is no sink.
+  // Called where a number is reported and there is no sink.
   virtual void ignore_number() {}
   void begin_numbers() {
     if (sink_ != nullptr) sink_->begin();
   }
-  // What the numbers that were reported since then make of the step.
+  // The weight that the sink gives the step since `begin_numbers`; 1 without a sink.
   double weight_of_numbers() const { return sink_ == nullptr ? 1 : sink_->weight(); }
 
  private:

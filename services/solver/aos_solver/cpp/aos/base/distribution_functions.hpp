@@ -1,4 +1,4 @@
-// The functions of the distributions that numbers are reported from. Included by support.hpp alone.
+// The functions of the distributions that numbers are reported from. Only support.hpp includes this file.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
-// The distributions that model code may report a number from: each draws values and tells their density. What is drawn from
-// a finite set has its probability for a density.
+// The distributions that model code may report a number from. A distribution draws values and gives their
+// density. The density of a finite distribution is the probability of the value.
 //
-// Most are made for nothing, as who simulates a step seldom wants its numbers. So making one is next to no work, and what is
-// wrong with it shows when it is used, as a ModelFault.
+// Few simulations want the numbers of their steps, so most distributions are made and never used. Their
+// constructors are cheap and check nothing. A bad parameter raises a ModelFault at the first use.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,12 @@ namespace aos {
 struct DescribedDistribution;
 class Sampler;
 
-// One of those below.
+// The base of the distributions below.
 class Distribution {
  public:
   double draw(Sampler& random) const;
   double log_density(double value) const;
-  // The distance at which two draws from it begin to tell something apart.
+  // The scale on which values of this distribution differ: two draws that are closer tell little apart.
   double spread() const;
   void describe(DescribedDistribution& description) const;
 
@@ -40,21 +40,21 @@ class Distribution {
 
  private:
   void check() const;
-  // Of the weights, and of what can happen.
+  // The sum of the weights, and the same sum with the weight of index -1.
   std::pair<double, double> total_and_whole() const;
 };
 
-// Its deviation is positive: a number without noise has no density.
+// The deviation must be positive: a number without noise has no density.
 struct Normal : Distribution {
   Normal(double mean, double deviation) : Distribution(Kind::normal, mean, deviation) {}
 };
 
-// There is something between its bounds.
+// The bounds must differ, and either may be the lower one.
 struct Uniform : Distribution {
   Uniform(double low, double high) : Distribution(Kind::uniform, low, high) {}
 };
 
-// 0 or 1.
+// Draws 0 or 1.
 struct Bernoulli : Distribution {
   explicit Bernoulli(double probability) : Distribution(Kind::bernoulli, probability, 0) {}
 };
@@ -62,8 +62,8 @@ struct Bernoulli : Distribution {
 struct Normalised {};
 inline constexpr Normalised normalised{};
 
-// An index. Weights are divided by their sum where that is asked for; else the index is -1 where they leave room. They have
-// to stay where they are.
+// Draws an index. With `normalised`, the weights are divided by their sum. Without it, the index is -1 with
+// the probability that the weights leave below 1. An array of weights must outlive the distribution.
 class Discrete : public Distribution {
  public:
   explicit Discrete(std::initializer_list<double> weights) : Distribution(Kind::discrete, weights.begin(), weights.size()) {}
@@ -84,7 +84,7 @@ class Discrete : public Distribution {
   Discrete& operator=(const Discrete&) = delete;
 
  private:
-  std::vector<double> copied_;  // of numbers that are not of type double
+  std::vector<double> copied_;  // weights that are no array of double
 };
 
 }  // namespace aos

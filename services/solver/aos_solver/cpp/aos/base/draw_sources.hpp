@@ -1,4 +1,5 @@
-// The functions of the sources of draws that are not compiled with every model. Included by support.hpp alone.
+// The functions of the sources of draws that are compiled once and not with every model. Only support.hpp
+// includes this file.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace aos {
 
 namespace detail {
 
-// The outcome after `taken` that can happen, around to `first`; -1 if there is none.
+// The next outcome after `taken`, around to `first`, whose weight is positive; -1 if there is none.
 inline int next_outcome(const double* weights, int count, int taken, int first) {
   for (int i = taken + 1;; ++i) {
     if (i >= count) i = 0;

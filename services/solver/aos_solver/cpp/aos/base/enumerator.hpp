@@ -1,4 +1,4 @@
-// Model code over the combinations of its discrete draws, each with its probability.
+// Runs model code once for each combination of its discrete draws, with the combination's probability.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace aos {
 
-// A draw that has no finite set of outcomes, or more combinations than the budget: sampling has to do.
+// Thrown for a continuous draw, and for more combinations than the budget. The caller then samples.
 struct NotEnumerable {
   const char* reason;
 };
@@ -19,38 +19,38 @@ inline constexpr const char* numbers_are_observed = "what is observed are number
 
 inline constexpr int path_budget = 4096;
 inline constexpr std::size_t max_draws_of_path = 100'000;
-// A path with more draws is taken to be in a loop that chance ends.
+// A path with more draws than this counts as a loop that chance ends.
 inline constexpr std::size_t max_draws_depth_first = 64;
-inline constexpr std::size_t max_frontier = 4'000'000;  // of paths that are only begun, in nodes
-inline constexpr double negligible_paths = 1e-9;        // in all: they need not be walked
-inline constexpr double max_left_out = 1e-6;            // in all, where the budget is used up
+inline constexpr std::size_t max_frontier = 4'000'000;  // of nodes, in a best-first walk
+inline constexpr double negligible_paths = 1e-9;        // probability in all of paths that may stay unwalked
+inline constexpr double max_left_out = 1e-6;            // the same once the budget is used up
 
-// Replays model code. One run follows one path: known choices are repeated, new ones are made. Outcomes of probability
-// zero are never walked.
+// Replays model code, one path of draws in each run. A run repeats the choices that are known of its path,
+// and makes the later ones. Outcomes of probability zero are never walked.
 //
-// Paths are walked depth first, the first outcome of each new draw first. A loop that draws until a condition holds has
-// paths without end, though, and depth first may follow the endless one. So when a path gets long, new draws are made at
-// random from then on (with a seed of its own: a walk is always the same), and what is not walked yet is walked best
-// first: its probable parts before the others, until what is left is negligible.
+// Paths are walked depth first, and a new draw takes its first outcome first. A loop that draws until a
+// condition holds has paths without end, and a depth-first walk may follow the endless one. So a path that
+// gets long makes its new draws at random; their seed is fixed, and a walk always comes out the same. The
+// rest is then walked best first: the most probable paths come first, until the others are negligible.
 class Enumerator final : public DirectedDraws {
  public:
-  // Of the path, with what its sink makes of the numbers that it reports.
+  // The probability of the path, times the weight that the sink gives the numbers that it reports.
   double probability() const { return probability_ * weight_of_numbers(); }
 
-  // How many choices are known of the path: all of the one before it that it shares.
+  // How many choices are known of the path. Before a run, these are the choices shared with the path before.
   std::size_t draws() const { return choices_.size(); }
 
   int choose(const double* weights, int count, double total) override;
   double uniform() override;
 
-  // Calls `run(enumerator)` once for each path; after it, `probability()` is the path's. Throws NotEnumerable.
+  // Calls `run(enumerator)` for each path; `probability()` is the path's afterwards. Throws NotEnumerable.
   template <class Run>
   void for_each_path(Run&& run, int max_paths = path_budget) {
     walk(run, max_paths, std::numeric_limits<std::size_t>::max());
   }
 
-  // The same for models with loops that chance ends: returns what the paths weigh, together, that were not walked, which
-  // is little. Throws NotEnumerable, too.
+  // The same for models with loops that chance ends. Returns the probability of the paths that were not
+  // walked, which is at most `max_left_out`. Throws NotEnumerable.
   template <class Run>
   double for_nearly_each_path(Run&& run, int max_paths = path_budget) {
     return walk(run, max_paths, max_draws_depth_first);
@@ -60,20 +60,20 @@ class Enumerator final : public DirectedDraws {
   static constexpr int none = -1;
   static constexpr std::uint32_t no_node = 0xffffffffu;
 
-  // The outcomes of a draw are walked in their order, from the first one that was taken around to it.
+  // A choice of a path. The outcomes of its draw are walked in their order, from `first` on and around to it.
   struct Choice {
     int taken;
-    int following;  // or `none`
+    int following;  // the outcome to walk next, or `none`
     int first;
-    double following_weight;  // of all that follow, with the path to here; known best first only
+    double following_weight;  // probability of the path with a later outcome; set best first only
   };
-  // A choice as the end of the path to it.
+  // The last choice of a path; `before` is the node of the choice before.
   struct Node {
     std::uint32_t before;
     int taken;
     int first;
   };
-  // Paths that agree up to a node, and go on with what has not been walked there.
+  // The paths that agree up to node `before` and have not been walked from outcome `taken` on.
   struct Begun {
     double weight;
     std::uint32_t before;
@@ -81,14 +81,14 @@ class Enumerator final : public DirectedDraws {
     int first;
   };
 
-  // Numbers are not enumerated, so there must be a sink that has another use for them.
+  // A number cannot be enumerated, so a sink has to take it.
   void ignore_number() override { throw NotEnumerable{numbers_are_observed}; }
 
   void start();
-  // To the next path, depth first; false after the last.
+  // Goes to the next path, depth first. Returns false after the last one.
   bool advance();
 
-  // Returns what the paths weigh that were not walked.
+  // Returns the probability of the paths that were not walked.
   template <class Run>
   double walk(Run& run, int max_paths, std::size_t max_depth_first) {
     start();
@@ -123,7 +123,7 @@ class Enumerator final : public DirectedDraws {
     return waiting_ + dropped_;
   }
   void begin_best_first();
-  // Notes what the path that was just walked leaves for later.
+  // Stores the paths that branch off the one just walked.
   void put_off();
   void take_likeliest();
 
@@ -135,13 +135,13 @@ class Enumerator final : public DirectedDraws {
   Sampler chance_{0};
   std::vector<Node> nodes_;
   std::vector<Begun> begun_;      // a heap, the likeliest on top
-  std::size_t shared_ = 0;        // choices of this path that the nodes up to `last_` stand for
+  std::size_t shared_ = 0;        // the choices of this path that have nodes, up to `last_`
   std::uint32_t last_ = no_node;
   double waiting_ = 0;
   double dropped_ = 0;
 };
 
-// Before a step along a path: what it takes, in draws. A large state costs as much to copy.
+// The work of a step along a path, counted in draws beforehand. Copying a large state costs as much as some draws.
 inline std::size_t work_of_step(const Enumerator& path, std::size_t state_bytes) {
   constexpr std::size_t bytes_per_draw = 64;
   return 1 + path.draws() + state_bytes / bytes_per_draw;

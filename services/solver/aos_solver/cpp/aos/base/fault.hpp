@@ -1,4 +1,4 @@
-// What model code does wrong while it runs.
+// A mistake of model code that shows while the code runs.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// JSON as it is written, without a document in memory.
+// A writer of JSON that keeps no document tree in memory.
 #pragma once
 
 #include <charconv>
@@ -18,7 +18,7 @@ std::string number_text(Number number) {
   return {buffer, end};
 }
 
-// Writes one JSON value. Commas come by themselves; numbers that JSON does not know become null.
+// Writes one JSON value. The writer sets the commas. Numbers that JSON does not know become null.
 class JsonWriter {
  public:
   JsonWriter& begin_object() { return open('{'); }
@@ -49,7 +49,7 @@ class JsonWriter {
     text_ += '"';
     return *this;
   }
-  // Text that is JSON already.
+  // Writes text that is JSON already.
   JsonWriter& raw(std::string_view json) { return put(json); }
 
   const std::string& text() const { return text_; }

@@ -1,4 +1,4 @@
-// The quantile of the normal distribution: what makes one uniform draw a normal one.
+// The quantile function of the normal distribution, which makes a uniform draw a normal one.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@ namespace aos {
 
 namespace detail {
 
-// Coefficients from the constant on.
+// The coefficients begin with the constant.
 template <std::size_t Count>
 double polynomial(const double (&coefficients)[Count], double x) {
   double value = 0;
@@ -18,7 +18,7 @@ double polynomial(const double (&coefficients)[Count], double x) {
 
 }  // namespace detail
 
-// Of a probability between 0 and 1, to about 16 digits (Wichura, 1988: algorithm AS 241).
+// The quantile of a probability between 0 and 1, to about 16 digits (Wichura, 1988: algorithm AS 241).
 inline double normal_quantile(double probability) {
   using detail::polynomial;
   static constexpr double a[] = {3.3871328727963666080e0, 1.3314166789178437745e2, 1.9715909503065514427e3,

@@ -1,4 +1,4 @@
-// Numbers of things that lie elsewhere, found again by hashes of these things.
+// A hash table of numbers. A number stands for a thing that is stored elsewhere, and the thing's hash finds it.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace aos {
 
-// Open addressing, at most half full. Whoever asks brings `is_it(number)`, which tells whether the thing with this number is
-// the one that is sought; it is asked only of numbers with the same hash. A hash needs its lower bits well mixed.
+// Open addressing, at most half full. The caller's `is_it(number)` tells whether this number's thing is the one sought;
+// the index asks it only about numbers with the same hash. The lower bits of a hash must be well mixed.
 class NumberIndex {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -19,7 +19,7 @@ class NumberIndex {
     return entries_.empty() ? none : entries_[slot_of(hash, is_it)].number;
   }
 
-  // The number that was there, or `number`, which is there from now on.
+  // Returns the thing's number if there is one. Otherwise adds `number` and returns it.
   template <class IsIt>
   std::uint32_t find_or_add(std::uint64_t hash, std::uint32_t number, IsIt&& is_it) {
     if (2 * size_ >= entries_.size()) grow();
@@ -33,7 +33,7 @@ class NumberIndex {
 
   std::uint32_t size() const { return size_; }
 
-  // Keeps its memory.
+  // Keeps the memory.
   void clear() {
     if (size_ > 0) std::fill(entries_.begin(), entries_.end(), Entry{});
     size_ = 0;

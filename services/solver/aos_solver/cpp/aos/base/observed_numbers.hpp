@@ -1,7 +1,7 @@
-// The numbers that a robot observes besides a response, and what becomes of the draws that a model reports them by.
+// The numbers that a robot observes besides a response, and the sinks that take them from a model.
 //
-// Nothing in a model can look at a number that it reports. So a source of draws need not draw it: where successors alone are
-// wanted it is left out, and where a number was given its density weighs the step.
+// Model code cannot read a number that it reports, so a source of draws need not draw it. Where only the
+// successor is wanted, the number is left out. Where the number was observed, its density weighs the step.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace aos {
 
-// A number's name among those of its skill, and its index where the name is one of an array.
+// Names a number of a skill: the index of its name and, where the name stands for an array, the index in it.
 using NumberKey = std::uint32_t;
 inline constexpr int number_index_bits = 16;
 inline constexpr NumberKey number_key(std::uint32_t name, std::uint32_t index) { return name << number_index_bits | index; }
@@ -32,7 +32,7 @@ struct ObservedNumber {
   bool operator==(const ObservedNumber&) const = default;
 };
 
-// In the order of their keys. Which ones there are is part of what was observed.
+// The numbers of one observation, in the order of their keys. The set of keys is a part of the observation.
 class ObservedNumbers {
  public:
   void clear() { numbers_.clear(); }
@@ -43,7 +43,7 @@ class ObservedNumbers {
   auto end() const { return numbers_.end(); }
   bool operator==(const ObservedNumbers&) const = default;
 
-  // Returns false where there is a number of this key already.
+  // Returns false if there is a number with this key already.
   bool add(NumberKey key, double value) {
     const auto place = numbers_.empty() || numbers_.back().key < key ? numbers_.end() : place_of(key);
     if (place != numbers_.end() && place->key == key) return false;
@@ -71,7 +71,7 @@ class ObservedNumbers {
 
 [[noreturn, gnu::cold]] void reported_twice(NumberKey key);
 
-// Draws what a step reports.
+// Draws the numbers that a step reports.
 class RecordedNumbers final : public NumberSink {
  public:
   explicit RecordedNumbers(Sampler& random) : random_(random) {}
@@ -86,13 +86,13 @@ class RecordedNumbers final : public NumberSink {
   ObservedNumbers numbers_;
 };
 
-// Weighs each step by the density of the numbers that were observed. A step that reports others than these has weight 0.
+// Weighs each step by the density of the observed numbers. A step that reports other keys than these has weight 0.
 //
-// Densities of many numbers can be out of the range of a double. They are relative to a scale: where `rescale` returns
-// true, all steps have to be weighed again.
+// The density of many numbers can be out of the range of a double, so weights are relative to a scale. Where
+// `rescale` returns true, all steps have to be weighed again.
 class WeighedNumbers final : public NumberSink {
  public:
-  // With `by_value` false it counts only which numbers a step reports, and not their values.
+  // With `by_value` false, only the keys that a step reports count, and not their values.
   explicit WeighedNumbers(const ObservedNumbers& observed, bool by_value = true, double log_scale = 0)
       : observed_(observed), by_value_(by_value), is_taken_(observed.size(), false), log_scale_(log_scale) {}
 
@@ -105,7 +105,7 @@ class WeighedNumbers final : public NumberSink {
     log_density_ = 0;
   }
   void take(NumberKey key, const Distribution& distribution) override {
-    std::size_t place = taken_;  // where it is if they are reported in the order of their keys
+    std::size_t place = taken_;  // right if the step reports in the order of keys
     if (place >= observed_.size() || observed_[place].key != key) place = find(key);
     if (place == observed_.size()) {
       has_others_ = true;
@@ -116,7 +116,7 @@ class WeighedNumbers final : public NumberSink {
     ++taken_;
     if (by_value_) log_density_ += distribution.log_density(observed_[place].value);
   }
-  // Of the step since `begin`.
+  // The weight of the step since `begin`.
   double weight() override {
     if (has_others_ || taken_ < observed_.size()) return 0;
     highest_ = std::max(highest_, log_density_);
@@ -133,7 +133,7 @@ class WeighedNumbers final : public NumberSink {
   }
 
  private:
-  static constexpr double widest_range = 300;  // of an exponent that leaves room for sums and small probabilities
+  static constexpr double widest_range = 300;  // a larger exponent leaves no room for sums
 
   std::size_t find(NumberKey key) const {
     std::size_t place = 0;
@@ -151,7 +151,7 @@ class WeighedNumbers final : public NumberSink {
   double log_scale_;
 };
 
-// For who wants successors, and what is observed without the numbers.
+// Drops all numbers. It serves callers that want successors and the rest of the observation.
 class IgnoredNumbers final : public NumberSink {
  public:
   void take(NumberKey, const Distribution&) override {}
@@ -160,7 +160,7 @@ class IgnoredNumbers final : public NumberSink {
 };
 inline IgnoredNumbers ignored_numbers;
 
-// As long as this is there, what the source's steps report goes to a sink.
+// As long as this object lives, a sink takes the numbers that the source's steps report.
 template <class Source>
 class ReportingTo {
  public:

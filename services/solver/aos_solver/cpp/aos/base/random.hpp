@@ -1,5 +1,5 @@
-// Where draws come from. Document code sees one interface; `Sampler` draws, `DirectedDraws` (directed.hpp) are told what to
-// give, and `AnySource` stands for either.
+// The sources of draws. Document code knows only the interface `Draws`. `Sampler` draws at random,
+// `DirectedDraws` (directed.hpp) decide what a draw gives, and `AnySource` stands for either.
 #pragma once
 
 #include <array>
@@ -13,21 +13,21 @@
 
 namespace aos {
 
-// Out of the way of the code that runs in every step.
+// Throws a ModelFault. The function is kept out of the code that runs in every step.
 [[noreturn, gnu::cold]] void bad_weights(const char* text);
 
-// What the sum of weights may be off 1 and is still meant to be 1: single precision explains it.
+// A sum of weights that is this close to 1 is meant to be 1: single precision explains the difference.
 inline constexpr double weight_rounding = 1e-5;
 
 class Distribution;
 
-// What becomes of the numbers that a step reports: see observed_numbers.hpp.
+// Takes the numbers that a step reports. The sinks are in observed_numbers.hpp.
 class NumberSink {
  public:
-  // A step begins.
+  // Called where a step begins.
   virtual void begin() {}
   virtual void take(std::uint32_t key, const Distribution& distribution) = 0;
-  // What the step since `begin` counts for, as far as its numbers tell; 1 for every step unless `weighs`.
+  // The weight of the step since `begin`, as far as its numbers tell. It is 1 for every step unless `weighs()`.
   virtual double weight() { return 1; }
   virtual bool weighs() const { return false; }
 
@@ -42,7 +42,7 @@ class Draws {
  public:
   bool Bernoulli(double probability) { return source().flag(probability); }
 
-  // The value behind enum `name`: weights are normalised, missing ones are zero.
+  // Draws a value of an enum whose first value is `name + 1`. Weights are normalised; missing ones are zero.
   int SampleDiscrete(int name, std::initializer_list<double> weights) {
     return name + 1 + normalised(weights.begin(), static_cast<int>(weights.size()));
   }
@@ -52,8 +52,8 @@ class Draws {
     return name + 1 + normalised(copied.weights, copied.count);
   }
 
-  // An index, or -1 where the weights, which are not normalised, leave probability. A gap that single precision explains is
-  // none.
+  // Draws an index. The weights are not normalised: the index is -1 with the probability that they leave
+  // below 1. A gap of at most `weight_rounding` counts as none.
   template <class Weights = std::initializer_list<double>>
   int SampleDiscrete(const Weights& weights) {
     Copied copied{weights};
@@ -70,9 +70,9 @@ class Draws {
   }
   double SampleUniform(double low, double high) { return low + (high - low) * source().uniform(); }
 
-  // For a draw that shapes only what is observed; some sources skip these.
+  // The source of draws that shape only what is observed. Some sources skip these draws.
   Source& sensing() { return source(); }
-  // For a draw that goes into the reward alone, and linearly; some sources give its mean.
+  // The source of draws that enter the reward alone, and linearly. Some sources give the mean instead.
   Source& averaged() { return source(); }
 
   void SetNull(bool& value) { value = false; }
@@ -82,7 +82,7 @@ class Draws {
 
  private:
 
-  // In place as long as they are few.
+  // A copy of weights, without memory of its own as long as they are few.
   struct Copied {
     template <class Weights>
     explicit Copied(const Weights& from) {
@@ -123,7 +123,7 @@ class Draws {
   }
 };
 
-// The index of the positive weight that has a place from 0 to the weights' total.
+// The index whose positive weight covers `place`, which is from 0 to the total of the weights.
 inline int place_in(const double* weights, int count, double place) {
   int last = 0;
   for (int i = 0; i < count; ++i) {
@@ -135,8 +135,8 @@ inline int place_in(const double* weights, int count, double place) {
   return last;
 }
 
-// Draws at random. The generator is xoshiro256++ (Blackman and Vigna), seeded through splitmix64, so that every seed
-// gives an independent stream.
+// Draws at random. The generator is xoshiro256++ (Blackman and Vigna). It is seeded through splitmix64, so
+// that every seed gives an independent stream.
 class Sampler : public Draws<Sampler> {
  public:
   explicit Sampler(std::uint64_t seed) {
@@ -161,19 +161,19 @@ class Sampler : public Draws<Sampler> {
     return result;
   }
 
-  // In [0, 1).
+  // Returns a number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
-  // In [0, bound).
+  // Returns a whole number in [0, bound).
   int below(int bound) {
     return static_cast<int>((static_cast<unsigned __int128>(bits()) * static_cast<unsigned>(bound)) >> 64);
   }
 
   bool flag(double probability) { return uniform() < probability; }
-  // Without a sink, numbers that are reported are not drawn.
+  // Without a sink, a reported number is not drawn.
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ != nullptr) sink_->take(key, distribution);
   }
-  // Returns the sink before.
+  // Sets the sink of reported numbers and returns the one before.
   NumberSink* report_to(NumberSink* sink) { return std::exchange(sink_, sink); }
 
   int choose(const double* weights, int count, double total) { return place_in(weights, count, uniform() * total); }
@@ -183,7 +183,7 @@ class Sampler : public Draws<Sampler> {
   NumberSink* sink_ = nullptr;
 };
 
-// The draws that shape only what is observed, from a source that may skip them: then something is given that can be.
+// The draws that shape only what is observed. A source may skip them; it then gives one of the possible outcomes.
 template <class Source>
 class SensingDraws : public Draws<SensingDraws<Source>> {
  public:
@@ -202,8 +202,8 @@ class SensingDraws : public Draws<SensingDraws<Source>> {
   Source& source_;
 };
 
-// The draws that go into the reward alone, and linearly, from a source that may give their means: the expectation of
-// the reward is the same.
+// The draws that enter the reward alone, and linearly, from a source that may give their means. The
+// expectation of the reward stays the same.
 template <class Source>
 class AveragedDraws {
  public:
@@ -222,7 +222,7 @@ class AveragedDraws {
 
 class DirectedDraws;
 
-// A source that lives as long as this is used. What draws from it is compiled once, and not for each kind of source.
+// Stands for a source of any kind, which must outlive it. Code that draws from it is compiled once for all kinds.
 class AnySource : public Draws<AnySource> {
  public:
   struct Functions {

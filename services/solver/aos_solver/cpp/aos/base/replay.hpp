@@ -1,5 +1,5 @@
-// Draws as functions of numbers in [0, 1): the same numbers give the same path of model code. The first ones are given,
-// the others random. It can tell what the first random one could be.
+// Draws as functions of numbers in [0, 1). The same numbers give the same path of model code. The first
+// numbers are given, and the later ones are random.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,16 @@
 
 namespace aos {
 
-// One of several outcomes of a draw: a number that stands for it, and its probability.
+// One of several outcomes of a draw. `value` is a number in [0, 1) for which `Replay` gives this outcome.
 struct Alternative {
   double value;
   double probability;
 };
 
-// Somebody who looks on as model code draws.
+// Is told of the draws that model code makes.
 class DrawWatcher {
  public:
-  // Before the draw of that number. `weights` is null for a continuous draw.
+  // Called before draw `number`, counted from 0. `weights` is null for a continuous draw.
   virtual void before_draw(std::size_t number, const double* weights, int count, double total) = 0;
 
  protected:
@@ -29,7 +29,8 @@ class DrawWatcher {
 
 class Replay final : public DirectedDraws {
  public:
-  // What is given must live on. Draws are recorded, and watched, where somebody wants that.
+  // Begins a path. The arguments must outlive it. The path's numbers are appended to `record`, and the
+  // watcher is told of its draws, where these are not null.
   void start(const std::vector<double>& given, Sampler& random, std::vector<double>* record = nullptr,
              DrawWatcher* watcher = nullptr) {
     given_ = given.data();
@@ -41,10 +42,10 @@ class Replay final : public DirectedDraws {
     begin_numbers();
   }
 
-  // What the numbers make of the step since the start.
+  // The weight that the sink gives the step since `start`.
   double weight() const { return weight_of_numbers(); }
 
-  // How many there were since the start.
+  // How many draws were made since `start`.
   std::size_t draws() const { return draws_; }
 
   int choose(const double* weights, int count, double total) override {

@@ -1,5 +1,5 @@
-// Lists that grow up to a fixed capacity without ever moving their elements. Memory is reserved at once and, as operating
-// systems do it, taken as it is used; clearing a list keeps it.
+// Lists that grow up to a fixed capacity and never move their elements. Their memory is reserved at once, and
+// the operating system provides it as it is used. Clearing a list keeps the memory.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ std::vector<T> with_room_for(std::size_t capacity) {
   return list;
 }
 
-// Whether so many more elements fit in.
+// Whether `more` further elements fit into the list.
 template <class T>
 bool has_room_for(const std::vector<T>& list, std::size_t more) {
   return list.size() + more <= list.capacity();

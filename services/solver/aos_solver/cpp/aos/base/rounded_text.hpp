@@ -1,4 +1,4 @@
-// Bounds as short texts that are bounds as well: a lower one is rounded down, an upper one up.
+// Bounds as short texts that are bounds as well. A lower bound is rounded down, and an upper bound is rounded up.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace aos {
 
-// At most `number`, with four digits.
+// A text of four digits whose value is at most `number`.
 inline std::string rounded_down(double number) {
   if (!std::isfinite(number) || number == 0) return std::to_string(number);
   const double unit = std::pow(10.0, std::floor(std::log10(std::abs(number))) - 3);
@@ -19,7 +19,7 @@ inline std::string rounded_down(double number) {
   }
 }
 
-// At least `number`.
+// A text of four digits whose value is at least `number`.
 inline std::string rounded_up(double number) {
   const std::string text = rounded_down(-number);
   return text.front() == '-' ? text.substr(1) : number == 0 || !std::isfinite(number) ? text : "-" + text;
