@@ -11,18 +11,18 @@
 
 namespace aos {
 
-// The value at a place in a list: what a draw over an enum with numbers of its own gives.
+// The value at an index of a list. A draw over an enum whose values have their own numbers gives the index.
 template <class E>
 E nth(std::initializer_list<E> values, int index) {
   return values.begin()[index];
 }
 
-// Out of the way of the code that runs in every step.
+// These throw a ModelFault. They are kept out of the code that runs in every step.
 [[noreturn, gnu::cold]] void out_of_range(std::ptrdiff_t index, std::size_t size);
 [[noreturn, gnu::cold]] void over_capacity(std::size_t size, std::size_t max);
 
-// A vector of up to `Capacity` elements in place, so that a state stays trivially copyable. Converts from and to
-// std::vector; an index out of range and a push beyond `Capacity` are ModelFaults.
+// A vector of up to `Capacity` elements in place, so that a state stays trivially copyable. It converts from
+// and to std::vector. An index out of range and a push beyond `Capacity` are ModelFaults.
 template <class T, std::size_t Capacity>
 class Vector {
  public:
@@ -131,7 +131,7 @@ class Vector {
   template <class Iterator>
     requires(!std::is_integral_v<Iterator>)
   T* insert(const T* before, Iterator first, Iterator last) {
-    const std::vector<T> added(first, last);  // They may be our own.
+    const std::vector<T> added(first, last);  // the elements may be this vector's own
     const std::ptrdiff_t position = before - values_;
     grown(added.size());
     for (T *from = end() - added.size(), *to = end(); from != values_ + position;) *--to = *--from;
@@ -170,7 +170,7 @@ class Vector {
     return static_cast<std::size_t>(index);
   }
   std::ptrdiff_t last() const { return static_cast<std::ptrdiff_t>(size_) - 1; }
-  // Makes room for `more` elements; the index of the first.
+  // Adds `more` elements and returns the index of the first.
   std::size_t grown(std::size_t more) {
     const std::size_t before = size_;
     if (before + more > Capacity) over_capacity(before + more, Capacity);

@@ -1,5 +1,5 @@
-// What a real observation tells about the state beyond its response: the skill's code for a state given an observation,
-// with the local variables of its abstraction mapping. Only beliefs are corrected so, never what a search imagines.
+// Corrects the states of a belief by a real observation. A skill may have code for the state given an observation; this
+// code reads the local variables of the abstraction mapping. A search never corrects the states that it simulates.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,7 @@ void read_locals(Locals& locals, std::string_view text) {
   values.finish();
 }
 
-// A local variable tells the value of the state variable that has its name.
+// Sets the state variable that has the name of a local variable. A ModelFault gets that name.
 void tell(const char* name, auto& variable, const auto& value) {
   try {
     variable = value;
@@ -46,8 +46,8 @@ void tell(const char* name, auto& variable, const auto& value) {
   }
 }
 
-// Corrects `next`, to which a step has led from `before`. The special states look at it again, as if the step had led to
-// what it is now. A state that had ended before the step stays as it is.
+// Corrects `next`, the state to which a step led from `before`. The special states are evaluated again on the
+// corrected state. A state that had ended before the step stays as it is.
 template <class Environment, class Skill, class State>
 void correct(const State& before, State& next, const auto& parameters, auto& random) {
   if (before.aos_ending != Ending::running) return;

@@ -1,4 +1,4 @@
-// The compiled model behind the table, as the engine's templates want a model.
+// The compiled model in the form that the engine's templates expect. It calls the functions of the model table.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace aos {
 
-// States have up to `Size` bytes, or any number where that is 0.
+// States have up to `Size` bytes; a `Size` of 0 stands for any size.
 template <std::size_t Size>
 struct ErasedModel {
   using State = ErasedState<Size>;
@@ -37,7 +37,7 @@ struct ErasedModel {
   static int response_count(int skill) { return compiled_model.skills[skill].response_count; }
   static const char* response_name(int skill, int response) { return compiled_model.skills[skill].responses[response]; }
   static bool has_text_response(int skill) { return compiled_model.skills[skill].has_text_response; }
-  // How many numbers, and arrays of numbers, its steps may report besides a response.
+  // How many numbers and arrays of numbers a step of the skill may report besides its response.
   static int number_count(int skill) { return compiled_model.skills[skill].number_count; }
   static bool reports_numbers() {
     return std::ranges::any_of(compiled_model.skills, [](const SkillFacts& skill) { return skill.number_count > 0; });
@@ -64,7 +64,7 @@ struct ErasedModel {
   static std::size_t state_bytes() { return compiled_model.state_bytes; }
   static const std::byte* bytes_of(const State& state) { return state.bytes; }
   static std::byte* bytes_of(State& state) { return state.bytes; }
-  // How many bytes a state takes beside those of the object.
+  // How many bytes a state takes outside of its object.
   static std::size_t bytes_elsewhere() { return Size == 0 ? state_bytes() : 0; }
 
   template <class Random>
@@ -78,8 +78,7 @@ struct ErasedModel {
     }
     return functions<Random>().step(state.bytes, action, random);
   }
-  // As long as it lives, steps that somebody directs are corrected where they bring this observation: what a belief is
-  // updated with.
+  // As long as this object lives, directed steps are corrected where they give this observation. Belief updates use it.
   class Correcting {
    public:
     explicit Correcting(Observation made) { corrected_ = made; }
@@ -90,17 +89,17 @@ struct ErasedModel {
   static bool meets_precondition(const State& state, int action, DirectedDraws& random) {
     return compiled_model.meets_precondition(state.bytes, action, random);
   }
-  // The mission's constraints, whether any of them looks at what a step leads to, and those that a step violates.
+  // The mission's constraints: their number, whether one of them reads the next state, and which ones a step violates.
   static int constraint_count() { return compiled_model.constraint_count; }
   static bool constraints_look_ahead() { return compiled_model.constraints_look_ahead; }
   static Violations violations(const State& before, const State& next, int action) {
     return compiled_model.violations(before.bytes, next.bytes, action);
   }
-  // A whole rollout in one call: see rollout.hpp.
+  // The discounted return of one rollout: see rollout.hpp.
   static double rollout(const State& state, int horizon, Sampler& random) {
     return compiled_model.rollout(state.bytes, horizon, random);
   }
-  // With which probability it takes each action first, into `odds`.
+  // Writes to `odds` the probability with which a rollout takes each action first.
   static void rollout_odds(const State& state, double* odds, Sampler& random) {
     compiled_model.rollout_odds(state.bytes, odds, action_count(), random);
   }

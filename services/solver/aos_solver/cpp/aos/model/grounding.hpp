@@ -1,4 +1,4 @@
-// Grounded actions: a skill with values for its parameters. A model has them once, from its start on.
+// Grounded actions: skills with values for their parameters. A model makes its actions once, at its start.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace aos {
 
-// `parameters` are of the skill's type; they and the name stay where they are.
+// `parameters` points to values of the skill's type. These and the name stay where they are.
 struct GroundedAction {
   int skill = 0;
   const void* parameters = nullptr;
@@ -32,13 +32,13 @@ struct NamedValue {
   T value;
 };
 
-// What there is to know about a skill besides what it does.
+// Describes a skill, apart from its dynamic model.
 struct SkillFacts {
   const char* name;
   const char* const* responses;
   int response_count;
   bool has_text_response;
-  int number_count;  // of names that `__observed` has
+  int number_count;  // how many names `__observed` has
   void (*write_parameters)(const void* parameters, JsonWriter& json);
   void (*read_locals)(std::string_view values);
 };
@@ -65,14 +65,14 @@ struct Argument {
   std::string_view value;
 };
 
-// Takes the groundings of one skill to the actions of the model.
+// Adds the groundings of one skill to the actions of the model.
 class Groundings {
  public:
   Groundings(std::vector<GroundedAction>& actions, int skill, const char* name)
       : actions_(actions), skill_(skill), name_(name) {}
 
-  // An action called `skill(parameter=value, ...)`, or as the skill where there are no parameters. It keeps `parameters`,
-  // which are of the skill's type and are there for good, as actions are.
+  // Adds an action named `skill(parameter=value, ...)`; without parameters it is named as the skill.
+  // `parameters` are of the skill's type and must outlive the actions.
   void add(std::initializer_list<Argument> arguments, const void* parameters);
 
  private:
@@ -93,7 +93,7 @@ void with_each_grounding(const std::vector<GroundedAction>& actions, auto&& use)
   (groundings_of(std::type_identity<Skills>{}), ...);
 }
 
-// Draws for code that runs once, before there is a particle: the likeliest outcome, the mean, the middle.
+// Draws for code that runs once, before there are particles: the likeliest outcome, the mean, the middle.
 struct FixedDraws : Draws<FixedDraws> {
   static bool flag(double probability) { return probability >= 0.5; }
   static int choose(const double* weights, int count, double) {

@@ -1,4 +1,4 @@
-// Everything an emitted model stands on. No system headers here: their macros could be names in a document.
+// What an emitted model needs. System headers are left out, since their macros could be names in a document.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// A compiled model as a table of functions over states that are blocks of bytes. It lets the engine be compiled once
-// for all models of about the same size, and a model without the engine.
+// A compiled model as a table of functions over states, which are blocks of bytes. The engine is compiled
+// once for all models with states of about the same size, and a model is compiled without the engine.
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@
 
 namespace aos {
 
-// The model functions that draw, for one source of randomness.
+// The functions of a model that draw, for one kind of source.
 template <class Random>
 struct DrawingFunctions {
   void (*initial)(void* state, Random& random);
   Step (*step)(void* state, int action, Random& random);
 };
 
-// The size of a state as text that the build finds in the object file, to link the engine for such states.
+// The size of a state as text. The build finds this text in the object file and links the engine for such states.
 template <std::size_t Size>
 inline constexpr auto size_mark = [] {
   std::array<char, 32> mark{"aos-state-bytes:0000000000;"};

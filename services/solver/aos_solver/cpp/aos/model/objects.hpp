@@ -1,4 +1,4 @@
-// The variables of one type in a state, as documents walk over them: `state.<Type>Objects` and its like.
+// The variables of one type in a state, as documents iterate over them: `state.<Type>Objects`.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 
 namespace aos {
 
-// Reads like a vector of pointers to the given members of one state. Copies and their iterators refer to the state, not
-// to the view, so that `x.begin()` and `x.end()` of two views belong together.
+// Reads like a vector of pointers to the given members of one state. Iterators refer to the state and not to
+// the view, so that `x.begin()` and `x.end()` of two views belong together. A bad index is a ModelFault.
 template <class State, class T, auto... Members>
 class Objects {
  public:
@@ -86,7 +86,7 @@ Objects<State, T, Members...> objects(State& state) {
   return Objects<State, T, Members...>{state};
 }
 
-// The values that parameters of one type take, by the name `state.<variable>`.
+// The values that parameters of one type take, by the name `state.<variable>`. An unknown name is a ModelFault.
 template <class T>
 struct NamedValues : std::map<std::string, T, std::less<>> {
   void add(const char* name, const T& value) { this->emplace(name, value); }

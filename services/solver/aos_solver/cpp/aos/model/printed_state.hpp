@@ -1,4 +1,4 @@
-// What a document's print function writes the text of a state to.
+// The stream to which a document's print function writes a state.
 #pragma once
 
 #include <ostream>
@@ -10,7 +10,7 @@
 
 namespace aos {
 
-// A stream that writes enums by name. Other streams of document code write them as numbers, as C++ does.
+// Writes enums by name. Other streams of document code write them as numbers, as C++ does.
 class PrintedState {
  public:
   template <class T>

@@ -1,8 +1,8 @@
-// Values as code sees them that knows no types: their members and their single values, one after another. Compounds and
-// states list their members in `aos_fields`, enums have a `name_of`, both emitted.
+// Values for code that does not know their types. A visitor sees the members and the leaves of a value one by
+// one. Emitted code lists the members of compounds and states in `aos_fields` and gives enums a `name_of`.
 //
-// A type is visited by one small function. All that is made of values (text, JSON, places) is compiled once, with the
-// engine: values.hpp, value_text.hpp. The variables of a state, which may be thousands, are data: see Member.
+// Each type has one small visiting function. What is made of the leaves (text, JSON, addresses) is compiled once, with
+// the engine: values.hpp, value_text.hpp. The variables of a state, which may be thousands, are data: see Member.
 #pragma once
 
 #include <bit>
@@ -43,19 +43,19 @@ concept Sequence = requires(const T& value) {
 template <class T>
 concept Mapping = requires { typename T::mapped_type; };
 
-// The name of an enum's value; null for a number that has none.
+// The name of an enum's value; null if the value has none.
 inline const char* name_in(std::initializer_list<const char*> names, int value) {
   const auto index = static_cast<std::size_t>(value);
   return index < names.size() ? names.begin()[index] : nullptr;
 }
 
-// A single value where it stands.
+// A leaf: a single value and its address.
 struct Leaf {
   enum class Kind : std::uint8_t { boolean, signed_number, unsigned_number, real, enumerated, text, string };
   Kind kind;
   std::size_t size;
   const void* place;
-  const char* name = nullptr;  // of an enum's value, if it has one
+  const char* name = nullptr;  // of an enum's value, or null
 };
 
 template <class T>
@@ -79,7 +79,7 @@ Leaf leaf_of(const T& value) {
   return leaf;
 }
 
-// The text of a single value: enums by name, `true` and `false`, the shortest decimal that reads back.
+// The text of a leaf: enums by name, `true` and `false`, the shortest decimal that reads back.
 std::string leaf_text(const Leaf& leaf);
 
 template <class Key>
@@ -93,7 +93,7 @@ std::string key_text(const Key& key) {
   return text;
 }
 
-// What there is in a value, in the order of its members. A member, an element or an entry is told before its value.
+// Is told the parts of a value in the order of its members. The name or the index of a part comes before its value.
 class ValueVisitor {
  public:
   virtual void leaf(const Leaf& leaf) = 0;
@@ -120,7 +120,6 @@ struct Member {
   void (*read)(void* variable, StateReader& text);
 };
 
-// Visits the members of a state.
 void visit_members(const void* state, std::span<const Member> members, ValueVisitor& visitor);
 
 template <class T>
@@ -154,7 +153,7 @@ void visit_value(const T& value, ValueVisitor& visitor) {
   }
 }
 
-// A value of any type that lives as long as this is used.
+// Refers to a value of any type, which must outlive it.
 class AnyValue {
  public:
   template <class T>
@@ -172,20 +171,20 @@ class AnyValue {
   void (*visit_)(const void* value, ValueVisitor& visitor);
 };
 
-// All single values with their names, as one line.
+// All leaves with their names, as one line.
 std::string leaves_text(AnyValue value);
-// Text of a whole value, for the names of grounded actions.
+// The text of a whole value, for the names of grounded actions.
 std::string value_text(AnyValue value);
 void write_json(JsonWriter& json, AnyValue value);
 
-// Document code writes enums to streams as numbers. Those of a state are as small as characters, and are none.
+// Document code writes enums to streams as numbers. Without this, the small enums of a state would print as characters.
 template <class Stream, class Enum>
   requires std::is_enum_v<Enum> && requires { typename Stream::char_type; }
 Stream& operator<<(Stream& out, Enum value) {
   return static_cast<Stream&>(out << static_cast<int>(value));
 }
 
-// Of so many bytes; out of line, since a state may have many arrays.
+// Extends a hash by `size` bytes. It is not inlined, since a state may have many arrays.
 [[gnu::noinline]] inline std::uint64_t hashed_bytes(std::uint64_t hash, const void* bytes, std::size_t size) {
   const auto* next = static_cast<const char*>(bytes);
   std::uint64_t word = 0;
@@ -198,12 +197,12 @@ Stream& operator<<(Stream& out, Enum value) {
   return size > 0 ? mixed(hash, word) : hash;
 }
 
-// Whether equal values are equal byte for byte, and stand one after another.
+// A sequence without gaps whose values are equal exactly if their bytes are.
 template <class T>
 concept PlainSequence = Sequence<T> && requires(const T& value) { value.data(); } &&
                         std::has_unique_object_representations_v<typename T::value_type>;
 
-// A hash that agrees with `==`: 0.0 and -0.0 are one, unused storage does not count.
+// Extends a hash so that equal values get equal hashes: 0.0 and -0.0 are one, unused storage does not count.
 template <class T>
 std::uint64_t hashed(std::uint64_t hash, const T& value) {
   if constexpr (PlainSequence<T>) {

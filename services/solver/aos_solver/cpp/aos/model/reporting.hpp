@@ -1,4 +1,4 @@
-// `__observed` of model code: what a distribution is given to is reported by the source of draws.
+// `__observed` of model code. The source of draws reports each number to which a distribution is assigned.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace aos {
 
 [[noreturn, gnu::cold]] void no_such_element(std::ptrdiff_t index);
 
-// One number; or the element of an array.
+// One number, or one element of an array.
 template <class Source>
 class ReportedNumber {
  public:
@@ -23,7 +23,7 @@ class ReportedNumber {
   NumberKey key_;
 };
 
-// An array of numbers.
+// An array of numbers. A bad index is a ModelFault.
 template <class Source>
 class ReportedNumbers {
  public:

@@ -1,4 +1,4 @@
-// A rollout: what a state is worth to somebody who follows the documents' rollout policy from it.
+// Rollouts: the value of a state under the documents' rollout policy, by simulation.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 
 namespace aos {
 
-// Where the documents give a state heuristic, a rollout ends with it before each step with this probability.
+// If the documents give a state heuristic, a rollout ends with it before each step with this probability.
 inline constexpr double heuristic_ending = 0.75;
 
 namespace detail {
 
-// The first action at which the running sum of the weights exceeds `drawn`; rounding cannot lead past the last sum.
+// The first action whose running sum of weights exceeds `drawn`, or the last one with a weight if rounding leaves none.
 inline int action_at(const double* sums, int count, double drawn) {
   int action = 0;
   for (int i = 0; i < count - 1; ++i) action += sums[i] <= drawn;
@@ -24,7 +24,7 @@ inline int action_at(const double* sums, int count, double drawn) {
   return action;
 }
 
-// The action is drawn no more.
+// Sets the weight of an action to zero.
 inline void leave_out(double* sums, int count, int action) {
   const double before = action > 0 ? sums[action - 1] : 0;
   const double weight = sums[action] - before;
@@ -32,8 +32,8 @@ inline void leave_out(double* sums, int count, int action) {
   for (int i = action + 1; i < count; ++i) sums[i] -= weight;
 }
 
-// By the documents' rollout policy among the actions whose preconditions hold; where it prefers none of them any whose
-// precondition holds; else any.
+// Draws an action whose precondition holds, with the weights of the documents' rollout policy. If no such
+// action has a weight, all of them are equally likely. After too many attempts, any action is taken.
 template <class Model>
 int rollout_action(const typename Model::State& state, double* sums, int count, Sampler& random) {
   ModelSource<Sampler> draws{random};
@@ -57,7 +57,7 @@ int rollout_action(const typename Model::State& state, double* sums, int count, 
 
 }  // namespace detail
 
-// With which probability a rollout takes each action from a state, into `odds`.
+// Writes to `odds` the probability with which a rollout takes each action in a state.
 template <class Model>
 void rollout_odds(const typename Model::State& state, double* odds, int count, Sampler& random) {
   double total = 0;
@@ -86,7 +86,7 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
   const int count = Model::action_count();
   if constexpr (Model::has_rollout_policy) sums_of_weights.resize(static_cast<std::size_t>(count));
   double* const sums = sums_of_weights.data();
-  Sampler draws = random;  // what nothing else points to, a compiler keeps in registers
+  Sampler draws = random;  // nothing points to it, so a compiler keeps it in registers
   ModelSource<Sampler> model_draws{draws};
   typename Model::State state = start;
   double sum = 0;

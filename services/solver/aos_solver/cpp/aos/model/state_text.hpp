@@ -1,4 +1,4 @@
-// A state as one line of text and back, for beliefs that outlive their process.
+// Writes a state as one line of text and reads it back, for beliefs that outlive their process.
 #pragma once
 
 #include <concepts>
@@ -15,8 +15,8 @@
 
 namespace aos {
 
-// Numbers separated by blanks: every leaf is a number, vectors and texts begin with their size, floating point is
-// written as its bits.
+// Writes numbers separated by blanks. A leaf is one number, and a real number is its bits. Vectors and texts
+// begin with their size.
 class StateWriter {
  public:
   void write(AnyValue value);
@@ -26,7 +26,7 @@ class StateWriter {
   std::string text_;
 };
 
-// Reads what a StateWriter wrote. What is a constant here is read past: it has its value already.
+// Reads what a StateWriter wrote. A constant keeps its value, and its text is skipped. Bad text is a ModelFault.
 class StateReader {
  public:
   explicit StateReader(std::string_view text) : rest_(text) {}
@@ -65,7 +65,7 @@ class StateReader {
       malformed();
     }
   }
-  // A single value of that kind and size in bytes.
+  // Reads a leaf of this kind and size in bytes.
   void read_leaf(Leaf::Kind kind, std::size_t size, void* place);
   std::string next_characters();
   std::int64_t next();
@@ -73,7 +73,7 @@ class StateReader {
   std::string_view rest_;
 };
 
-// A variable that states of type `State` hold.
+// A variable that states hold at `offset`.
 template <class T>
 constexpr Member member_at(const char* name, std::size_t offset) {
   return {name, offset, nullptr, [](const void* variable, ValueVisitor& visitor) {
@@ -81,7 +81,7 @@ constexpr Member member_at(const char* name, std::size_t offset) {
           },
           [](void* variable, StateReader& text) { text.read(*static_cast<T*>(variable)); }};
 }
-// One that is a constant.
+// A variable that is a constant of the model.
 template <class T>
 constexpr Member constant_member(const char* name, const T& constant) {
   Member member = member_at<T>(name, 0);
@@ -90,16 +90,16 @@ constexpr Member constant_member(const char* name, const T& constant) {
   return member;
 }
 
-// The variables that are constants where states are saved, by name: what need not be saved with each of them.
+// The variables that were constants in the model that saved the states. Their texts are saved once and not
+// with each state.
 class SavedConstants {
  public:
   void add(std::string_view name, AnyValue value);
   void add_text(std::string_view name, std::string_view text);
   const std::vector<std::pair<std::string, std::string>>& texts() const { return texts_; }
 
-  // The value of a state's variable from here if it was a constant, or else from the rest of a saved state.
+  // Reads a variable: from these constants if it was one of them, else from the rest of a saved state.
   void read(const Member& member, void* state, StateReader& text) const;
-  // Of all variables.
   void read_all(std::span<const Member> members, void* state, StateReader& text) const;
 
  private:

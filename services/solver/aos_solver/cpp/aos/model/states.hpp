@@ -23,7 +23,7 @@ struct InPlaceState {
   }
 };
 
-// A state of any size, in memory of its own. One that was moved from may only be assigned to.
+// A state of any size, in memory of its own. An object that was moved from may only be assigned to.
 class OwnedState {
  public:
   std::byte* bytes;
@@ -55,7 +55,7 @@ class OwnedState {
   }
 };
 
-// 0 stands for any size.
+// A `Size` of 0 stands for any size.
 template <std::size_t Size>
 using ErasedState = std::conditional_t<Size == 0, OwnedState, InPlaceState<Size == 0 ? 1 : Size>>;
 

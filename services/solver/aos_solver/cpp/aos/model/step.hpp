@@ -1,4 +1,4 @@
-// What one simulated step gives, and observations as numbers.
+// The results of one simulated step. Observations are numbers.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace aos {
 
-// How a state has ended; running states go on. `over` is neither a goal nor a failure.
+// How a state has ended. A running state goes on; `over` is neither a goal nor a failure.
 enum class Ending : std::uint8_t { running, goal, failure, over };
 inline constexpr int ending_count = 4;
 
-// >= 0: the number of a response within its skill; -1: no response was set; below: a text.
+// From 0 on: the index of a response within its skill. -1: no response was set. Below -1: a text.
 using Observation = std::int64_t;
 
 inline constexpr Observation default_observation = -1;
@@ -24,12 +24,12 @@ struct Step {
   bool operator==(const Step&) const = default;
 };
 
-// The text response of the step that runs in this thread, as far as it is written; null where none is.
+// The text response of the step that runs in this thread, as far as it is written; null if there is none.
 inline thread_local const std::string* response_text = nullptr;
-// Where the whole text is put when the step is over, if somebody wants it.
+// Where the complete text is stored at the end of the step; null if nobody wants it.
 inline thread_local std::string* finished_text = nullptr;
 
-// As long as it lives, the texts of responses are put there.
+// As long as this object lives, the complete texts of responses are stored in `place`.
 class WholeText {
  public:
   explicit WholeText(std::string& place) { finished_text = &place; }
@@ -38,10 +38,10 @@ class WholeText {
   ~WholeText() { finished_text = nullptr; }
 };
 
-// Whether this thread remembers the texts that it makes numbers of.
+// Whether this thread remembers the texts of text observations.
 inline thread_local bool remembers_texts = true;
 
-// As long as it lives, texts are not remembered: those of many steps that nobody asks for.
+// As long as this object lives, texts are not remembered. It serves long runs whose texts nobody asks for.
 class ForgottenTexts {
  public:
   ForgottenTexts() { remembers_texts = false; }
@@ -53,7 +53,7 @@ class ForgottenTexts {
 // The number of a text observation: 63 bits of FNV-1a, the same in every process.
 Observation text_observation(std::string_view text);
 
-// The text behind a number that this thread has made; empty if it has not.
+// The text behind a number that this thread has made; empty for any other number.
 std::string_view observation_text(Observation number);
 
 // What a skill's documents call an observation.

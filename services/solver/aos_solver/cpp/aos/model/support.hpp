@@ -1,5 +1,5 @@
-// What models call and do not bring along: the functions that model_support.hpp declares. Exactly one source of a program
-// includes this; in an executable, the engine's.
+// The definitions of the functions that model_support.hpp declares and models call. Exactly one source of a
+// program includes this file; in an executable it is the engine's.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ void no_such_response(int response) {
 }
 void no_such_reward(double reward) { throw ModelFault{"AOS214", "the reward is " + std::to_string(reward)}; }
 
-// Per thread, without a lock: the numbers depend on the texts alone, so threads agree on them.
+// Each thread has its own map, without a lock. Threads agree on the numbers, which depend on the texts alone.
 std::unordered_map<Observation, std::string>& observed_texts() {
   thread_local std::unordered_map<Observation, std::string> texts;
   return texts;
@@ -74,7 +74,7 @@ Observation text_observation(std::string_view text) {
   auto number = static_cast<Observation>(hash | (std::uint64_t{1} << 63));
   if (number == default_observation) --number;
   if (!remembers_texts) return number;
-  // Most texts come again soon.
+  // Most texts come again soon, so a small cache spares the map.
   thread_local std::array<Observation, 256> recent{};
   Observation& last = recent[static_cast<std::size_t>(number) % recent.size()];
   if (last != number) detail::observed_texts().try_emplace(last = number, text);
@@ -88,7 +88,7 @@ std::string_view observation_text(Observation number) {
 }
 
 void Groundings::add(std::initializer_list<Argument> arguments, const void* parameters) {
-  static std::deque<std::string> names;  // which stay where they are
+  static std::deque<std::string> names;  // the elements of a deque stay where they are
   std::string list;
   for (const auto& [parameter, value] : arguments) {
     if (!list.empty()) list += ", ";

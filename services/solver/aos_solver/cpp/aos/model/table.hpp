@@ -1,4 +1,4 @@
-// Maps over finite keys, in place: state variables with parameters.
+// Maps over finite sets of keys, stored in place. They are the state variables with parameters.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace aos {
 
-// The integers from `First` in steps of `Stride` up to, not including, `Stop`: an axis of a Table.
+// An axis of a Table: the integers from `First` in steps of `Stride` up to, not including, `Stop`.
 template <int First, int Stop, int Stride>
 struct RangeAxis {
   using Key = int;
@@ -26,7 +26,7 @@ struct RangeAxis {
   }
 };
 
-// All values of an enum, numbered from 0: an axis of a Table.
+// An axis of a Table: all values of an enum, numbered from 0.
 template <class E, int Size>
 struct EnumAxis {
   using Key = E;
@@ -38,8 +38,8 @@ struct EnumAxis {
   }
 };
 
-// An element of a Table as std::map shows it. What an iterator gives refers into the table; a copy of it stands alone,
-// as a copied std::pair does.
+// An element of a Table as std::map shows it. An iterator gives an entry that refers into the table. A copy
+// of the entry has its own value, as a copied std::pair has.
 template <class Key, class T>
 class TableEntry {
  public:
@@ -95,8 +95,8 @@ class TableIterator {
   mutable std::optional<value_type> entry_;
 };
 
-// A T for every tuple of keys. It has the reading and assigning part of std::map's interface; there are neither more
-// nor fewer elements than tuples of keys, and any other key is a ModelFault.
+// A T for every tuple of keys, with the reading and assigning part of std::map's interface. Elements are
+// neither added nor removed. A key outside of the axes is a ModelFault.
 template <class T, class... Axes>
 class Table {
  public:
@@ -139,7 +139,7 @@ class Table {
   static key_type key(const std::array<int, sizeof...(Axes)>& indices, std::index_sequence<Index...>) {
     return key_type{Axes::key(indices[Index])...};
   }
-  // The place of a key, or `capacity` if there is no such key.
+  // The position of a key, or `capacity` if there is no such key.
   static int position(const key_type& key) { return position(key, std::index_sequence_for<Axes...>{}); }
   template <std::size_t... Index>
   static int position(const key_type& key, std::index_sequence<Index...>) {

@@ -9,8 +9,8 @@
 
 namespace aos {
 
-// Holds up to `max_length` characters in place, so that a state stays trivially copyable. It reads as a std::string and
-// takes assignments and in-place changes like one; longer text is a ModelFault.
+// Holds up to `max_length` characters in place, so that a state stays trivially copyable. A Text reads and
+// changes like a std::string. Longer text is a ModelFault.
 class Text {
  public:
   static constexpr std::size_t max_length = 62;

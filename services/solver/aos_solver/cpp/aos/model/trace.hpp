@@ -1,4 +1,4 @@
-// What a traced model has in its document code: see trace.py. A model that runs has none of it.
+// What tracing adds to document code: see trace.py. A model that plans has none of it.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace aos::blame {
 
-// In the body of a lambda: its caller's statement runs again after it, unless it throws.
+// An object in the body of a lambda. After the body, the caller's statement runs again, unless the body throws.
 class Inside {
  public:
   Inside() = default;
@@ -25,8 +25,9 @@ class Inside {
   int exceptions_ = std::uncaught_exceptions();
 };
 
-// The statement that gave a result. What is wrong with a result shows when its section is over, and is then told of
-// that statement: the one that made the reward infinite or no number, or the last one that set the response.
+// Remembers the statement that gave a result. A wrong result shows only when its section is over, and then
+// that statement is blamed. A reward blames the statement that made it infinite or NaN; a response blames the
+// last one that set it.
 template <class Result>
 class Giving {
  public:

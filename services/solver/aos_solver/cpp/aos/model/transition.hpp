@@ -1,4 +1,4 @@
-// One simulated step as the documents mean it: which phase sees and changes which copy of the state.
+// One simulated step in the phases of the documents: which phase reads and changes which copy of the state.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace aos {
 
 inline constexpr const char* no_text_response = "NoStrResponse";
 
-// What the dynamic model of a skill gives besides the next state. Responses count from 1, so that every one of them is
-// true where a document uses it as a condition; 0 is the default observation.
+// What the dynamic model of a skill gives besides the next state. Responses count from 1, so that each is
+// true where a document uses it as a condition. 0 is the default observation.
 struct Effect {
   double reward = 0;
   int response = 0;
@@ -27,7 +27,7 @@ struct EffectWithText : Effect {
   std::string text = no_text_response;
 };
 
-// Shows the text of a response while it is written to whoever directs the draws.
+// Shows the text of a response, while it is written, to the code that directs the draws.
 class ShownText {
  public:
   explicit ShownText(const EffectWithText& effect) { response_text = &effect.text; }
@@ -42,7 +42,7 @@ struct NoText {
   explicit NoText(const Effect&) {}
 };
 
-// What a skill document leaves out.
+// The defaults for what a skill document leaves out.
 struct SkillDefaults {
   struct Parameters {
     static void aos_fields(auto&, auto&&) {}
@@ -65,7 +65,7 @@ struct SkillDefaults {
   static void given_observation(const auto&, auto&, const auto&, auto&) {}
 };
 
-// What an environment document leaves out.
+// The defaults for what an environment document leaves out.
 struct EnvironmentDefaults {
   static constexpr bool is_one_state = false;
   static constexpr bool has_extrinsic_changes = false;
@@ -76,10 +76,10 @@ struct EnvironmentDefaults {
   static void state_heuristic(const auto&, double&, auto&) {}
 };
 
-// What a special state says of how the mission ends: that it does, or also which endings are failures.
+// What a special state says: only that the mission ends, or also whether this is a failure.
 enum class Said { endings, failures };
 
-// What is not said, the reward's sign says.
+// If failures are not said, the sign of the reward decides.
 template <Said said>
 Ending ending_of(double reward, bool is_failure) {
   if constexpr (said == Said::failures) {
@@ -89,9 +89,9 @@ Ending ending_of(double reward, bool is_failure) {
   }
 }
 
-// A special state on the next state: its reward, once more unless `bit` says that it is used up. The first ending decides
-// how the state ends. `evaluate` sets the reward, whether the mission ends, also as a failure, and whether the special
-// state is used up now.
+// Evaluates a special state on the next state and returns its reward; it is 0 if `bit` is already spent. The
+// first ending decides how the state ends. `evaluate` sets four results: the reward, whether the mission
+// ends, whether it ends as a failure, and whether the special state is spent from now on.
 template <Said said = Said::endings, class State>
 double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
   if constexpr (requires { next.aos_spent; }) {
@@ -111,10 +111,10 @@ double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
 
 namespace detail {
 
-// Out of the way of the code that runs in every step.
+// These throw a ModelFault. They are kept out of the code that runs in every step.
 [[noreturn, gnu::cold]] void no_such_response(int response);
 [[noreturn, gnu::cold]] void no_such_reward(double reward);
-// After each phase that has a reward of its own, so that the phase is blamed and not the one after it.
+// Called after each phase that has a reward, so that this phase is blamed and not the one after it.
 inline void check_reward(double reward) {
   if (!std::isfinite(reward)) no_such_reward(reward);
 }
@@ -129,11 +129,11 @@ Observation observation_of(const auto& effect) {
   return effect.response - 1;
 }
 
-// A copy of what it is made of, or another name for it.
+// A copy of a state if it is kept, else another name for the state.
 template <class State, bool is_kept>
 using Kept = std::conditional_t<is_kept, const State, State&>;
 
-// What the skill does once the extrinsic changes are made.
+// The phases of a step after the extrinsic changes.
 template <class Environment, class Skill>
 Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, int execution_time,
                double extrinsic_reward, const auto& parameters, auto& random) {
@@ -142,7 +142,7 @@ Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, i
   Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
   Step step;
   step.reward = effect.reward;
-  // Only what there is to add, since adding nothing takes time as well.
+  // Adding zero takes time as well, so only terms that may differ from zero are added.
   const double penalty = meets_precondition ? 0 : Skill::violation_penalty;
   if constexpr (Environment::has_extrinsic_changes) {
     step.reward = penalty + extrinsic_reward + effect.reward;
@@ -158,8 +158,8 @@ Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, i
   return step;
 }
 
-// The phases in their order. All changes are made in place, and what is read after them is kept before: of a copy that
-// never changes, a compiler makes no more than is read.
+// Runs the phases in their order. They change the state in place, and what a later phase reads is copied
+// before. The copies never change, so a compiler copies only what is read.
 template <class Environment, class Skill, class State>
 Step transition(State& next, const auto& parameters, auto& random) {
   Kept<State, Skill::keeps_state> state = next;
@@ -181,8 +181,8 @@ Step transition(State& next, const auto& parameters, auto& random) {
   }
 }
 
-// What an ended state lets the robot observe: what the documents give for it, or the default observation where they do
-// not reckon with such a state.
+// The observation in an ended state: what the documents give there, or the default observation if they raise
+// a ModelFault.
 template <class Environment, class Skill, class State>
 [[gnu::cold, gnu::noinline]] Step step_after_the_end(State copy, const auto& parameters, auto& random) {
   copy.aos_ending = Ending::running;
@@ -195,7 +195,7 @@ template <class Environment, class Skill, class State>
 
 }  // namespace detail
 
-// Runs a skill in place. An ended state stays as it is and earns nothing.
+// Runs a skill in place. An ended state stays as it is and gives no reward.
 template <class Environment, class Skill, class State>
 Step step(State& state, const auto& parameters, auto& random) {
   if (state.aos_ending != Ending::running) [[unlikely]] {
@@ -211,7 +211,7 @@ bool meets_precondition(const auto& state, const auto& parameters, auto& random)
   return meets;
 }
 
-// How much the rollout policy prefers the action; never negative.
+// The weight that the rollout policy gives the action; never negative.
 template <class Skill>
 double rollout_weight(const auto& state, const auto& parameters, auto& random) {
   double weight = 0;

@@ -1,4 +1,4 @@
-// Values as text, as JSON, and as the numbers of a saved state. Included by support.hpp alone.
+// Values as text, as JSON, and as the numbers of a saved state. Only support.hpp includes this file.
 #pragma once
 
 #include <bit>
@@ -53,7 +53,7 @@ void visit_members(const void* state, std::span<const Member> members, ValueVisi
   visitor.end();
 }
 
-// Compounds as `{x=1, y=2}`, sequences as `[1, 2]`.
+// Writes compounds as `{x=1, y=2}` and sequences as `[1, 2]`.
 class ValueText final : public ValueVisitor {
  public:
   void leaf(const Leaf& leaf) override { text_ += leaf_text(leaf); }
@@ -131,7 +131,7 @@ void write_json(JsonWriter& json, AnyValue value) {
   value.visit(visitor);
 }
 
-// Numbers with blanks between them.
+// Writes numbers with blanks between them.
 class ValueNumbers final : public ValueVisitor {
  public:
   explicit ValueNumbers(std::string& text) : text_(text) {}

@@ -1,4 +1,4 @@
-// Values of which only the leaves are known: their names, numbers and places.
+// Values as lists of their leaves: the name, the number and the address of each.
 #pragma once
 
 #include <bit>
@@ -23,7 +23,7 @@ T stored_at(const void* place) {
   return value;
 }
 
-// Calls `use` with the number that the leaf holds, as 64 bits with its sign, or as it is if it is real.
+// Calls `use` with the leaf's number: a real number as it is, any other widened to 64 bits.
 template <class Use>
 void with_number(const Leaf& leaf, Use&& use) {
   const auto widened = [&](auto narrow) {
@@ -53,7 +53,7 @@ inline std::string_view characters_of(const Leaf& leaf) {
   return *static_cast<const std::string*>(leaf.place);
 }
 
-// Calls `use` for every single value with its name: `v1.visited`, `grid[3]`, `cell[1,2]`.
+// Calls `use` for every leaf with its name: `v1.visited`, `grid[3]`, `cell[1,2]`.
 class NamedLeaves final : public ValueVisitor {
  public:
   explicit NamedLeaves(std::function<void(const std::string& name, const Leaf& leaf)> use) : use_(std::move(use)) {}
@@ -80,10 +80,10 @@ class NamedLeaves final : public ValueVisitor {
  private:
   std::function<void(const std::string& name, const Leaf& leaf)> use_;
   std::string name_;
-  std::vector<std::size_t> owners_;  // how long the names are of what is visited now
+  std::vector<std::size_t> owners_;  // the lengths of the names around the current leaf
 };
 
-// A single value as a number: equal values have equal numbers.
+// A leaf as 64 bits: a text by its hash, any number by its bits.
 inline std::uint64_t leaf_number(const Leaf& leaf) {
   if (is_text(leaf)) return std::hash<std::string_view>{}(characters_of(leaf));
   std::uint64_t bits = 0;
@@ -97,7 +97,7 @@ inline std::uint64_t leaf_number(const Leaf& leaf) {
   return bits;
 }
 
-// Single values as numbers, in their order. Values of the same shape have the same leaves, by name.
+// The leaves of a value as numbers, in their order. Values of the same shape have leaves with the same names.
 struct LeafNumbers final : ValueVisitor {
   std::vector<std::uint64_t> numbers;
   std::uint64_t shape = 0;

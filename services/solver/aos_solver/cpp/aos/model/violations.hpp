@@ -1,5 +1,5 @@
-// Events that a mission must hardly ever bring about: conditions of its deploy file over the state before a step, the
-// action, and the state that the step leads to.
+// The constraints of a mission. A constraint is a condition that must hardly ever come true. The deploy file
+// states it over the state before a step, the action, and the state after the step.
 #pragma once
 
 #include <concepts>
@@ -12,7 +12,7 @@ namespace aos {
 // A bit for each of the mission's constraints.
 using Violations = std::uint32_t;
 
-// How a condition names a skill: a pointer to the parameters of the action, null where the action is of another skill.
+// The action's parameters if the action is of skill `Named`, else null. Conditions name a skill by this.
 template <class Named, class Skill>
 const typename Named::Parameters* chosen(const typename Skill::Parameters& parameters) {
   if constexpr (std::same_as<Named, Skill>) {
@@ -22,7 +22,7 @@ const typename Named::Parameters* chosen(const typename Skill::Parameters& param
   }
 }
 
-// The bit of constraint `number` where its condition holds.
+// The bit of constraint `number` if its condition holds, else 0.
 template <class Condition>
 Violations violation(int number, std::uint32_t piece, Condition&& holds) {
   blame::at(piece);
