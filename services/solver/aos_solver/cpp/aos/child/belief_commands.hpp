@@ -1,4 +1,4 @@
-// What an engine child is asked about its belief, and how the belief changes.
+// The commands that ask an engine child about its belief or change the belief.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class BeliefCommands {
  public:
   using State = typename Model::State;
 
-  // `kept_beliefs` is the path of the file for KeptBeliefs. The search is told how the belief changes.
+  // `kept_beliefs` is the path of the file of KeptBeliefs. `search` follows the changes of the belief.
   BeliefCommands(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs, Planner<Model>& search)
       : random_(seed), policy_(policy), belief_(Belief<Model>::initial(random_)), kept_(kept_beliefs), search_(search) {}
 
@@ -39,10 +39,10 @@ class BeliefCommands {
     become(json, Belief<Model>::initial(random_), [&] { search_.start_over(); });
   }
 
-  // The initial belief as particles, also where it could be enumerated: to try the one against the other.
+  // Makes the belief the initial belief in particles, even where enumeration gives it exactly: tests compare the two.
   void draw(JsonWriter& json) { become(json, Belief<Model>::drawn(random_)); }
 
-  // How likely each observation is after an action.
+  // Writes the probability of each observation after an action.
   void write_predicted(JsonWriter& json, int action) {
     json.begin_array();
     for (const auto& [observation, probability] : belief_.observations(action, random_)) {
@@ -57,9 +57,9 @@ class BeliefCommands {
     json.end_object();
   }
 
-  // `numbers` were observed beside the response. Where no step of the model reports just these with it, the response
-  // counts alone. `locals`, where given, are the values of the mapping's local variables, and the belief is corrected with
-  // them; a fault in that is told with the answer, which is then that of the observation alone.
+  // Updates the belief by a response and the `numbers` observed with it. If no step of the model reports just these
+  // numbers, the response counts alone. `locals`, if given, are values of the mapping's local variables; they correct
+  // the belief. A fault of this correction is told in the answer, and the belief stays uncorrected.
   void update(JsonWriter& json, const Command& command) {
     const int action = action_of<Model>(command);
     const Observation observation = observation_of<Model>(action, command.text("response"));
@@ -95,7 +95,7 @@ class BeliefCommands {
     json.end_object();
   }
 
-  // Nobody knows whether the action ran.
+  // Updates the belief after an action that ran only with probability `ran_probability`.
   void update_without_observation(JsonWriter& json, const Command& command) {
     const int action = action_of<Model>(command);
     json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
@@ -103,7 +103,7 @@ class BeliefCommands {
     json.end_object();
   }
 
-  // From the particle of this number on; states may have stand-ins for what does not matter.
+  // Writes the particles from `first` on. Unless `is_whole`, variables that do not matter have stand-ins.
   void export_belief(JsonWriter& json, const Command& command) const {
     const LeftOut<Model> left_out;
     const bool is_whole = command.flag("is_whole");
@@ -118,7 +118,7 @@ class BeliefCommands {
     become(json, std::move(belief));
   }
 
-  // The belief after the change of this number, of an engine before this one.
+  // Takes over the belief that an earlier engine kept after change number `change`.
   void restore(JsonWriter& json, const Command& command) {
     auto kept = kept_.restore(command.number<std::uint64_t>("change"));
     if (!kept) throw BadCommand{"that belief was not kept"};
@@ -128,7 +128,7 @@ class BeliefCommands {
   }
 
  private:
-  // Why an observation did not correct the belief; no code where it did.
+  // Why an observation did not correct the belief. The code is empty if it did.
   struct Uncorrected {
     std::string code;
     std::string text;
@@ -141,7 +141,7 @@ class BeliefCommands {
     try {
       Model::read_locals(action, locals);
       const typename Model::Correcting correcting{observation};
-      // Later, a replay of this step would not be corrected.
+      // A replay of this step would not be corrected, so the corrected belief has no history.
       const auto [posterior, log_probability] = belief_.without_history().posterior(action, observation, numbers, random_);
       return {posterior.without_history(), log_probability};
     } catch (const ModelFault& fault) {
@@ -152,7 +152,7 @@ class BeliefCommands {
     return belief_.posterior(action, observation, numbers, random_);
   }
 
-  // Takes over a belief and tells it. Nothing changes where it cannot be told.
+  // Takes over a belief and writes its summary. If the summary fails, nothing changes.
   void become(JsonWriter& json, Belief<Model> belief) {
     become(json, std::move(belief), [&] { search_.forget(); });
   }
@@ -164,11 +164,12 @@ class BeliefCommands {
     follow();
   }
 
-  // hold: what the action does is believed, what was seen is not. widen: the same, but half of the belief goes back to
-  // what it was before and to the initial belief, in equal shares. reset: the initial belief.
+  // The belief after an observation that was impossible under it. hold: the predicted belief, as if nothing
+  // were observed. widen: one half is the predicted belief, one quarter each the belief before and the
+  // initial belief. reset: the initial belief.
   //
-  // Of a drawn belief the particles may only have been too few, and what is mixed can be moved no more (moves.hpp): the
-  // first ones in a row are held.
+  // A drawn belief may only have had too few particles, and a mixed belief can be moved no more (moves.hpp).
+  // So a drawn belief is held at the first impossible observations in a row.
   Belief<Model> after_impossible(int action) {
     const Belief<Model> initial = Belief<Model>::initial(random_);
     if (policy_ == ImpossiblePolicy::reset) return initial;

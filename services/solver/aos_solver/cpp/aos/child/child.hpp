@@ -1,7 +1,7 @@
-// The engine as a child process: a line of text in (command.hpp), a line of JSON out.
+// The engine as a child process. It reads commands as lines of text (command.hpp) and answers each by a line of JSON.
 //
-// Answers go to a descriptor of their own; what model code prints goes to standard error. The process dies with its
-// parent. A fault of model code is an answer; a crash is told by the blame page.
+// The answers go to a descriptor of their own; what model code prints goes to standard error. The process dies with its
+// parent. A fault of model code is an answer. After a crash, the blame page tells which document code ran.
 #pragma once
 
 #include <fcntl.h>
@@ -33,7 +33,7 @@ inline void write_fault(JsonWriter& json, std::string_view code, std::string_vie
   json.member("piece", blame::piece()).end_object().end_object();
 }
 
-// Runs `work`; a fault becomes the answer.
+// Runs `work`. A fault becomes the answer.
 template <class Work>
 void guarded(JsonWriter& json, Work&& work) {
   try {
@@ -65,7 +65,7 @@ inline void share_blame(const char* path) {
   ::close(file);
 }
 
-// Whether a command waits. It is asked after an answer, when nothing of the next command was read yet.
+// Whether a command waits. The loop asks this after an answer, when it has read nothing of the next command.
 inline bool has_input() {
   pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
   return ::poll(&input, 1, 0) > 0;
@@ -79,7 +79,7 @@ inline void say(std::FILE* out, const JsonWriter& json) {
 
 }  // namespace detail
 
-// Arguments: the paths of the blame page and of the kept beliefs, the seed, the policy for impossible observations.
+// The main function of an engine child. BELIEF_FILE is for KeptBeliefs; the last argument is an ImpossiblePolicy.
 template <class Model>
 int run_child(int argc, char** argv) {
   if (argc != 5) {

@@ -1,6 +1,6 @@
-// A question to the engine. It is one line: the command's name, its fields as `name=value`, and for a command that takes a
-// list an empty field and the items, all apart by tabs. Fields may come in any order, and those that nobody reads do not
-// matter. The other side writes it in aos_solver/child/command_line.py.
+// A command to the engine, as one line of parts between tabs. The parts are the command's name and its fields
+// as `name=value`. A command that takes a list has an empty part and then the items. Fields come in any
+// order, and fields that nobody reads do not matter. aos_solver/child/command_line.py writes these lines.
 #pragma once
 
 #include <charconv>
@@ -12,7 +12,7 @@
 
 namespace aos {
 
-// A command that cannot be carried out as it was given.
+// Thrown for a command that cannot be carried out as it was given.
 struct BadCommand {
   std::string text;
 };

@@ -1,4 +1,4 @@
-// All that an engine child can be asked; answers are JSON objects.
+// The commands of an engine child. Every answer is a JSON object.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// States without the variables that change neither what is earned nor what is observed: those have the values of one
-// initial state, so that states which differ in nothing else are equal.
+// States without the variables on which neither rewards nor observations depend. These variables get the
+// values of one initial state, so that states which differ in nothing else are equal.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ class LeftOut {
   }
 
  private:
-  // Where in a state something stands that has a meaning of its own: a single value, or the members of one compound.
+  // A part of a state with a meaning of its own: a single value, or the members of one compound.
   struct Place {
     std::string name;
     std::size_t offset;
@@ -63,7 +63,7 @@ class LeftOut {
     return places;
   }
 
-  // Always the same one.
+  // An initial state, always the same one.
   static State some_state() {
     Sampler random{1};
     State state{};

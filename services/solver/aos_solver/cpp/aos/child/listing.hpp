@@ -1,5 +1,5 @@
-// The whole model as numbers, for a solver in another process: every outcome of every action in every state that can be
-// reached.
+// The whole model as numbers, for a solver in another process. It lists every outcome of every action in
+// every state that can be reached.
 #pragma once
 
 #include <cstddef>
@@ -27,14 +27,14 @@ class Listing {
     space_.reach_within(belief_, 0);
   }
 
-  // What one more decision leads to; how many states are listed, of how many. Throws NotEnumerable, or what model code does.
+  // Lists what one more decision leads to, and writes how many states are listed and known. Throws NotEnumerable.
   void go_on(JsonWriter& json) {
     space_.reach_within(belief_, 1);
     json.begin_object().member("listed", space_.rows().states).member("known", space_.size()).end_object();
   }
 
-  // Writes the model, with the belief as its start, to a file, and the texts of states to another, one a line. Ended
-  // states have no number: where probabilities of a row are missing, the mission is over.
+  // Writes the model, with the belief as its start, to one file, and the states' texts to another, one a
+  // line. Ended states have no number: the probability that a row lacks is that of an end.
   void write(JsonWriter& json, const std::string& model_path, const std::string& states_path) const {
     point_based::FlatModel model = space_.rows();
     if (auto start = space_.weights_of(belief_); !start.empty()) model.starts.push_back({1, std::move(start)});
@@ -51,7 +51,7 @@ class Listing {
   }
 
  private:
-  // What a machine has room for; nobody waits for a decision.
+  // Memory is the only limit here, since no decision waits for the listing.
   static SpaceLimits limits(std::size_t max_states) {
     constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
     return {.states = max_states, .bytes = any, .outcomes = any, .work = any};

@@ -1,4 +1,4 @@
-// What an engine child is asked to decide and to look ahead: searches, exact values, what can be reached.
+// The commands that let an engine child decide and look ahead: searches, exact values, reachable states.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ class PlanningCommands {
  public:
   PlanningCommands(BeliefCommands<Model>& beliefs, Planner<Model>& search) : beliefs_(beliefs), search_(search) {}
 
-  // The items are the numbers of actions that cannot be carried out now.
+  // The command's items are the numbers of the actions that cannot be carried out now.
   void plan(JsonWriter& json, const Command& command) {
     const auto start = std::chrono::steady_clock::now();
     const auto processor_start = processor_time();
@@ -53,7 +53,7 @@ class PlanningCommands {
     json.member("known_simulations", known);
     const std::string_view name = search_.name();
     json.member("planner", name).member("why", search_.why());
-    json.member("threads", name == "pomcp" ? budget.threads : 1);  // Only POMCP shares its work out.
+    json.member("threads", name == "pomcp" ? budget.threads : 1);  // only POMCP has several threads
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       const auto& estimate = estimates[static_cast<std::size_t>(action)];
@@ -67,13 +67,13 @@ class PlanningCommands {
     json.member("seconds", spent.count()).member("cpu_seconds", processor.count()).end_object();
   }
 
-  // Begins to ponder what may come after an action that is carried out now; `go_on_pondering` does it.
+  // Notes an action that is carried out now. `go_on_pondering` then plans what may come after it.
   void ponder(JsonWriter& json, const Command& command) {
     pondered_ = {action_of<Model>(command), budget_of(command), command.number<std::uint64_t>("seed")};
     json.begin_object().end_object();
   }
 
-  // Until the budget is used up or `is_over()`. A fault is left to the next search that meets it.
+  // Ponders until the budget is used up or `is_over()`. A fault is dropped: the next search meets it again.
   template <class IsOver>
   void go_on_pondering(IsOver&& is_over) {
     if (!pondered_ || planned_horizon_ == 0) return;
@@ -87,7 +87,7 @@ class PlanningCommands {
     }
   }
 
-  // Budgets in seconds are of processor time from now on, or of real time again.
+  // From now on, budgets in seconds count processor time, or real time again.
   void count_processor_time(JsonWriter& json, const Command& command) {
     PlanningClock::counts_processor_time = command.flag("counts");
     json.begin_object().end_object();
@@ -121,7 +121,7 @@ class PlanningCommands {
     json.member("limit", reached.limit()).end_object();
   }
 
-  // The model as numbers from the current belief on: without a limit of states a call goes on where the last one ended.
+  // Lists the model from the current belief on. A call without a limit of states continues the listing before it.
   void list(JsonWriter& json, const Command& command) {
     const auto max_states = command.number<std::size_t>("max_states");
     if (max_states > 0) listing_.emplace(belief(), max_states);

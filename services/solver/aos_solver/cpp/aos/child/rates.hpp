@@ -1,5 +1,5 @@
-// How fast a model is stepped, in the way in which planners step it: one call for each step, with random actions, from
-// initial states on, with a new start at the end and at the horizon.
+// Measures how fast a model steps in the way planners step it: one call a step, random actions, from initial
+// states on. An episode ends with its state or at the horizon, and a new one begins.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace aos {
 
-// Takes steps for so long, from states of simulated_state.hpp on, and tells how many there were.
+// Steps for `seconds` and writes the number of steps. `start_state()` gives a state of simulated_state.hpp.
 template <class Model, class StartState>
 void write_rate(JsonWriter& json, double seconds, Sampler& random, StartState&& start_state) {
   const auto start = std::chrono::steady_clock::now();
@@ -43,7 +43,7 @@ void write_rate(JsonWriter& json, double seconds, Sampler& random, StartState&& 
   json.member("mean_reward", samples > 0 ? rewards / static_cast<double>(samples) : 0.0).end_object();
 }
 
-// By the documents' code.
+// Steps by the documents' code.
 template <class Model>
 void write_code_rate(JsonWriter& json, const Command& command) {
   Sampler random{command.number<std::uint64_t>("seed")};
@@ -54,7 +54,7 @@ void write_code_rate(JsonWriter& json, const Command& command) {
   });
 }
 
-// By the table of a model with few states; none where there is no table.
+// Steps by the table of a model with few states. Without a table there are no steps.
 template <class Model>
 void write_table_rate(JsonWriter& json, const Command& command) {
   Sampler random{command.number<std::uint64_t>("seed")};

@@ -1,4 +1,4 @@
-// What the actions can lead to at all: every outcome of every action, breadth first, whatever its probability.
+// Which states the actions can reach: every outcome of every action, breadth first, whatever its probability.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace aos {
 
-// Ends early when a goal is found and every precondition is met somewhere.
+// The search ends early once it has found a goal and met the precondition of every action.
 template <class Model>
 class Reachability {
  public:
@@ -39,11 +39,11 @@ class Reachability {
   bool is_met(int action) const { return is_met_[static_cast<std::size_t>(action)]; }
   std::size_t states() const { return space_.size(); }
   int depth() const { return depth_; }
-  // Why there may be more; empty where all was looked at.
+  // Why the search may have missed something; empty if it saw everything.
   const char* limit() const { return limit_; }
 
  private:
-  // Looks at the states that are new.
+  // Evaluates preconditions in the new states, and tells whether the search is done.
   bool is_done() {
     for (; looked_at_ < space_.size(); ++looked_at_) {
       for (int action = 0; action < Model::action_count(); ++action) {

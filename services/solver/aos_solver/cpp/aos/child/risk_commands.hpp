@@ -1,4 +1,4 @@
-// What an engine child is asked about the mission's constraints.
+// The command that asks an engine child about the mission's constraints.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace aos {
 
-// For each action the probabilities that it violates the constraints at once; `is_sampled` says that some are estimates.
-// The seed is that of these estimates alone.
+// Writes, for each action, the probability of violating each constraint in the next step. `is_sampled` tells
+// that some of the probabilities are estimates. The seed serves these estimates alone.
 template <class Model>
 void write_risks(JsonWriter& json, const Command& command, const Belief<Model>& belief) {
   Sampler random{command.number<std::uint64_t>("seed")};

@@ -1,4 +1,4 @@
-// Beliefs as text, for an engine whose model has the same states: of the same documents, or of changed ones.
+// Beliefs as text, for an engine whose model has the same states. Its documents are the same, or changed ones.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@
 
 namespace aos {
 
-inline constexpr std::size_t max_answer_bytes = std::size_t{16} << 20;  // about
+inline constexpr std::size_t max_answer_bytes = std::size_t{16} << 20;  // about: the last particle may exceed it
 
-// The particles from number `first` on, as many as fit one answer, each as its weight and its state as text. What is the
-// same in all states, and the history of a drawn belief, only with the first of them. `shown` gives what is written of a state.
+// Writes the particles from number `first` on, as many as fit one answer, each as its weight and its state as text. The
+// constants and the history of a drawn belief come only with particle 0. `shown(state)` gives the state to write.
 template <class Model, class Shown>
 void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t first, Shown&& shown) {
   const auto& particles = belief.particles();
@@ -37,7 +37,8 @@ void save_belief(JsonWriter& json, const Belief<Model>& belief, std::size_t firs
   json.end_array().end_object();
 }
 
-// Of fields in this order: so many pairs of a constant's name and text, pairs of a weight and a state.
+// Reads what `save_belief` wrote. `fields` are `constant_count` pairs of a constant's name and text, then
+// pairs of a weight and a state.
 template <class Model>
 Belief<Model> load_belief(double error_bound, bool is_drawn, std::string_view history, std::size_t constant_count,
                           const std::vector<std::string_view>& fields) {

@@ -1,6 +1,7 @@
 // Ends a process whose document code does not come to an end, so that its author is told soon.
 //
-// Processor time counts, so a busy machine blames nobody. What runs is read from the blame page, which tells the parent.
+// The watchdog counts processor time, so a busy machine blames nobody. The blame page tells it, and later the
+// parent, which code runs.
 #pragma once
 
 #include <signal.h>
@@ -26,7 +27,7 @@ struct Seen {
   int periods = 0;
 };
 
-// Async-signal-safe: it reads and writes memory, and may end the process.
+// The signal handler. It is async-signal-safe: it reads and writes memory, and may end the process.
 inline void look(int) {
   static std::array<Seen, blame::max_threads> seen;
   int running = 0;

@@ -1,4 +1,4 @@
-// The model's numbers as the words of the documents, and back.
+// Translates the model's numbers into the words of the documents, and back.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace aos {
 
-// The number of an action, if there is one.
+// Returns the action's number. Throws BadCommand if there is no such action.
 template <class Model>
 int checked_action(int action) {
   if (action < 0 || action >= Model::action_count()) throw BadCommand{"there is no such action"};
@@ -45,7 +45,7 @@ inline const char* ending_text(Ending ending) {
   return texts[static_cast<std::size_t>(ending)];
 }
 
-// Each number is its name's number, its index and its value.
+// Writes each number as the index of its name, its index in an array, and its value.
 inline void write_numbers(JsonWriter& json, const ObservedNumbers& numbers) {
   json.begin_array();
   for (const auto& [key, value] : numbers) {
@@ -54,7 +54,7 @@ inline void write_numbers(JsonWriter& json, const ObservedNumbers& numbers) {
   json.end_array();
 }
 
-// The same as text, all apart by spaces.
+// Reads such numbers from text; all parts are separated by spaces. Throws BadCommand.
 inline ObservedNumbers numbers_from(std::string_view text) {
   const auto parts = text.empty() ? std::vector<std::string_view>{} : detail::parts_of(text, ' ');
   if (parts.size() % 3 != 0) throw BadCommand{"a number is not a name, an index and a value"};

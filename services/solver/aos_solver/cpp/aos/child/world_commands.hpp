@@ -1,5 +1,4 @@
-// Simulated worlds that an engine child is asked to step by the model: one for missions without a robot, many for somebody
-// who learns.
+// The commands for simulated worlds: one world for missions without a robot, many worlds for a learner.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +40,7 @@ class WorldCommands {
     json.end_object();
   }
 
-  // The hidden state as text for people.
+  // Writes the hidden state as text for people.
   void show(JsonWriter& json) const { json.begin_object().member("state", Model::state_text(hidden_)).end_object(); }
 
   void reset_many(JsonWriter& json, const Command& command) {
@@ -50,7 +49,7 @@ class WorldCommands {
     worlds_.reset(json, seeds);
   }
 
-  // The actions are 32-bit numbers in base64.
+  // The field `actions` is an array of 32-bit numbers in base64, one for each world.
   void step_many(JsonWriter& json, const Command& command) {
     const auto actions = from_base64<std::int32_t>(command.text("actions"));
     if (!actions || actions->size() != worlds_.count()) throw BadCommand{"not one action for each world"};

@@ -1,6 +1,6 @@
-// Many hidden states side by side, each with its own stream of random numbers: worlds that somebody outside acts in, to
-// learn. What is observed is reported as numbers: 0 for nothing, then the responses of all skills in their order; responses
-// of the same name are the same observation. Text responses are reported as texts.
+// Many simulated worlds side by side, for a learner outside that acts in them. Each world has a hidden state and its
+// own stream of random numbers. An observation is reported as a number: 0 for none, then the responses of all skills in
+// their order. Responses of the same name are the same observation. Text responses are reported as texts.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class Worlds {
     }
   }
 
-  // One new world for each seed; tells the names of the observations, and whether there are texts among them.
+  // Starts one new world for each seed. Writes the names of the observations, and whether some are texts.
   void reset(JsonWriter& json, const std::vector<std::uint64_t>& seeds) {
     worlds_.clear();
     for (const std::uint64_t seed : seeds) {
@@ -44,8 +44,8 @@ class Worlds {
 
   std::size_t count() const { return worlds_.size(); }
 
-  // One action for each world; a negative one starts the world anew. Arrays have an entry for each world and are reported in
-  // base64; endings are of `Ending`. Of the numbers that were observed there are the worlds, the keys and the values.
+  // Takes one action for each world; a negative action starts the world anew. The answer's arrays have an entry for
+  // each world, in base64; endings are of `Ending`. Observed numbers come as arrays of their worlds, keys and values.
   void step(JsonWriter& json, const std::vector<std::int32_t>& actions) {
     rewards_.clear();
     observations_.clear();
