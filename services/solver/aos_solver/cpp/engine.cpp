@@ -1,5 +1,5 @@
-// The engine for models whose states have up to AOS_STATE_BYTES bytes, or any number where that is 0; linked with one
-// of them.
+// The engine for models whose states have up to AOS_STATE_BYTES bytes; 0 stands for any number. It is linked
+// with one of these models.
 #include "aos/child/child.hpp"
 #include "aos/model/erased_model.hpp"
 #include "aos/model/support.hpp"

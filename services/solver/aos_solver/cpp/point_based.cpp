@@ -13,7 +13,7 @@ namespace aos::point_based {
 
 namespace {
 
-constexpr double closed_share = 1e-5;  // of the value: a gap that no decision depends on
+constexpr double closed_share = 1e-5;  // of the value: a smaller gap matters to no decision
 constexpr std::size_t max_bytes = std::size_t{512} << 20;
 
 }  // namespace
@@ -21,7 +21,7 @@ constexpr std::size_t max_bytes = std::size_t{512} << 20;
 struct OnlineSarsop::Solver {
   explicit Solver(FlatModel flat) : model(std::move(flat)), outlook(model), regions(model), sarsop(model, regions) {}
 
-  // All states that are worth anything in one region.
+  // Whether all states that are worth anything are in one region.
   bool is_in_one_region(const std::vector<std::pair<std::uint32_t, double>>& belief) const {
     std::uint32_t region = nowhere;
     for (const auto& [state, probability] : belief) {
@@ -32,7 +32,7 @@ struct OnlineSarsop::Solver {
     return true;
   }
 
-  // The nearer the discount is to 1, the less is lost by putting off what can be had now; the gap has to be less.
+  // The gap at which the search ends. A discount nearer to 1 makes delays cheaper, so the gap has to be smaller.
   double precision() const {
     const double size = std::max(std::abs(sarsop.lower()), std::abs(sarsop.upper()));
     return std::max(closed_share * std::min(1.0, 20 * (1 - model.discount)) * size, sarsop.graph().noise());

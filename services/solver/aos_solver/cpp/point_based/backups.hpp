@@ -1,4 +1,4 @@
-// Backups: both bounds of a belief, given those of the beliefs behind its actions.
+// Backups: both bounds of a belief, from the bounds of its successors.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ class Backups {
       : model_(model), regions_(regions), graph_(graph) {}
 
   std::uint64_t count() const { return backups_; }
-  // Alpha vectors since the last time that this was set to 0.
+  // How many alpha vectors were added since this was set to 0.
   std::size_t vectors_added = 0;
 
   void refresh(Branch& branch) {
@@ -36,7 +36,7 @@ class Backups {
     return backed_up(branch, branch.rest_upper, 1, [this](Node& node) { return graph_.refresh_upper(node), node.upper; });
   }
 
-  // Both bounds of a node, by what its open actions lead to. Returns whether one has moved by more than rounding.
+  // Backs up both bounds of a node by its open actions. Returns whether one has moved by more than rounding.
   bool backup(std::uint32_t number) {
     ++backups_;
     bool has_moved = false;
@@ -74,7 +74,7 @@ class Backups {
   }
 
  private:
-  // The branch's value, given that of each node behind it and of the rest; moved outwards.
+  // The branch's value from the values of its successors and of the rest, moved outwards by the rounding.
   template <class ValueOf>
   double backed_up(const Branch& branch, double rest, double direction, ValueOf value_of) {
     double sum = rest;
@@ -87,8 +87,9 @@ class Backups {
     return branch.reward + model_.discount * sum + direction * graph_.rounding() * size;
   }
 
-  // The plan that begins with the branch's action and goes on with the best plan of each node behind it. A plan for
-  // what cannot be observed from here is chosen as if nothing were known, since the vector is for the whole region.
+  // Adds the vector of the plan that begins with the branch's action and continues with the best plan of each
+  // successor. The vector serves the whole region, so it needs plans for observations that are impossible
+  // here. These plans are chosen as if nothing were known.
   void add_vector(Node& node, const Branch& branch) {
     const Move& move = regions_.all[node.region].moves[branch.action];
     std::vector<double> values = move.rewards;
@@ -123,7 +124,7 @@ class Backups {
     graph_.refresh_lower(node);
   }
 
-  // Of the best plans behind a branch.
+  // The length of the longest of the successors' best plans.
   std::uint32_t longest_plan(const Branch& branch) {
     std::uint32_t longest = graph_.is_endless() ? 0 : 1;
     for (const Successor& successor : branch.successors) {
@@ -133,7 +134,7 @@ class Backups {
     return longest;
   }
 
-  // By observation_branch; none where nothing may follow.
+  // Sets `chosen_` for each observation branch; null where nothing may follow.
   void choose_plans(const Node& node, const Branch& branch, std::uint32_t left) {
     const Move& move = regions_.all[node.region].moves[branch.action];
     chosen_.assign(move.observation_branches.size(), nullptr);

@@ -1,7 +1,7 @@
-// The beliefs that were met, what actions lead to from them, and both bounds of their values.
+// The beliefs that were reached, the successors of their actions, and both bounds of their values.
 //
-// With a horizon a belief is one node for every number of decisions that are left. A plan of fewer decisions is a plan
-// of more as well, with any action repeated at its end; so alpha vectors serve all beliefs with that many left or more.
+// With a horizon, a belief has one node for each number of decisions that are left. A plan becomes longer by repeating
+// any action at its end. So an alpha vector serves all beliefs with as many decisions left, or more.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class BeliefGraph {
     posterior_.reserve(largest);
     dense_.assign(largest, 0.0);
     upper_.resize(regions.all.size() * informed_.size());
-    // So that what is merged and left out moves no bound by more than a small part of what decisions depend on.
+    // Merging beliefs and leaving states out moves no bound by more than a harmless amount.
     const double decisions = lasting_decisions(model);
     const double harmless = 1e-7 / (decisions * decisions);
     negligible_ = std::min(1e-12, harmless);
@@ -72,12 +72,12 @@ class BeliefGraph {
   const Node& operator[](std::uint32_t number) const { return nodes_[number]; }
   std::size_t size() const { return nodes_.size(); }
   std::size_t bytes() const { return bytes_; }
-  // Numbers that were multiplied so far.
+  // The number of multiplications so far.
   std::uint64_t work() const { return work_; }
   void count_work(std::uint64_t work) { work_ += work; }
-  // Relative to the sizes of numbers.
+  // The error of the longest sum, relative to the absolute values in it.
   double rounding() const { return rounding_; }
-  // So much in a value that was worked out once, and in one that came about over all decisions, is a matter of rounding.
+  // How much of a value may be rounding: of a value computed once, and of one that came about over all decisions.
   double noise_of_one() const { return 4 * rounding_ * sizes_.back(); }
   double noise() const { return 2 * rounding_ * sizes_.back() * lasting_decisions(model_); }
   LowerBound& lower(std::uint32_t region) { return lower_[region]; }
@@ -99,26 +99,26 @@ class BeliefGraph {
     largest_value_ = std::max(largest_value_, vector.size);
     lower_[region].add(std::move(vector));
   }
-  // No state is worth more, or 0.
+  // No state is worth more. At least 0.
   double max_value() const { return std::max(0.0, *std::max_element(informed_.back().begin(), informed_.back().end())); }
-  // Some policy gives no less, wherever it begins; or 0.
+  // Some policy gives at least this from every state on. At most 0.
   double min_value() const { return min_value_; }
-  // No alpha vector has one that is further from 0.
+  // The largest absolute value in any alpha vector.
   double largest_value() const { return largest_value_; }
 
   bool is_endless() const { return model_.horizon == 0; }
-  // Decisions that are left after one; nothing is left after the last.
+  // Whether nothing follows the next decision, and how many decisions are left after it (0 without a horizon).
   bool is_last(const Node& node) const { return node.left == 1; }
   std::uint32_t left_after(const Node& node) const { return node.left == 0 ? 0 : node.left - 1; }
 
-  // Whether longer plans are worth no less than shorter ones, since some action costs nothing anywhere.
+  // Whether longer plans are worth no less than shorter ones, since some action costs nothing in any state.
   bool is_free_to_go_on() const { return is_free_; }
-  // What a plan of `length` decisions gives at least in those up to `left`.
+  // A lower bound of what a plan of `length` decisions gains when it is continued to `left` decisions.
   double tail(std::uint32_t length, std::uint32_t left) const {
     return powers_[length] * tails_[left - length] * (1 + 8 * ulp);
   }
 
-  // Lists the actions, those left out that cannot be the best.
+  // Adds a branch for each action that may be the best.
   void expand(Node& node) {
     if (node.is_expanded) return;
     node.is_expanded = true;
@@ -130,7 +130,7 @@ class BeliefGraph {
     }
   }
 
-  // Finds where an action leads.
+  // Finds the successors of a branch.
   void open(const Node& node, Branch& branch) {
     if (branch.is_open) return;
     branch.is_open = true;
@@ -138,18 +138,18 @@ class BeliefGraph {
     bytes_ += branch.successors.size() * sizeof(Successor);
   }
 
-  // An action, whether or not it may be the best; `upper` bounds what it is worth.
+  // A branch without successors, for any action; `upper` bounds its value.
   Branch closed_branch(const Node& node, std::uint32_t action, double upper) const {
     return {action, expected(move(node, action).rewards, node.belief), upper};
   }
 
-  // Keeps the bounds of the beginning only.
+  // Keeps the initial bounds only.
   void start_over() {
     for (LowerBound& bound : lower_) bound.keep_initial();
     forget_beliefs();
   }
 
-  // Keeps alpha vectors and the values of single states only.
+  // Keeps the alpha vectors and the values of single states only.
   void forget_beliefs() {
     index_.clear();
     uninformed_.clear();
@@ -166,7 +166,7 @@ class BeliefGraph {
     }
   }
 
-  // What each action is worth at most, by what knowing more would give.
+  // An upper bound of each action's value: the value if the robot knew more.
   std::vector<double> informed_values(const Node& node) const {
     const double* const values = informed_[node.left].data();
     const std::vector<std::uint32_t>& states = regions_.all[node.region].states;
@@ -193,7 +193,7 @@ class BeliefGraph {
     };
     if (node.seen_vectors == 0) {
       bound.for_blind(node.left, take);
-      // Plans that take an impossible state for granted are hardly the best.
+      // Plans that assume an impossible state are hardly the best.
       if (bound.initial() > bound.blind()) {
         for (const std::uint32_t state : node.belief.states) take(bound.blind() + state);
       }
@@ -213,7 +213,7 @@ class BeliefGraph {
     node.seen_changes = bound.changes();
   }
 
-  // Where an observation leads from a region about which nothing else is known, with so many decisions left then.
+  // The node after an observation in a region of which nothing else is known; `nowhere` if nothing may follow.
   std::uint32_t uninformed_successor(std::uint32_t region, std::uint32_t left, std::uint32_t action,
                                      std::uint32_t observation_branch) {
     const Region& from = regions_.all[region];
@@ -240,7 +240,7 @@ class BeliefGraph {
     return size;
   }
 
-  // Of all that are worked out here.
+  // The number of terms in the longest sum that is computed here.
   std::size_t longest_sum() const {
     std::size_t longest = longest_row(model_.outcomes) + longest_row(model_.likelihoods);
     for (const Region& region : regions_.all) {
@@ -261,7 +261,7 @@ class BeliefGraph {
     return vector.length == node.left ? value : value + tail(vector.length, node.left);
   }
 
-  // What is surely not lost by going on with one action, wherever a plan has ended.
+  // Sets the tails: what repeating one action gives at least, wherever a plan has ended.
   void add_tails(const std::vector<ActionValues>& blind) {
     double power = 1;
     for (const ActionValues& values : blind) {
@@ -346,7 +346,7 @@ class BeliefGraph {
     branch.rest_upper += probability * highest;
   }
 
-  // For the posterior belief, which sums to `total`.
+  // Adds the successor for the posterior belief, whose weights sum to `total`.
   void add_successor(std::uint32_t region, std::uint32_t left, std::uint32_t observation_branch, double total, Branch& branch) {
     const std::uint32_t number = node_of(region, left, posterior_.normalised(total, negligible_));
     const double share = posterior_.share_of(nodes_[number].belief) * (1 - 4 * rounding_);
@@ -361,8 +361,8 @@ class BeliefGraph {
   double negligible_ = 0;
   int kept_bits_ = 0;
   std::vector<ActionValues> informed_;  // by layer
-  std::vector<double> sizes_;           // of the largest of these, by layer
-  std::vector<double> tails_;           // by decisions: what going on costs
+  std::vector<double> sizes_;           // the largest absolute value of these, by layer
+  std::vector<double> tails_;           // by decisions: the least that repeating one action gives
   std::vector<double> powers_;          // of the discount
   bool is_free_ = true;
   double largest_value_ = 0;

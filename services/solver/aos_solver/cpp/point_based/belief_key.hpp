@@ -1,4 +1,4 @@
-// A belief as a key of 128 bits, by which it is found again.
+// A key of 128 bits by which a belief graph finds a belief again.
 #pragma once
 
 #include <bit>
@@ -18,7 +18,7 @@ struct BeliefKeyHash {
   std::size_t operator()(const BeliefKey& key) const { return key.high ^ key.low; }
 };
 
-// Of probabilities only so many binary digits count, so that different ways to the same belief meet.
+// Only `kept_bits` binary digits of a probability count, so that different ways to the same belief meet.
 inline BeliefKey key_of(std::uint32_t region, std::uint32_t left, const Belief& belief, int kept_bits) {
   const auto mixed = [](std::uint64_t x) {
     x *= 0x9e3779b97f4a7c15u;
@@ -30,7 +30,7 @@ inline BeliefKey key_of(std::uint32_t region, std::uint32_t left, const Belief& 
   const int dropped = 52 - kept_bits;
   const std::uint64_t half = std::uint64_t{1} << dropped >> 1;
   for (std::size_t i = 0; i < belief.size(); ++i) {
-    // Sums, so that a processor need not finish one state before it begins the next.
+    // The parts are summed, so that a processor can begin the next state before this one is finished.
     const std::uint64_t rounded = (std::bit_cast<std::uint64_t>(belief.probabilities[i]) + half) >> dropped;
     key.high += mixed(rounded + belief.states[i] * 0xff51afd7ed558ccdu);
     key.low += mixed(rounded * 0x2545f4914f6cdd1du ^ ~std::uint64_t{belief.states[i]});

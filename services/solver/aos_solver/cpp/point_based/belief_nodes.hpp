@@ -1,4 +1,4 @@
-// The nodes of a belief graph: beliefs that were met, their actions, and the beliefs behind these.
+// The nodes of a belief graph: the beliefs that were reached, their actions, and the successors of these.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace aos::point_based {
 
-// An observation leads to a belief that holds `probability` times the node's, and a rest.
+// A belief after an observation. The weights after it are `probability` times the node's belief, and a rest.
 struct Successor {
   double probability;
   std::uint32_t observation_branch;
   std::uint32_t node;
 };
 
-// An action at a belief. Where it leads is found out only when its upper bound is the highest: most never are.
+// An action at a belief. Its successors are found only when a trial needs them.
 struct Branch {
   std::uint32_t action;
   double reward;
   double upper;
   double lower = -std::numeric_limits<double>::infinity();
-  double rest = 0;        // the probability that is in no successor
-  double rest_upper = 0;  // what the rest is worth at most
+  double rest = 0;        // the probability that no successor holds
+  double rest_upper = 0;  // an upper bound of what the rest adds to the value
   bool is_open = false;
   std::vector<Successor> successors{};
 };
@@ -31,12 +31,12 @@ struct Branch {
 struct Node {
   Belief belief;
   std::uint32_t region;
-  std::uint32_t left;                // decisions; 0 where there is no end
+  std::uint32_t left;                // how many decisions are left; 0 without a horizon
   std::uint32_t vector = 0;          // the best alpha vector
-  std::uint32_t seen_vectors = 0;    // alpha vectors that the lower bound takes account of
-  std::uint32_t seen_changes = 0;    // changes that the upper bound takes account of
-  std::uint32_t point = nowhere;     // in the upper bound
-  double corner = 0;                 // what the upper bound is interpolated to be from single states
+  std::uint32_t seen_vectors = 0;    // how many alpha vectors `lower` accounts for
+  std::uint32_t seen_changes = 0;    // how many changes of the upper bound `upper` accounts for
+  std::uint32_t point = nowhere;     // the number of its point in the upper bound
+  double corner = 0;                 // the upper bound interpolated from single states
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   bool is_expanded = false;

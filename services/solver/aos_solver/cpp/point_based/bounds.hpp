@@ -1,4 +1,4 @@
-// Both bounds of the value function over the beliefs of a region, as far as they are known.
+// The lower and the upper bound of the value function over the beliefs of a region.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace aos::point_based {
 
-// The states that have a probability, by their numbers in the region, ascending.
+// A belief: the states with a positive probability, by their numbers in the region, ascending.
 struct Belief {
   std::vector<std::uint32_t> states;
   std::vector<double> probabilities;
@@ -21,12 +21,12 @@ struct Belief {
   std::size_t size() const { return states.size(); }
 };
 
-// Values by a region's states: for every one what a plan of `length` decisions gives at least that begins with `action`.
+// What a plan gives at least from each state of a region. The plan begins with `action` and has `length` decisions.
 struct AlphaVector {
   std::uint32_t action;
-  std::uint32_t length;  // 0 where there is no end
+  std::uint32_t length;  // 0 without a horizon
   std::vector<double> values;
-  double size = 0;  // of the largest value
+  double size = 0;  // the largest absolute value
 
   AlphaVector(std::uint32_t of_action, std::uint32_t of_length, std::vector<double> of_states)
       : action(of_action), length(of_length), values(std::move(of_states)) {
@@ -35,7 +35,7 @@ struct AlphaVector {
   bool is_gone() const { return values.empty(); }
 };
 
-// Of so many pairs of a probability and a value. In eight sums, which a processor can add up side by side.
+// The sum of probabilities times values. A processor can add up the eight partial sums side by side.
 template <class ValueOf>
 double weighted_sum(const std::vector<double>& probabilities, ValueOf&& value_of) {
   constexpr std::size_t width = 8;
@@ -55,16 +55,16 @@ inline double expected(const std::vector<double>& values, const Belief& belief) 
   return weighted_sum(belief.probabilities, [&](std::size_t i) { return values[belief.states[i]]; });
 }
 
-// Alpha vectors of a region. Their numbers stay; those that were given up are empty. Those of the beginning are never
-// given up; the first of them always do the same action.
+// The alpha vectors of a region. A vector that is given up becomes empty, and the others keep their numbers.
+// The initial vectors are never given up. The first of these, the blind ones, always repeat one action.
 class LowerBound {
  public:
-  // Those of an action in the order of their lengths.
+  // The blind vectors of one action are added in the order of their lengths.
   void add_blind(AlphaVector vector) {
     add_initial(std::move(vector));
     ++blind_;
   }
-  // After the blind ones, one for each state of the region or none at all.
+  // Further initial vectors are added after the blind ones: one for each state of the region, or none.
   void add_initial(AlphaVector vector) {
     add(std::move(vector));
     ++initial_;
@@ -82,16 +82,16 @@ class LowerBound {
   std::uint32_t blind() const { return blind_; }
   std::uint32_t initial() const { return initial_; }
   std::size_t kept() const { return kept_; }
-  // Numbers those that were kept anew.
+  // Removes the vectors that were given up. The others get new numbers.
   void close_gaps() {
     std::erase_if(vectors_, [](const AlphaVector& vector) { return vector.is_gone(); });
   }
-  // Keeps the vectors of the beginning only.
+  // Keeps the initial vectors only.
   void keep_initial() {
     vectors_.erase(vectors_.begin() + initial_, vectors_.end());
     kept_ = initial_;
   }
-  // For every action the longest of its blind vectors that has no more than so many decisions.
+  // Calls `take` with the longest blind vector of each action that has at most `left` decisions.
   template <class Take>
   void for_blind(std::uint32_t left, Take&& take) const {
     for (std::uint32_t number = 0; number < blind_; ++number) {
@@ -102,17 +102,17 @@ class LowerBound {
   }
 
  private:
-  std::deque<AlphaVector> vectors_;  // which stay where they are
+  std::deque<AlphaVector> vectors_;  // elements of a deque stay where they are
   std::uint32_t blind_ = 0;
   std::uint32_t initial_ = 0;
   std::size_t kept_ = 0;
 };
 
-// Values of single states, and of beliefs that were looked at; between them the bound is interpolated from the states
-// and one belief ("sawtooth": Hauskrecht, 2000).
+// Upper bounds of single states (corners) and of beliefs that were backed up (points). The bound of any other
+// belief is interpolated from the corners and one point ("sawtooth": Hauskrecht, 2000).
 class UpperBound {
  public:
-  // `rounding` is relative, of the longest sum; `dense` is room for a belief, all 0 between calls.
+  // `rounding` is the relative error of the longest sum. `dense` is memory for a belief, all 0 between calls.
   UpperBound(std::vector<double> corners, double rounding, std::vector<double>& dense)
       : corners_(std::move(corners)), dense_(dense), rounding_(rounding) {
     double size = 0;
@@ -126,10 +126,10 @@ class UpperBound {
   // The highest value of a single state, or 0.
   double highest() const { return highest_; }
 
-  // Interpolated from single states; `corner` below.
+  // The bound interpolated from the corners alone. The functions below take it as `corner`.
   double corner_of(const Belief& belief) const { return expected(corners_, belief); }
 
-  // Takes the belief by its address: it must stay where it is. Returns the point's number.
+  // Adds a point and returns its number. The belief must stay where it is.
   std::uint32_t add(const Belief& belief, double corner, double value) {
     points_.push_back({&belief, value - corner});
     const auto number = static_cast<std::uint32_t>(points_.size() - 1);
@@ -148,7 +148,7 @@ class UpperBound {
     clear(belief);
     return corner + drop + error_ - rounding_ * drop;
   }
-  // `value` improved by what has changed since so many changes.
+  // Lowers `value` by what has changed after the first `seen` changes.
   double of(const Belief& belief, double corner, double value, std::uint32_t seen) {
     if (seen == changes_.size()) return value;
     if (changes_.size() - seen > points_.size()) return std::min(value, of(belief, corner));
@@ -159,7 +159,7 @@ class UpperBound {
     return std::min(value, corner + drop + error_ - rounding_ * drop);
   }
 
-  // Keeps the values of single states only.
+  // Keeps the corners only.
   void forget_points() {
     points_.clear();
     changes_.clear();
@@ -171,7 +171,7 @@ class UpperBound {
  private:
   struct Point {
     const Belief* belief;
-    double drop;  // from the interpolation of the states; negative
+    double drop;  // the value minus the bound from the corners; negative
   };
 
   void spread(const Belief& belief) {
@@ -181,7 +181,7 @@ class UpperBound {
     for (const std::uint32_t state : belief.states) dense_[state] = 0;
   }
 
-  // The belief in `dense_` holds a share of the point's, and so much of the drop.
+  // The belief in `dense_` holds a share of the point's belief, and its bound falls by that share of the point's drop.
   void lower(double& drop, const Point& point, std::size_t support) const {
     if (point.drop >= drop || point.belief->size() > support) return;
     const double needed = drop / point.drop;
@@ -200,7 +200,7 @@ class UpperBound {
   std::vector<double>& dense_;
   double highest_ = 0;
   double rounding_;
-  double error_ = 0;  // of interpolations from single states
+  double error_ = 0;  // the rounding error of a bound from the corners
   std::vector<Point> points_;
   std::vector<std::uint32_t> changes_;
 };

@@ -1,9 +1,9 @@
-// Plans that take one state for granted, go on to the state that is then likeliest by what is observed, and always do what
-// has the highest fully observable value in it (certainty equivalence).
+// Certainty-equivalent plans. Such a plan assumes one state and does what has the highest fully observable
+// value in it. It then assumes the state that is likeliest after the observation.
 //
-// For every pair of a state that is taken for granted and one that is true, this is what such a plan gives: alpha vectors
-// to begin with. They are far above those of always doing the same action wherever a belief is nearly certain, so that
-// a search need not look beyond the point where the robot knows enough. For missions without end.
+// The values of these plans, for every pair of an assumed and a true state, are initial alpha vectors. Where
+// a belief is nearly certain, they are far above the vectors that repeat one action. So a search need not
+// look beyond the point where the robot knows enough. They serve missions without end only.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace aos::point_based {
 
 class CertaintyEquivalent {
  public:
-  // `informed` are values from above, by which actions are chosen.
+  // `informed` are upper bounds of action values. The plans choose their actions by these.
   CertaintyEquivalent(const FlatModel& model, const Regions& regions, const ActionValues& informed, double rounding)
       : model_(model), regions_(regions), informed_(informed), rounding_(rounding) {
     if (!is_small()) return;
@@ -39,7 +39,7 @@ class CertaintyEquivalent {
     for (int sweep = 0; sweep < max_sweeps_ && renew() > settled_ * scale_; ++sweep) {}
   }
 
-  // Of a region, one vector for each state that may be taken for granted; none where the model is too large for that.
+  // One vector for each assumed state of a region; none if the model is too large.
   std::vector<AlphaVector> vectors(std::uint32_t region) const {
     std::vector<AlphaVector> vectors;
     if (values_.empty()) return vectors;
@@ -54,11 +54,11 @@ class CertaintyEquivalent {
  private:
   static constexpr std::size_t max_states_of_region_ = 200;
   static constexpr std::size_t max_pairs_ = 100'000;
-  static constexpr std::size_t max_landings_ = 20'000'000;  // looked at
+  static constexpr std::size_t max_landings_ = 20'000'000;  // successors of all pairs
   static constexpr int max_sweeps_ = 300;
   static constexpr double settled_ = 1e-5;
 
-  // Where a true state may lead, with the pair of states then.
+  // A pair of an assumed and a true state that may come next.
   struct Step {
     std::size_t pair;
     double probability;
@@ -103,7 +103,7 @@ class CertaintyEquivalent {
     }
     if (number + 1 == regions_.all.size()) first_step_.push_back(steps_.size());
   }
-  // To the step with the same pair, if there is one from `first` on.
+  // Adds to the step with the same pair, from `first` on, or appends a new step.
   static void add(std::vector<Step>& steps, std::size_t first, const Step& step) {
     const auto is_it = [&](const Step& known) { return known.pair == step.pair; };
     const auto known = std::find_if(steps.begin() + static_cast<std::ptrdiff_t>(first), steps.end(), is_it);
@@ -114,7 +114,7 @@ class CertaintyEquivalent {
     }
   }
 
-  // For every target of a move the pairs of states that follow, where `taken` is taken for granted.
+  // Fills `of_target_` with the pairs of states that follow each target of a move if `taken` is assumed.
   void find_landings(const Move& move, std::uint32_t taken) {
     predicted_.assign(move.targets, 0.0);
     for (const auto& flow : move.flows[taken]) {
@@ -130,7 +130,7 @@ class CertaintyEquivalent {
       }
     }
   }
-  // The state that an observation leaves likeliest; by the observation alone where what was predicted is ruled out.
+  // The likeliest state after an observation. The observation alone decides if it rules out what was predicted.
   std::uint32_t likeliest(const ObservationBranch& observation_branch) const {
     double best = -1;
     std::uint32_t local = 0;
@@ -143,8 +143,8 @@ class CertaintyEquivalent {
     return local;
   }
 
-  // Values rise from what no plan can give less than to what these plans give. Every sum is moved down by what rounding may
-  // have added. Returns the largest change.
+  // One sweep of value iteration. Values rise from below those of any plan to those of these plans. Each sum
+  // is moved down by what rounding may have added. Returns the largest change.
   double renew() {
     double change = 0;
     for (std::size_t pair = 0; pair < values_.size(); ++pair) {
@@ -170,7 +170,7 @@ class CertaintyEquivalent {
   double rounding_;
   double lowest_ = 0;
   double scale_ = 0;
-  std::vector<std::size_t> first_of_;  // pairs of a region
+  std::vector<std::size_t> first_of_;  // the first pair of each region
   std::vector<double> values_;         // by pair
   std::vector<double> rewards_;
   std::vector<std::size_t> first_step_;

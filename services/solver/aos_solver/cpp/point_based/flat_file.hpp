@@ -1,4 +1,4 @@
-// A POMDP as numbers in a file: what an engine writes and the offline solver reads.
+// A POMDP as numbers in a file. An engine writes the file, and the offline solver reads it.
 //
 // The file: the text "AOSFLAT1", then little-endian
 //   u64 states, actions, observations, outcomes, sensings, likelihoods, starts, start entries; f64 discount;
@@ -77,7 +77,7 @@ inline FlatModel read_flat_model(const std::string& path) {
   return model;
 }
 
-// Throws std::runtime_error if the disk refuses.
+// Throws std::runtime_error if the file cannot be written.
 inline void write_flat_model(const std::string& path, const FlatModel& model) {
   std::ofstream file{path, std::ios::binary};
   const auto put = [&]<class Number>(const std::vector<Number>& numbers) {

@@ -1,6 +1,4 @@
-// A POMDP as numbers: what the point-based solver works on.
-//
-// A sensing is a distribution of observations; most outcomes share few of them.
+// A POMDP as numbers, for the point-based solver. A sensing is a distribution of observations that many outcomes share.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +19,13 @@ struct Likelihood {
   double probability;
 };
 
-// The robot is told at the start which of these beliefs it is in.
+// A belief in which a mission may start, and its probability. The robot is told which of the starts it is in.
 struct Start {
   double weight;
   std::vector<std::pair<std::uint32_t, double>> belief;
 };
 
-// The elements of a row in a list of rows.
+// A list of rows, each with its own number of elements.
 template <class Element>
 struct Rows {
   std::vector<std::uint64_t> first;
@@ -43,18 +41,18 @@ struct FlatModel {
   std::size_t actions = 0;
   std::size_t observations = 0;
   double discount = 0;
-  std::size_t horizon = 0;  // so many decisions are rewarded; 0: without end, with a discount below 1
+  std::size_t horizon = 0;  // how many decisions are rewarded; 0: no end, discount below 1
   std::vector<double> rewards;
-  Rows<Outcome> outcomes;  // of (state, action)
-  Rows<Likelihood> likelihoods;  // of a sensing
+  Rows<Outcome> outcomes;  // by row(state, action)
+  Rows<Likelihood> likelihoods;  // by sensing
   std::vector<Start> starts;
 
   std::size_t row(std::size_t state, std::size_t action) const { return state * actions + action; }
-  // Of all actions in a state.
+  // The outcomes of all actions in a state.
   std::span<const Outcome> outcomes_of(std::size_t state) const {
     return {outcomes.begin(row(state, 0)), outcomes.end(row(state, actions - 1))};
   }
-  // What a row's next states are worth on average, by their values.
+  // The expected value of a row's next state.
   double later_value(std::size_t row, const std::vector<double>& values) const {
     double sum = 0;
     for (const Outcome& outcome : outcomes[row]) sum += outcome.probability * values[outcome.next];

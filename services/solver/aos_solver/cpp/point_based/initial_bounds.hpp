@@ -1,6 +1,6 @@
-// Bounds to begin with: what always doing the same action gives, and what knowing more would give.
+// Initial bounds. The lower ones repeat one action; the upper ones are for a robot that knows more than it does.
 //
-// Without an end there is one layer of them; with a horizon one for every number of decisions that are left.
+// Without a horizon they have one layer; with a horizon, one for each number of decisions that are left.
 #pragma once
 
 #include <algorithm>
@@ -16,19 +16,19 @@
 
 namespace aos::point_based {
 
-// Values of a state's actions, [state * actions + action]; worthless and unreached states have 0.
+// Values of a state's actions, [state * actions + action]. Worthless and unreached states have 0.
 using ActionValues = std::vector<double>;
 
 struct TooLarge : std::length_error {
   using std::length_error::length_error;
 };
 
-// Both for so many actions, states and layers.
+// The largest number of states times actions times layers of one kind of bound.
 inline constexpr std::size_t max_layer_entries = std::size_t{1} << 25;
 
 class InitialBounds {
  public:
-  // `rounding` is relative, of the model's longest sum.
+  // `rounding` is the relative error of the model's longest sum. Throws TooLarge.
   InitialBounds(const FlatModel& model, const Regions& regions, double rounding)
       : model_(model), regions_(regions), rounding_(rounding) {
     for (std::size_t state = 0; state < model.states; ++state) {
@@ -57,16 +57,16 @@ class InitialBounds {
     }
   }
 
-  // By layer: the decisions that are left, or 0 where there is no end.
-  std::vector<ActionValues> informed;  // from above
-  std::vector<ActionValues> blind;     // from below: that action, again and again
+  // By layer: the number of decisions that are left, or 0 without a horizon.
+  std::vector<ActionValues> informed;  // upper bounds
+  std::vector<ActionValues> blind;     // lower bounds: the action is repeated
 
  private:
-  // Work for one kind of bound; large models get so many sweeps at least.
+  // The work for one kind of bound; large models get at least `min_sweeps_` sweeps.
   static constexpr double operations_ = 1e7;
   static constexpr double layer_operations_ = 4e8;
   static constexpr double min_sweeps_ = 30;
-  // It is enough when values are known to this share of the largest reward.
+  // Sweeps end when values are known to this share of the largest reward.
   static constexpr double settled_ = 1e-6;
 
   void add_layers() {
@@ -124,8 +124,8 @@ class InitialBounds {
     return values;
   }
 
-  // Values where the state is observed after the next step (fast informed bound: Hauskrecht, 2000). They begin as the fully
-  // observable values.
+  // Upper bounds for a robot that observes the state after the next step (fast informed bound: Hauskrecht,
+  // 2000). The sweeps begin with the fully observable values.
   ActionValues endless_informed_values() const {
     const std::vector<double> values = endless_mdp_values();
     ActionValues above(model_.states * model_.actions, 0.0);
@@ -154,7 +154,7 @@ class InitialBounds {
     return above;
   }
 
-  // Fully observable values.
+  // Upper bounds of the fully observable values.
   std::vector<double> endless_mdp_values() const {
     const Rows<std::uint32_t> choices = different_rows();
     std::vector<double> values = settled_values(choices);
@@ -166,7 +166,7 @@ class InitialBounds {
     return values;
   }
 
-  // Of the best of each state's rows, about: by sweeps from nothing, until all states are off by nearly the same.
+  // The approximate value of each state's best row, by sweeps until all states are off by nearly the same.
   std::vector<double> settled_values(const Rows<std::uint32_t>& choices) const {
     std::vector<double> values(model_.states, 0.0);
     double outcomes = 0;
@@ -185,9 +185,9 @@ class InitialBounds {
     return values;
   }
 
-  // Between which numbers the one lies that is to be added to the value of every state. Where one more decision by a row
-  // adds d to a state's value, and the mission goes on with probability p, values that are d / (1 - discount p) higher
-  // would stay as they are; with the highest of all rows' none rises, with the lowest of all states' best rows none falls.
+  // The range of the number that has to be added to the value of every state. If one more decision by a row adds d to a
+  // state's value and the mission goes on with probability p, values higher by d / (1 - discount p) stay as they are.
+  // With the highest of these numbers no value rises; with the lowest one of the states' best rows no value falls.
   struct Shift {
     double min = std::numeric_limits<double>::infinity();
     double max = -std::numeric_limits<double>::infinity();
@@ -221,12 +221,12 @@ class InitialBounds {
     return sum;
   }
 
-  // What so much at every decision adds up to, and a little more in size.
+  // What a reward at every decision adds up to, and a little more in size.
   double summed_up(double reward) const {
     return reward * (1 + 8 * ulp) / (1 - model_.discount * max_row_sum_ - 4 * ulp);
   }
 
-  // The rows of each of `states_`, less those that do the same as one before, as looking here and looking there.
+  // The rows of each of `states_` without repetitions: actions that only observe differently have the same row.
   Rows<std::uint32_t> different_rows() const {
     Rows<std::uint32_t> choices;
     choices.first.push_back(0);
@@ -250,7 +250,7 @@ class InitialBounds {
     return choices;
   }
 
-  // There and back over `states_`, since values run along numbers that rise or that fall. Returns the largest change.
+  // Sweeps `states_` in both directions, since values spread along their numbers. Returns the largest change.
   double sweep(std::vector<double>& values, const Rows<std::uint32_t>& choices) const {
     double change = 0;
     const auto renew = [&](std::size_t number) {
@@ -269,7 +269,7 @@ class InitialBounds {
     return change;
   }
 
-  // The value of an action that is repeated for as long as it leads nowhere else; a guess, that is put right afterwards.
+  // The value of an action that is repeated as long as it leads nowhere else. `shift_of` corrects this estimate later.
   double lasting_value(std::uint32_t state, std::size_t row, const std::vector<double>& values) const {
     double later = 0;
     double stays = 0;
@@ -285,7 +285,7 @@ class InitialBounds {
 
   struct Estimate {
     double value;
-    double error;  // of rounding, at most
+    double error;  // an upper bound of the rounding error
   };
 
   template <class ValueOf>
@@ -300,7 +300,7 @@ class InitialBounds {
     return {model_.rewards[row] + model_.discount * later, rounding_ * (std::abs(model_.rewards[row]) + size)};
   }
 
-  // What the next actions are worth after each observation; its memory is used again.
+  // The values of the next actions after each observation. The memory is used again.
   struct Gathered {
     std::vector<std::size_t> slot_of;
     std::vector<std::uint32_t> seen;
@@ -313,7 +313,7 @@ class InitialBounds {
     return value + 2 * rounding_ * (std::abs(model_.rewards[row]) + size);
   }
 
-  // The sum, and the size of what was added up.
+  // The expected value of the best next actions, and the sum of the absolute values in it.
   std::pair<double, double> informed_later(std::size_t row, const ActionValues& values, Gathered& gathered) const {
     const std::size_t actions = model_.actions;
     const auto outcomes = model_.outcomes[row];

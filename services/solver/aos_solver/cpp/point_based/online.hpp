@@ -1,6 +1,6 @@
-// SARSOP during a mission: from the belief of each decision, with all that earlier ones have found out.
+// SARSOP during a mission. The search continues from the belief of each decision and keeps what it has found out.
 //
-// The one header of this folder that the engine's templates include; what is behind it is an object file of its own.
+// Its implementation is an object file of its own, which is compiled once for all models.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,14 @@
 
 namespace aos::point_based {
 
-// What an action is worth at least and at most, and how many trials began with it.
+// The bounds of an action's value, and how many trials began with the action.
 struct ActionBounds {
   double lower = 0;
   double upper = 0;
   std::uint32_t trials = 0;
 };
 
-// A lower bound is above an upper one: a mistake in this folder, whatever the model.
+// Thrown for a lower bound above an upper one: the cause is a mistake in this folder, whatever the model.
 struct CrossedBounds : std::logic_error {
   using std::logic_error::logic_error;
 };
@@ -31,28 +31,28 @@ class OnlineSarsop {
  public:
   using IsOver = std::function<bool()>;
 
-  // Works out the first bounds. Without a horizon the discount must be below 1.
-  // Throws std::length_error where there are too many states for so long a horizon.
+  // Computes the initial bounds. Without a horizon the discount must be below 1. Throws std::length_error if
+  // there are too many states for the horizon.
   explicit OnlineSarsop(FlatModel model);
   ~OnlineSarsop();
 
-  // Forgets all that trials have found out; keeps the first bounds.
+  // Forgets what trials have found out and keeps the initial bounds.
   void start_over();
 
-  // Goes on from a belief, by state, with the whole horizon to go. Its probabilities may sum to less than 1: what is
-  // missing is worth nothing. Returns whether it is one that the model's starts can lead to.
+  // Continues from a belief, by state, with the whole horizon left. The probabilities may sum to less than 1,
+  // and the missing part is worth nothing. Returns whether the model's starts can lead to this belief.
   bool move_to(const std::vector<std::pair<std::uint32_t, double>>& belief);
 
-  // Runs trials, one at least, until `is_over()`, until so much work is done (0: no limit), or until nothing is left to
-  // find out. Returns the work: how many numbers were multiplied, of states by what they lead to or by alpha vectors.
+  // Runs at least one trial, until `is_over()`, until `max_work` is done (0: no limit), or until nothing is
+  // left to find out. Returns the work: the number of multiplications for predictions and for alpha vectors.
   std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over);
-  // The same below an action that is carried out, without a limit of the work.
+  // The same below an action that is being carried out, without a limit of the work.
   std::uint64_t improve_below(std::uint32_t action, const IsOver& is_over);
 
-  // Of all actions, of the belief moved to; discounted, of so many decisions as the horizon has.
-  // These and `bounds` hold as they stand, rounding included.
+  // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and
+  // those of `bounds` hold in spite of rounding.
   std::vector<ActionBounds> action_bounds();
-  // What the belief moved to is worth at least and at most. Throws CrossedBounds.
+  // The bounds of the value of the belief moved to. Throws CrossedBounds.
   std::pair<double, double> bounds();
 
  private:

@@ -1,9 +1,9 @@
-// How far a search looks ahead, and with which discount; and what that changes in values.
+// The horizon and the discount of a search, and how far they move values from those of the model.
 //
-// Without a discount it makes no difference when something is earned, and a free exit could be put off for ever. So
-// the search has a discount next to 1, which tells sooner from later.
-// Where a discount leaves next to nothing of what comes after a long horizon, the search has none: what it finds out
-// then serves every belief, however many decisions are left, and bounds are as wide as what comes after may be worth.
+// Without a discount the time of a reward makes no difference, and a free exit could be put off for ever. The search
+// then gets a discount slightly below 1, so that earlier rewards are worth more. If the discount leaves next to nothing
+// of what comes after a long horizon, the search has no horizon. Its results then serve every belief, however many
+// decisions are left, and bounds are widened by what may come after the horizon.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace aos::point_based {
 
 class Outlook {
  public:
-  // Sets the model's horizon and discount to those to search with.
+  // Sets the model's horizon and discount to those of the search.
   explicit Outlook(FlatModel& model) {
     if (model.horizon == 0) return;
     left_behind_ = std::pow(model.discount, static_cast<double>(model.horizon)) * (1 + 1e-9);
@@ -32,17 +32,17 @@ class Outlook {
     model.discount = 1 - loss;
   }
 
-  // By so much values as asked for may be above and below those of the search, where no state is worth more than `max_value`
-  // and some policy never gives less than `min_value` (at most 0).
+  // How far the model's values may be above and below those of the search. No state is worth more than
+  // `max_value`, and some policy never gives less than `min_value`, which is at most 0.
   double above(double min_value) const { return above_ - left_behind_ * min_value; }
   double below(double max_value) const { return below_ + left_behind_ * max_value; }
 
  private:
   static constexpr double next_to_nothing_ = 0.01;
-  static constexpr double loss_of_all_ = 1e-7;  // by which the last reward counts less
+  static constexpr double loss_of_all_ = 1e-7;  // the share that the last reward loses
 
-  // A reward after t decisions loses at most `share` of itself t times. Summed over t these are values of what is left of
-  // a mission after one decision, two, and so on: no more than the most that any state is worth then.
+  // A reward after t decisions loses its `share` at most t times. The sum of the losses is `share` times the values of
+  // what is left after one decision, after two, and so on. Each value is at most that of the best state then.
   void add_errors(const FlatModel& model, double share) {
     std::vector<double> best(model.states, 0.0), worst(model.states, 0.0), now(model.states);
     for (std::size_t left = 1; left < model.horizon; ++left) {
@@ -54,8 +54,8 @@ class Outlook {
     below_ *= rounded_up;
   }
 
-  // One more decision for the best, or the worst, fully observable value of each state. Returns the furthest value on that
-  // side of 0.
+  // Extends the best, or the worst, fully observable value of each state by one decision. Returns the largest
+  // size of a value on that side of 0.
   template <bool is_best>
   static double renew(const FlatModel& model, std::vector<double>& values, std::vector<double>& now) {
     double furthest = 0;
@@ -73,7 +73,7 @@ class Outlook {
 
   double above_ = 0;
   double below_ = 0;
-  double left_behind_ = 0;  // by the discount, of what comes after the horizon
+  double left_behind_ = 0;  // the share that the discount leaves of what comes after the horizon
 };
 
 }  // namespace aos::point_based

@@ -13,13 +13,13 @@
 
 namespace aos::point_based {
 
-// Memory for one belief, used again for the next.
+// Computes one posterior at a time. The memory is used again for the next one.
 class Posterior {
  public:
-  // For regions of up to so many states.
+  // Makes room for regions of up to `states` states.
   void reserve(std::size_t states) { dense_.assign(states, 0.0); }
 
-  // What an action leads to from a belief. Returns how many numbers were multiplied.
+  // Predicts what an action leads to from a belief. Returns the number of multiplications.
   std::uint64_t predict(const Belief& belief, const Move& move) {
     std::uint64_t work = 0;
     predicted_.assign(move.targets, 0.0);
@@ -31,7 +31,7 @@ class Posterior {
     return work;
   }
 
-  // The weights after an observation. Returns their sum, its probability.
+  // Computes the weights after an observation. Returns their sum, which is the observation's probability.
   double observe(const ObservationBranch& branch) {
     belief_.states.clear();
     belief_.probabilities.clear();
@@ -56,7 +56,7 @@ class Posterior {
     return belief_;
   }
 
-  // How many times the weights hold a belief.
+  // The largest factor such that the weights hold this factor times the belief.
   double share_of(const Belief& belief) const {
     double share = std::numeric_limits<double>::infinity();
     std::size_t place = 0;
@@ -69,7 +69,7 @@ class Posterior {
   }
 
  private:
-  // Where each successor is in a state of its own, in their order.
+  // For branches whose successors are in different states, in ascending order.
   double listed(const ObservationBranch& branch) {
     double total = 0;
     for (const ObservationBranch::Successor& successor : branch.successors) {

@@ -1,10 +1,10 @@
-// The states parted by what the robot always knows.
+// The states in regions, by what the robot always knows.
 //
-// A region holds all states of every belief that touches it: whoever is in a region knows it. Regions are found, not
-// declared: states that one belief can hold together are put together, from the start over every action and
-// observation. Where a robot sees its own position there is a region for each position, and beliefs and alpha vectors
-// have the length of a region instead of the whole (the idea of mixed observability: Ong, Png, Hsu and Lee, 2010).
-// States that are worth nothing whatever is done (the mission has ended) are in no region: beliefs need not sum to 1.
+// Every belief lies within one region, so a robot always knows its region. Regions are found and not declared: states
+// that one belief can hold together are united, from the start on over every action and observation. If a robot sees
+// its own position, there is a region for each position. Beliefs and alpha vectors then have the length of a region and
+// not of the whole (the idea of mixed observability: Ong, Png, Hsu and Lee, 2010). States that are worth nothing under
+// every policy (the mission has ended) are in no region: beliefs need not sum to 1.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace aos::point_based {
 
 inline constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 
-// One thing that may be observed after an action in a region, and where it leads.
+// An observation that may follow an action in a region, and the states in which it may be made.
 struct ObservationBranch {
   struct Successor {
     std::uint32_t target;
@@ -31,7 +31,7 @@ struct ObservationBranch {
   };
   std::uint32_t observation;
   std::uint32_t region;
-  bool is_ascending = true;  // each successor is in a state with a higher number than the one before
+  bool is_ascending = true;  // the successors' states have ascending numbers
   std::vector<Successor> successors;
 };
 
@@ -42,7 +42,7 @@ struct Move {
     double probability;
   };
   std::vector<double> rewards;  // by local state
-  Rows<Flow> flows;             // of a local state
+  Rows<Flow> flows;             // by local state
   std::size_t targets = 0;
   std::vector<ObservationBranch> observation_branches;
 };
@@ -69,7 +69,7 @@ class Regions {
     for (Region& region : all) add_moves(region);
   }
 
-  // Whether nothing can be earned from a state on.
+  // Whether nothing can be earned or lost from a state on.
   bool is_worthless(std::uint32_t state) const { return is_worthless_[state]; }
 
   std::vector<Region> all;
@@ -97,12 +97,12 @@ class Regions {
     return worthless;
   }
 
-  // The number of a key, or `number`, which it has from now on. No two keys have the same hash.
+  // The number of a key; a new key gets `number`. Different keys have different hashes.
   static std::uint32_t number_of(NumberIndex& index, std::uint64_t key, std::uint32_t number) {
     return index.find_or_add(mixed(0, key), number, [](std::uint32_t) { return true; });
   }
 
-  // In the order of the decisions that it takes to get there.
+  // Lists the reached states in the order of the decisions that it takes to get there.
   void find_reached() {
     is_reached_.assign(model_.states, false);
     const auto reach = [&](std::uint32_t state) {
@@ -141,8 +141,8 @@ class Regions {
     }
   }
 
-  // Once over all outcomes; returns whether anything was united. States that are alone have a table of their own, since
-  // where the robot sees everything there would be as many entries as outcomes.
+  // Passes once over all outcomes. Returns whether any states were united. A state that is alone has a table of its
+  // own: where the robot sees everything, a common table would have as many entries as there are outcomes.
   bool unite_successors() {
     bool has_united = false;
     NumberIndex of_regions;  // where an observation after an action leads
@@ -219,8 +219,8 @@ class Regions {
   }
 
   const FlatModel& model_;
-  std::vector<std::uint32_t> parent_;  // of a state in the forest of what is united
-  std::vector<bool> is_united_;        // with any other
+  std::vector<std::uint32_t> parent_;  // of a state, in the forest of united states
+  std::vector<bool> is_united_;        // with another state
   std::vector<bool> is_worthless_;
   std::vector<bool> is_reached_;
   std::vector<std::uint32_t> reached_;

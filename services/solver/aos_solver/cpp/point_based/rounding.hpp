@@ -1,7 +1,7 @@
-// How far a number that was worked out may be from the number that was meant.
+// How far a computed number may be from the exact one.
 //
-// A sum of n products is off by at most n times half an ulp of the sum of their sizes. Bounds are moved outwards by
-// twice that wherever they are worked out, so that they hold as they stand.
+// A sum of n products is off by at most n times half an ulp of the sum of their absolute values. Each
+// computed bound is moved outwards by twice that, so that it holds in spite of rounding.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace aos::point_based {
 
 inline constexpr double ulp = 0x1p-52;
 
-// Relative to the sizes in the longest sum that a model asks for, where no sum has more terms than `longest`.
+// The error of a sum of at most `longest` terms, relative to the sum of their absolute values.
 inline double rounding_of(std::size_t longest) { return (static_cast<double>(longest) + 16) * ulp; }
 
-// The most entries that any row has.
+// The number of elements of the longest row.
 template <class Element>
 std::size_t longest_row(const Rows<Element>& rows) {
   std::size_t longest = 0;
@@ -27,8 +27,8 @@ std::size_t longest_row(const Rows<Element>& rows) {
   return longest;
 }
 
-// For how many decisions rewards are added up, at most: a discounted mission without end is worth no more than one of
-// so many decisions.
+// Over how many decisions rewards add up, at most. A discounted mission without end is worth no more than an
+// undiscounted one of this many decisions.
 inline double lasting_decisions(const FlatModel& model) {
   if (model.horizon == 0) return 1 / (1 - model.discount);
   return std::min(static_cast<double>(model.horizon), 1 / std::max(1 - model.discount, ulp));

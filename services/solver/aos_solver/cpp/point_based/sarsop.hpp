@@ -1,12 +1,12 @@
 // Point-based value iteration near the beliefs that a good policy reaches (SARSOP: Kurniawati, Hsu and Lee, 2008).
 //
-// A trial follows the action with the highest upper bound and the observation that matters most for the gap at the
-// root, until nothing more can be learnt for the root; then both bounds are backed up along the way. Upper bounds that are
-// far too high say little about what is worth improving, and the lower bound is what is carried out. So of three trials one
-// follows the highest middle of both bounds, and one the highest lower bound, with a look at all actions. The first trials
-// from a belief do the same action again and again before that: what lies behind a long detour is hardly found by
-// bounds. Actions whose upper bound is below the belief's lower bound are dropped, and alpha vectors that are best at no
-// remaining belief.
+// A trial follows the action with the highest upper bound and the observation that matters most for the gap
+// at the root. It ends when nothing more can be learnt for the root, and both bounds are backed up along its
+// path. Upper bounds that are far too high say little about what is worth improving, and the policy follows
+// the lower bound. So one trial of three follows the highest middle of both bounds, and one opens all actions
+// and follows the highest lower bound. Before these, the first trials from a belief repeat one action each:
+// bounds hardly find what lies behind a long detour. Actions whose upper bound is below the belief's lower
+// bound are dropped, and so are alpha vectors that are best at no remaining belief.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@
 
 namespace aos::point_based {
 
-// Bounds that are reported.
+// Both bounds for a report. Throws CrossedBounds.
 inline std::pair<double, double> checked(double lower, double upper) {
   if (lower <= upper) return {lower, upper};
   throw CrossedBounds("the lower bound " + std::to_string(lower) + " is above the upper bound " + std::to_string(upper));
@@ -36,9 +36,9 @@ class Sarsop {
   Sarsop(const FlatModel& model, const Regions& regions) : model_(model), regions_(regions), graph_(model, regions) {
     for (const Start& start : model.starts) add_start(start);
   }
-  Sarsop(const Sarsop&) = delete;  // Its parts refer to one another.
+  Sarsop(const Sarsop&) = delete;  // the parts refer to one another
 
-  // What a policy is sure to give from the start, and what none can give more than; discounted.
+  // The bounds of the value of the start, discounted. The lower one is what the best known policy gives at least.
   double lower() const { return over_roots(&Node::lower, -1); }
   double upper() const { return over_roots(&Node::upper, 1); }
   const BeliefGraph& graph() const { return graph_; }
@@ -49,7 +49,7 @@ class Sarsop {
     return count;
   }
 
-  // Forgets all that trials have found out.
+  // Forgets what trials have found out.
   void start_over() {
     forget_roots();
     graph_.start_over();
@@ -57,7 +57,7 @@ class Sarsop {
     trial_.start_over();
   }
 
-  // Goes on from another belief; all that is known of other beliefs is kept, of alpha vectors only if there is no room.
+  // Continues from another belief. Beliefs that are known are kept; beyond `max_bytes`, only useful alpha vectors are.
   void move_to(const Start& start, std::size_t max_bytes) {
     if (graph_.bytes() > max_bytes) {
       prune();
@@ -67,7 +67,7 @@ class Sarsop {
     add_start(start);
   }
 
-  // One trial, with backups; it is cut short after `is_over()`. Returns whether there was anything to find out.
+  // Runs one trial with its backups; `is_over()` cuts it short. Returns whether there may be more to find out.
   template <class IsOver>
   bool improve(double precision, IsOver&& is_over) {
     const Root* widest = nullptr;
@@ -88,7 +88,7 @@ class Sarsop {
     return next != nullptr && improve_from(next->node, precision, is_over);
   }
 
-  // Of all actions at the only start.
+  // The bounds of all actions at the only start.
   std::vector<ActionBounds> action_bounds() {
     std::vector<ActionBounds> bounds(model_.actions);
     if (roots_.empty()) return bounds;
@@ -101,7 +101,7 @@ class Sarsop {
     return bounds;
   }
 
-  // Gives up alpha vectors that are the best at no belief that the remaining actions reach.
+  // Gives up the alpha vectors that are best at no belief that the remaining actions reach.
   void prune() {
     backups_.vectors_added = 0;
     std::vector<std::vector<bool>> is_best(regions_.all.size());
@@ -168,7 +168,7 @@ class Sarsop {
     roots_.push_back({share, graph_.node_of(region, left, belief)});
   }
 
-  // Whether a trial has found anything out, or one of the other kind may.
+  // Runs one trial. Returns false after three in a row, one by each rule, that learnt nothing.
   template <class IsOver>
   bool improve_from(std::uint32_t number, double precision, IsOver&& is_over) {
     const bool persists = persisted_ < model_.actions;
@@ -181,7 +181,7 @@ class Sarsop {
     return idle_ < 3;
   }
 
-  // Outwards, by more than rounding can have moved it inwards.
+  // A bound, moved outwards by more than rounding can have moved it inwards.
   double moved(double value, double direction) const { return value + direction * 8 * graph_.rounding() * std::abs(value); }
 
   double over_roots(double Node::*bound, double direction) const {
@@ -200,7 +200,7 @@ class Sarsop {
     return root.weight * (node.upper - node.lower);
   }
 
-  // Of the only start; of what was dropped there as well. Open.
+  // The open branch of an action at the only start, also of one that was dropped there.
   Branch& root_branch(std::uint32_t action) {
     Node& node = graph_[roots_.front().node];
     graph_.expand(node);
@@ -222,8 +222,8 @@ class Sarsop {
   Backups backups_{model_, regions_, graph_};
   Trial trial_{model_, graph_, backups_};
   std::vector<Root> roots_;
-  std::uint32_t persisted_ = 0;  // actions, from the roots of now
-  int idle_ = 0;                 // trials one after another that have learnt nothing
+  std::uint32_t persisted_ = 0;  // how many actions were repeated from the current roots
+  int idle_ = 0;                 // how many trials in a row have learnt nothing
   std::deque<Branch> dropped_at_root_;
 };
 

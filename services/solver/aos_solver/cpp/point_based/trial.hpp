@@ -1,4 +1,4 @@
-// Trials: a way from a belief into the graph, along which it is found out where actions lead.
+// Trials: paths from a belief into the graph, along which actions are opened.
 #pragma once
 
 #include <algorithm>
@@ -12,21 +12,21 @@
 
 namespace aos::point_based {
 
-// One after another. Each returns whether it has found out where an action leads, and leaves its path.
+// Runs one trial at a time. A trial returns whether it has opened an action, and it leaves its path.
 class Trial {
  public:
   Trial(const FlatModel& model, BeliefGraph& graph, Backups& backups)
       : model_(model), graph_(graph), backups_(backups), begun_(model.actions) {}
 
-  // The beliefs on the way, from its begin on.
+  // The nodes of the last trial, from its start on.
   const std::vector<std::uint32_t>& path() const { return path_; }
   // By action: how many sampled trials began with it.
   const std::vector<std::uint32_t>& begun() const { return begun_; }
   void forget_begun() { begun_.assign(model_.actions, 0); }
-  // From now on as if no trial had been sampled.
+  // Begins again with the first of the rules.
   void start_over() { sampled_ = 0; }
 
-  // The same action for as long as it may be the best and leads on, with the likeliest observation each time.
+  // Repeats an action, with the likeliest observation each time, as long as it may be the best and leads on.
   template <class IsOver>
   bool persist(std::uint32_t number, std::uint32_t action, IsOver&& is_over) {
     begin();
@@ -50,7 +50,7 @@ class Trial {
     return has_learnt_;
   }
 
-  // By three rules in turn, towards the gap that matters most at the root.
+  // Follows one of three rules in turn, towards the gap that matters most at the root.
   template <class IsOver>
   bool sample(std::uint32_t number, double precision, IsOver&& is_over) {
     begin();
@@ -92,7 +92,7 @@ class Trial {
     return has_learnt_;
   }
 
-  // The successor with the most gap beyond what is allowed there.
+  // The successor whose gap exceeds `allowed` by most, weighted by its probability; null if there is none.
   const Successor* widest_of(const std::vector<Successor>& successors, double allowed) {
     const Successor* widest = nullptr;
     double widest_excess = 0;
@@ -107,10 +107,10 @@ class Trial {
   }
 
  private:
-  // By which bound a trial goes.
+  // The bound by which a trial chooses actions.
   enum class Follows { middle, upper, lower };
 
-  static constexpr double share_of_gap_ = 0.1;  // of the root's, that a trial tries to come below
+  static constexpr double share_of_gap_ = 0.1;  // a trial aims below this share of the root's gap
   static constexpr std::size_t longest_trial_ = 1000;
   static constexpr std::size_t longest_detour_ = 30;
 
@@ -119,8 +119,8 @@ class Trial {
     has_learnt_ = false;
   }
 
-  // Among the actions of which it is known where they lead; of the one with the highest upper bound it always is. None if
-  // `is_over()` before. Refreshes the bounds of these.
+  // The best of the open branches by the rule. The branch with the highest upper bound is opened if it is
+  // closed. Refreshes the bounds of open branches. Null if `is_over()` comes first.
   template <class IsOver>
   const Branch* followed_branch(Node& node, Follows follows, IsOver&& is_over) {
     for (Branch& branch : node.branches) {

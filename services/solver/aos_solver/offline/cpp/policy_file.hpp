@@ -1,5 +1,5 @@
-// The alpha vectors that were found, as a file: a line of JSON with the size of each region, and what alpha_vectors.py
-// describes.
+// The file of the alpha vectors that a solver found. A line of JSON tells the size of each region; the rest
+// is as alpha_vectors.py describes.
 #pragma once
 
 #include <cstdint>

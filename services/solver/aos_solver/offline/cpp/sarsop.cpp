@@ -1,7 +1,7 @@
-// The offline solver: a flat model in, alpha vectors out, and on the way a line of JSON for every progress.
+// The offline solver. It reads a flat model, writes alpha vectors, and prints its progress as lines of JSON.
 //
-// It ends when the bounds are as near as asked for, when its time or memory is used up, or when anything comes on
-// standard input or that is closed, or when trials find nothing more; what is written then is the best so far.
+// The solver ends when the bounds are as near as asked for, when its time or memory is used up, when trials find
+// nothing more, or when anything comes on standard input or that is closed. It then writes the best vectors so far.
 #include <poll.h>
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ using namespace aos::point_based;
 
 constexpr int crossed_status = 3;
 
-// Of this process, so that a busy machine changes nothing.
+// The processor time of this process, so that a busy machine changes nothing.
 double cpu_seconds() { return std::chrono::duration<double>(aos::processor_time()).count(); }
 
 bool is_told_to_stop() {
@@ -50,7 +50,7 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
   for (;;) {
     if (const double now = cpu_seconds(); now >= next_line) {
       report(solver, "");
-      // Often at first, when most happens.
+      // Lines come often at first, when most happens.
       next_line = now + std::clamp(0.25 * now, 0.005, 2.0);
     }
     if (solver.upper() - solver.lower() <= precision) return "precision";
