@@ -1,8 +1,8 @@
-// The best action of a history, whose value is the history's.
+// The best action of a history, whose value is the value of the history.
 //
-// POMCP's paper backs up the mean of all simulations, which exploring ones pull down. Here a history is worth what its best
-// action is worth (Coulom, 2006), among those that were tried often enough for their value to be believed. The decision is
-// made in the same way.
+// POMCP's paper backs up the mean of all simulations, which exploring ones pull down. Here a history has the
+// value of its best action (Coulom, 2006). Only actions with enough visits for a reliable value count. The
+// decision at the root is made in the same way.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace aos {
 
-inline constexpr std::uint32_t settled_visits = 16;     // of a history before its best action is its value
+inline constexpr std::uint32_t settled_visits = 16;     // of a history, before its best action gives its value
 inline constexpr std::uint32_t well_visited_share = 4;  // at least 1/4 of the most visited action's visits
 
-// Whether an action was simulated often enough, beside the most visited one, for its value to be believed.
+// Whether an action has enough visits, beside the most visited one, for its value to be reliable.
 inline bool is_well_visited(std::uint32_t n, std::uint32_t max_visits) {
   return static_cast<std::uint64_t>(n) * well_visited_share >= max_visits && n > 0;
 }
@@ -24,7 +24,7 @@ inline void take_better(HistoryNode& history, const ActionNode* actions, std::ui
   if (is_better && is_well_visited(actions[a].n, history.max_visits)) history.best = a;
 }
 
-// After a visit of one of the history's `count` actions.
+// Renews the best action after a visit of one of the history's `count` actions.
 inline void renew_best(HistoryNode& history, const ActionNode* actions, std::uint32_t count, std::uint32_t visited,
                        bool has_fallen) {
   const bool is_best = visited == history.best;

@@ -1,4 +1,4 @@
-// What a planner may spend on a decision, and what it says about each action.
+// What a planner may spend on a decision, and its estimates of the actions.
 #pragma once
 
 #include <cmath>
@@ -12,18 +12,18 @@ namespace aos {
 inline constexpr std::uint32_t no_node = 0xffffffffu;
 inline constexpr int max_search_threads = 32;
 
-// A simulation is one way down from the belief of up to `horizon` steps of the model. POMCP counts its descents with their
-// rollouts; DESPOT counts the steps of scenarios, of default policies and of rollouts, and divides them by the horizon.
+// A simulation is one path from the belief of up to `horizon` steps of the model. POMCP counts its descents with their
+// rollouts. DESPOT counts the steps of scenarios, default policies and rollouts, and divides them by the horizon.
 struct Budget {
   std::uint64_t simulations = 0;  // 0: no limit
   double seconds = 0;             // 0: no limit
   int threads = 1;                // 1 to `max_search_threads`
 };
 
-// Actions that a decision may not take, since nobody could carry them out now. Later decisions may.
+// Actions that a decision may not take, since they cannot be carried out now. Later decisions may take them.
 using BarredActions = std::set<std::size_t>;
 
-// An action's value, from how many simulations (0: unknown), the standard error of their mean, and what it earns at once.
+// An action's value, its simulations (0: unknown), the standard error of the value, and the immediate reward.
 struct ActionEstimate {
   double q = 0;
   std::uint32_t n = 0;
@@ -31,13 +31,13 @@ struct ActionEstimate {
   double reward = 0;
 };
 
-// The action with the highest value of those that count. Of actions that cannot be told apart it is the one that earns most
-// at once: the value of waiting is that of the best of many later choices, so it is rather estimated too high, and what is
-// as good later would be put off for ever.
+// The action with the highest value of those that count. Of actions that are as good as this one, it is the
+// one with the highest immediate reward. The value of waiting is that of the best of many later choices, and
+// so it tends to be estimated too high. Without this rule, what is as good later would be put off for ever.
 //
-// Two values cannot be told apart where their difference is small in two ways. It is no more than the best of `horizon` values
-// of the same error exceeds their mean, sqrt(2 ln horizon) errors. And it is no more than a delay by one of `horizon` steps
-// can be worth.
+// An action is as good if its value is less by a small difference, in two senses. The difference is at most
+// sqrt(2 ln horizon) errors, by which the best of `horizon` values of the same error exceeds their mean. And
+// the difference is at most what a delay by one of `horizon` steps can be worth.
 template <class Counts>
 int preferred_action(const std::vector<ActionEstimate>& estimates, int horizon, Counts&& counts) {
   const ActionEstimate* best = nullptr;

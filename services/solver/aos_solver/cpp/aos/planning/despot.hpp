@@ -1,15 +1,15 @@
-// Anytime regularised DESPOT (Ye, Somani, Hsu and Lee, 2017): heuristic search in a sparse tree of the histories that a
-// fixed number of scenarios lead to.
+// Anytime regularised DESPOT (Ye, Somani, Hsu and Lee, 2017): heuristic search in a sparse tree of the
+// histories that a fixed number of scenarios lead to.
 //
-// Each trial goes down from the root, by the action with the highest upper bound and the observation with the largest gap
-// between the bounds in excess of what is asked for, until nothing is left to gain; the new leaf's bounds are backed up.
-// What an action is worth is its lower bound: what the best policy in the tree so far earns in the scenarios, less a
-// penalty for each of its decisions, which keeps it from fitting their luck.
+// A trial goes down from the root, by the action with the highest upper bound and the observation whose gap exceeds
+// most what is allowed there. It ends where nothing is left to gain, and the new leaf's bounds are backed up. The value
+// of an action is its lower bound: what the best policy in the tree earns in the scenarios, less a penalty for each
+// decision. The penalty keeps a policy from fitting the luck of the scenarios.
 //
-// What the system chooses by itself: the bounds and the default policy (scenarios.hpp), the number of scenarios by the
-// budget, and the penalty by the spread of the scenarios' returns: a decision has to be worth a deviation of one scenario.
+// The bounds and the default policies are in scenarios.hpp. The number of scenarios follows from the budget. The
+// penalty follows from the spread of the scenarios' returns: a decision has to be worth a deviation of one scenario.
 //
-// Bounds of a node are sums over its scenarios, divided by the number of all, and discounted from the root on.
+// A node's bounds are sums over its scenarios, divided by the number of all and discounted from the root.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ namespace aos {
 inline constexpr std::size_t max_scenarios = 500;
 inline constexpr std::size_t min_scenarios = 30;
 inline constexpr double share_of_first_look = 0.2;  // of the budget, for all actions at the root
-inline constexpr double gap_share = 0.95;           // of the root's gap, that a node's share of it may keep
+inline constexpr double gap_share = 0.95;           // of its part of the root's gap, which a node may keep
 inline constexpr double penalty_in_deviations = 1;
 inline constexpr std::size_t max_scenario_bytes = std::size_t{512} << 20;
 inline constexpr std::size_t max_node_bytes = std::size_t{128} << 20;
@@ -53,7 +53,7 @@ class Despot {
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {
     using Seconds = std::chrono::duration<double>;
-    // Up to some seconds for the first decision, which no budget counts, and next to nothing later.
+    // The first decision may take some seconds here, which no budget counts. Later ones take next to nothing.
     evaluation_.prepare(belief, horizon);
     budget_ = budget;
     latest_ = budget.seconds > 0
@@ -73,8 +73,8 @@ class Despot {
     return simulations();
   }
 
-  // For each action; values are over the whole belief, so that its ended part counts as nothing to gain. The standard
-  // error is what follows from the number of scenarios.
+  // An estimate for each action. Values are over the whole belief, whose ended part counts as 0. The standard
+  // errors follow from the number of scenarios.
   std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
     std::vector<ActionEstimate> result(action_count());
     if (nodes_.size() == 0 || nodes_[0].first_action == no_node) return result;
@@ -119,7 +119,7 @@ class Despot {
 
   // --- the root --------------------------------------------------------------------------------------
 
-  // Returns false where there is nothing to decide.
+  // Makes the root. Returns false if there is nothing to decide.
   bool plant(const Belief<Model>& belief, Sampler& random) {
     const double running = belief.probability_of(Ending::running);
     if (running <= 0) return false;
@@ -139,7 +139,7 @@ class Despot {
     return true;
   }
 
-  // About `count` of them: states that have ended need no decision.
+  // Draws about `count` scenarios. States that have ended need no decision and are left out.
   void draw_scenarios(const Belief<Model>& belief, std::size_t count, double running, Sampler& random) {
     outcomes_.clear();
     draw_evenly<Model>(belief.particles(), static_cast<std::size_t>(std::ceil(static_cast<double>(count) / running)), random,
@@ -151,9 +151,9 @@ class Despot {
     scenario_count_ = outcomes_.size();
   }
 
-  // By how long it took to evaluate the fewest, or how many steps.
+  // How many scenarios the budget allows, by the time or the steps that the fewest scenarios took.
   std::size_t affordable_scenarios(PlanningClock::duration spent) const {
-    double share = 1;  // of the most
+    double share = 1;  // of max_scenarios
     const auto affordable_share = [&](double budget, double spent_on_fewest) {
       return share_of_first_look * budget * min_scenarios / (spent_on_fewest * action_count() * max_evaluated);
     };
@@ -170,7 +170,7 @@ class Despot {
 
   // --- the tree --------------------------------------------------------------------------------------
 
-  // A node for the outcomes from `first` to `last`.
+  // Adds a node for the outcomes from `first` to `last`.
   std::uint32_t add_node(std::size_t first, std::size_t last, int depth, std::uint32_t parent,
                          const std::vector<ScenarioBounds>& bounds) {
     ScenarioBounds sum;
@@ -188,7 +188,7 @@ class Despot {
   }
   double weight_at(int depth) const { return std::pow(Model::discount, depth) / static_cast<double>(scenario_count_); }
 
-  // Adds all actions of a node and their children; returns false where there is no room or no time.
+  // Adds all actions of a node and their children. Returns false without the memory or the time for them.
   bool expand(std::uint32_t number) {
     const std::size_t max_new = action_count() * nodes_[number].scenarios;
     const bool has_room = has_room_for(scenarios_, max_new) && has_room_for(nodes_, max_new);
@@ -247,7 +247,7 @@ class Despot {
     }
   }
 
-  // The node's bounds from those of its actions.
+  // Computes the node's bounds from those of its actions.
   void update(std::uint32_t number) {
     Node& node = nodes_[number];
     double lower = node.default_lower;
@@ -265,7 +265,7 @@ class Despot {
 
   // --- trials ----------------------------------------------------------------------------------------
 
-  // One trial. Returns false where the bounds have met, or nothing can be added any more.
+  // Runs one trial. Returns false once the bounds have met or nothing can be added.
   bool explore() {
     if (nodes_[0].first_action == no_node || nodes_[0].upper - nodes_[0].lower <= 1e-9) return false;
     std::uint32_t number = 0;
@@ -294,7 +294,7 @@ class Despot {
     return gap(number) - gap_share * share * gap(0);
   }
 
-  // By the action with the highest upper bound, the observation with the largest excess.
+  // The child by the action with the highest upper bound and the observation with the largest excess.
   std::uint32_t promising_child(std::uint32_t number) {
     const Node& node = nodes_[number];
     std::uint32_t best = no_node;
@@ -315,7 +315,7 @@ class Despot {
     return chosen;
   }
 
-  // Whether even with the upper bound an ancestor would not gain more than the penalties of the decisions down to here.
+  // Whether an ancestor's upper bound promises no more than the penalties of the decisions down to here.
   bool is_blocked(std::uint32_t number) const {
     std::uint32_t ancestor = number;
     for (int decisions = 1; nodes_[ancestor].parent != no_node; ++decisions) {
@@ -346,14 +346,14 @@ class Despot {
   BarredActions barred_;
   std::uint64_t steps_ = 0;  // of scenarios
   std::size_t scenario_count_ = 0;
-  double origin_ = 0;  // what values are counted from
+  double origin_ = 0;  // the value that all others are relative to
   double penalty_ = 0;
   std::vector<Node> nodes_;
   std::vector<ActionNode> actions_;
   std::vector<Scenario<Model>> scenarios_;
   std::vector<Observed<Model>> outcomes_;  // of the action that is being tried
   std::vector<double> deviations_;  // standard errors of the root's actions that were tried
-  std::vector<double> rewards_;     // what these earn at once, on average
+  std::vector<double> rewards_;     // mean immediate rewards of these actions
 };
 
 }  // namespace aos

@@ -1,4 +1,4 @@
-// The exact values of all actions with the horizon's decisions to go, where working them out fits the budget.
+// The exact values of all actions over the whole horizon, if computing them fits the budget.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ class ExactSearch {
  public:
   explicit ExactSearch(const StateSpace<Model>& space) : space_(space) {}
 
-  // Tries it for a share of the budget. Returns whether it was done; a try that fails puts off the next ones.
+  // Tries to compute the values with a share of the budget. A failure returns false and puts off the next tries.
   bool search(const Belief<Model>& belief, Budget budget, int horizon) {
     if (put_off_ > 0) {
       --put_off_;
@@ -51,7 +51,7 @@ class ExactSearch {
     }
     return best == nullptr ? 0 : static_cast<int>(best - values_.data());
   }
-  // Another mission begins, whose tries do not depend on those of others.
+  // Begins another mission, whose tries do not depend on those of earlier ones.
   void start_over() { put_off_ = failures_ = 0; }
 
  private:
@@ -76,7 +76,7 @@ class ExactSearch {
   const StateSpace<Model>& space_;
   std::vector<ExactValue> values_;  // by action
   std::uint64_t simulations_ = 0;
-  int put_off_ = 0;  // decisions
+  int put_off_ = 0;  // how many decisions make no try
   int failures_ = 0;
 };
 

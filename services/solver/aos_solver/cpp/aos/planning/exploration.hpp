@@ -1,9 +1,9 @@
 // How much a search explores: the bonus of an action in its upper confidence bound.
 //
-// POMCP's paper adds c * sqrt(log(N) / n), with one constant for all actions. Here c is the spread of the action's own
-// returns: immediate rewards say little about it, and a constant that is too small is the commonest way for POMCP to fail.
-// The bonus falls polynomially and not logarithmically, as values need that drift while the tree below them grows (Shah, Xie
-// and Xu, 2020).
+// POMCP's paper adds c * sqrt(log(N) / n), with one constant c for all actions. A constant that is too small
+// is the commonest way for POMCP to fail, and immediate rewards say little about the right one. So c is the
+// spread of the action's own returns here. The bonus is polynomial and not logarithmic, since values drift
+// while the tree below them grows (Shah, Xie and Xu, 2020).
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@
 
 namespace aos {
 
-inline constexpr double prior_visits = 4;   // what a spread seen elsewhere counts for, in an action's own
-inline constexpr double even_share = 0.1;   // of the exploration, that does not follow the rollout policy
-inline constexpr double usual_share = 0.9;  // of an action that rollouts prefer no less than others, but for rounding
+inline constexpr double prior_visits = 4;   // of a spread that was seen elsewhere
+inline constexpr double even_share = 0.1;   // of the exploration, independent of the rollout policy
+inline constexpr double usual_share = 0.9;  // an even share, less a margin for rounding
 
-// Of the actions of one history. A spread is the action's own, and as if `prior_visits` more had the spread of all actions
-// there, which is filled up with the root's in the same way.
+// The bonuses of one history's actions. The spread of an action is that of its own returns and of `prior_visits`
+// returns with the history's spread. The history's spread is filled up with the root's in the same way.
 class ExplorationBonus {
  public:
   ExplorationBonus(const HistoryNode& history, double root_spread)
@@ -47,7 +47,7 @@ class RootSpread {
     if (++simulations_ % renewal != 0 && simulations_ != settled_visits) return;
     variance_ = best.n >= settled_visits ? best.squares / best.n : squares_ / static_cast<double>(simulations_);
   }
-  // Ends it.
+  // Ends a simulation by its return.
   void add(double seen) {
     const double deviation = seen - mean_;
     mean_ += deviation / static_cast<double>(simulations_);
@@ -65,9 +65,9 @@ class RootSpread {
   double variance_ = 0;
 };
 
-// Where rollouts value new histories, the actions that a rollout would take have most of the exploration: the others are not
-// to use up the few visits of a history. POMCP's paper gives them visits and values that the document's author would have to
-// know.
+// If rollouts value new histories, the actions that a rollout would take get most of the exploration. The
+// other actions must not use up the few visits of a history. POMCP's paper begins with visits and values of
+// actions, which the document's author would have to know.
 inline void share_exploration(ActionNode* actions, const std::vector<double>& rollout_odds) {
   const auto count = static_cast<double>(rollout_odds.size());
   for (std::size_t a = 0; a < rollout_odds.size(); ++a) {

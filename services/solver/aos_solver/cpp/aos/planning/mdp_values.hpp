@@ -1,8 +1,8 @@
-// The fully observable (MDP) value of a state, for models of up to some hundred thousand states: what planners count
-// values from, an upper bound of them, and the actions that DESPOT's default policy prefers.
+// The fully observable (MDP) values of states, for models of up to some hundred thousand states. Planners use
+// them as an origin of values and as upper bounds. DESPOT's default policy chooses actions by them.
 //
-// Values are of the underlying MDP by value iteration, for each number of decisions to go until they no longer change,
-// or only for the most where there is no room.
+// Value iteration gives a layer for each number of decisions to go, until the values no longer change. If
+// there is no room for all layers, only the last one is kept.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +28,8 @@ class MdpValues {
 
   explicit MdpValues(StateSpace<Model>& space) : space_(space) {}
 
-  // Prepares values for up to `horizon` decisions. Returns whether the model is small enough. Does little for a belief
-  // whose states are known.
+  // Prepares values for up to `horizon` decisions. Returns whether the model is small enough. A belief whose
+  // states are known takes little time.
   bool prepare(const Belief<Model>& belief, int horizon) {
     if (Model::action_count() == 0 || !space_.reach(belief)) return false;
     if (values_of_ == space_.numbering() && horizon == horizon_) return true;
@@ -41,10 +41,10 @@ class MdpValues {
 
   std::size_t states() const { return space_.size(); }
 
-  // Of a state; `no_state` for one that was not reckoned with, which is worth the most.
+  // The number of a state; `no_state` if the state is not listed. Such a state has the highest value.
   std::uint32_t number_of(const State& state) const { return space_.find(state); }
 
-  // Where an action leads from a state if that is certain and no end; else `no_state`.
+  // The next state after an action if it is certain and has not ended; else `no_state`.
   std::uint32_t certain_next(std::uint32_t number, int action) const {
     if (number == no_state) return number;
     const std::size_t row = rows().row(number, static_cast<std::size_t>(action));
@@ -52,19 +52,19 @@ class MdpValues {
     return outcomes.size() == 1 && outcomes[0].probability > 1 - 1e-6 ? outcomes[0].next : no_state;
   }
 
-  // With `horizon` decisions to go.
+  // The value with `horizon` decisions to go.
   double value(std::uint32_t number, int horizon) const {
     return number == no_state ? highest_ : layer(horizon)[number];
   }
 
-  // How much less an action's fully observable value is than the best one's: never above 0.
+  // The fully observable value of an action less that of the best action; never above 0.
   double advantage(std::uint32_t number, int action, int horizon) const {
     if (number == no_state) return 0;
     const double worth = value_of(rows().row(number, static_cast<std::size_t>(action)), layer(horizon - 1));
     return std::min(worth - layer(horizon)[number], 0.0);
   }
 
-  // Adds what each action is worth with many decisions to go, times a weight.
+  // Adds the value of each action with many decisions to go, times a weight.
   void add_action_values(std::uint32_t number, std::vector<double>& sums, double weight = 1) const {
     if (number == no_state) return;
     const float* values = &action_values_[number * actions()];
@@ -92,7 +92,7 @@ class MdpValues {
     return rows().rewards[row] + Model::discount * rows().later_value(row, later);
   }
 
-  // Returns the largest change.
+  // Computes one more layer. Returns the largest change.
   double one_more_decision(const std::vector<double>& later, std::vector<double>& values) {
     double change = 0;
     highest_ = -std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
-// Cells of one number that is observed: neighbouring ones are merged where that loses least of what they tell.
+// The cells of one observed number. Neighbouring cells are merged where that loses least information.
 //
-// What cells tell is the mutual information of the cell and the distribution that the number is drawn from (the
-// agglomerative information bottleneck: Slonim and Tishby, 1999; only neighbours are merged here).
+// The information is the mutual information of the cell and the distribution that the number is drawn from
+// (the agglomerative information bottleneck: Slonim and Tishby, 1999; only neighbours are merged here).
 #pragma once
 
 #include <algorithm>
@@ -42,12 +42,12 @@ class NumberGrid {
   }
 
   std::size_t cells() const { return edges_.size() + 1; }
-  // What merging costs next at least; infinite where only one cell is left.
+  // The smallest loss of a merge; infinite if only one cell is left.
   double next_loss() const {
     if (losses_.empty()) return std::numeric_limits<double>::infinity();
     return *std::min_element(losses_.begin(), losses_.end());
   }
-  // Merges the two neighbours of which that costs least.
+  // Merges the two neighbours with the smallest loss.
   void merge() {
     const auto place = std::min_element(losses_.begin(), losses_.end()) - losses_.begin();
     const auto cell = static_cast<std::size_t>(place);
@@ -58,14 +58,14 @@ class NumberGrid {
     if (cell > 0) losses_[cell - 1] = loss_at(cell - 1);
     if (cell < losses_.size()) losses_[cell] = loss_at(cell);
   }
-  // Merges as long as that loses next to nothing.
+  // Merges as long as the sum of the losses is negligible.
   void merge_alike() {
     const double allowed = negligible_share * std::max(information_, 0.0) + negligible_loss;
     double lost = 0;
     while (!losses_.empty() && (lost += std::max(next_loss(), 0.0)) <= allowed) merge();
   }
 
-  // Of a draw from a distribution, by cell.
+  // The probability of each cell under a distribution.
   std::vector<double> probabilities_of(const DescribedDistribution& distribution) const {
     std::vector<double> probabilities;
     double before = 0;
@@ -79,7 +79,7 @@ class NumberGrid {
   }
 
  private:
-  static constexpr std::size_t max_cells = 256;  // of the small ones
+  static constexpr std::size_t max_cells = 256;  // of the first cells
   static constexpr std::size_t max_sources = 1000;
   static constexpr double negligible_share = 0.001;
   static constexpr double negligible_loss = 1e-12;
@@ -97,7 +97,7 @@ class NumberGrid {
     return some;
   }
 
-  // What a cell adds to the information; parts are probabilities of the cell with each distribution.
+  // What a cell adds to the information. `parts` are its joint probabilities with each distribution.
   static double information_of(const std::vector<double>& parts) {
     double sum = 0;
     double added = 0;
@@ -115,9 +115,9 @@ class NumberGrid {
   }
 
   std::vector<double> edges_;  // between cells; an edge belongs to the cell above it
-  std::vector<std::vector<double>> joint_;  // by cell: its probability with each distribution
+  std::vector<std::vector<double>> joint_;  // by cell: its joint probability with each distribution
   std::vector<double> losses_;             // of merging a cell with the next
-  double information_ = 0;  // that the small cells tell, in nats
+  double information_ = 0;  // of the first cells, in nats
 };
 
 }  // namespace aos

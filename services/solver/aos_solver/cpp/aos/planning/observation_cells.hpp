@@ -1,10 +1,10 @@
-// Observed numbers in a search tree. No two simulations observe the same ones, so a tree that branched on each would look
-// ahead by one decision only. Here the numbers after an action and a response fall into cells, each around one observation
-// that was drawn there: what is drawn belongs to the nearest, in units of the distributions' spreads. There are the more
-// cells the more visits (progressive widening: Couetoux and others, 2011).
+// Observed numbers in a search tree. No two simulations observe the same numbers, so a tree that branched on each of
+// them would look ahead by one decision only. Here the numbers after an action and a response fall into cells. Each
+// cell lies around one drawn observation, and a new observation belongs to the nearest cell, in units of the
+// distributions' spreads. The number of cells grows with the visits (progressive widening: Couetoux and others, 2011).
 //
-// All states of simulations that reach a cell could have brought an observation of it. So its history has a proper belief,
-// the one after the cell instead of the numbers. What can be earned by cells can be earned by numbers, too.
+// Each state that reaches a cell could have given an observation in it. So the history of a cell has a proper belief:
+// that after the cell in place of the numbers. What a policy over cells earns can be earned by numbers, too.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ inline constexpr std::size_t max_cells = 4'000'000;
 
 class ObservationCells {
  public:
-  // Draws what a step reports.
+  // Draws the numbers that a step reports.
   class Drawn final : public NumberSink {
    public:
     explicit Drawn(Sampler& random) : random_(random) {}
@@ -55,7 +55,7 @@ class ObservationCells {
     cells_ = 0;
   }
 
-  // What stands for a response and its numbers among the observations after an action, which is given by its node.
+  // The observation that stands for a response and its numbers. `action` is the node of the action before.
   Observation cell(std::uint32_t action, Observation response, const Drawn& drawn) {
     if (drawn.keys.empty()) return response;
     Place& place = places_[mixed(mixed(0, action), static_cast<std::uint64_t>(response))];
@@ -88,7 +88,7 @@ class ObservationCells {
     std::vector<Cell> cells;
   };
 
-  // Infinite where other numbers were reported; at least `limit` where it is not below.
+  // Infinite if other numbers were reported. From `limit` on the distance is not exact.
   static double squared_distance(const Cell& cell, const Drawn& drawn, double limit) {
     if (cell.keys != drawn.keys) return std::numeric_limits<double>::infinity();
     double sum = 0;

@@ -1,4 +1,4 @@
-// What can be observed, by number. Skills may share the name of a response: to the robot that is the same observation.
+// Observations by number. If skills share the name of a response, it is the same observation to the robot.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class ObservationNumbers {
  public:
   ObservationNumbers() : of_responses_(static_cast<std::size_t>(Model::skill_count)) {}
 
-  // The number of what a skill lets the robot observe, which is `size()` if it is new.
+  // The number of a skill's observation, which is `size()` if the observation is new.
   std::uint32_t add(int skill, Observation observation) {
     if (observation < 0) return known(of_others_.try_emplace(observation, unknown).first->second, skill, observation);
     auto& numbers = of_responses_[static_cast<std::size_t>(skill)];
@@ -26,7 +26,7 @@ class ObservationNumbers {
     return known(numbers[static_cast<std::size_t>(observation)], skill, observation);
   }
 
-  // What a skill lets the robot observe under this number.
+  // The skill's observation with this number.
   Observation of(int skill, std::uint32_t number) const {
     const auto& responses = of_responses_[static_cast<std::size_t>(skill)];
     const auto response = std::find(responses.begin(), responses.end(), number);

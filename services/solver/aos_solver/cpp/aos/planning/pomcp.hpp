@@ -1,7 +1,7 @@
 // POMCP (Silver and Veness, 2010): Monte-Carlo tree search over histories, from an exact root belief.
 //
-// Here a decision is prepared and its result put together. The algorithm is in tree_search.hpp; what departs from the paper
-// is listed in docs/planning.md, with the file of each departure.
+// This file prepares a decision and puts its result together. The algorithm is in tree_search.hpp.
+// docs/planning.md lists what departs from the paper, with the file of each departure.
 #pragma once
 
 #include <algorithm>
@@ -38,14 +38,14 @@ class Pomcp {
     return search(belief, budget, horizon, random, barred, -1, [] { return false; });
   }
 
-  // Looks ahead below one action while it is carried out, until `is_over()`, which is asked every millisecond or so.
+  // Searches below one action while it is carried out, until `is_over()`, which is called every millisecond or so.
   template <class IsOver>
   std::uint64_t ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        IsOver&& is_over) {
     return search(belief, budget, horizon, random, {}, action, is_over);
   }
 
-  // For each action; values are over the whole belief, so that its ended part counts as nothing to gain.
+  // An estimate for each action. Values are over the whole belief, whose ended part counts as 0.
   std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
     std::vector<ActionEstimate> result(static_cast<std::size_t>(Model::action_count()));
     const double running = belief.probability_of(Ending::running);
@@ -72,9 +72,9 @@ class Pomcp {
     draw_towards(prior_, result, [&](const ActionEstimate& estimate) { return is_well_visited(estimate.n, max_visits); });
     return result;
   }
-  // Whether values are drawn towards an order of the actions that was known before the search.
+  // Whether values are drawn towards a prior.
   bool has_prior() const { return !prior_.empty(); }
-  // Whether what states are worth was learned from simulations.
+  // Whether the values of states were learned from simulations.
   bool has_estimates() const { return has_estimates_; }
 
   // How many simulations went through the root.
@@ -84,7 +84,7 @@ class Pomcp {
     return sum;
   }
 
-  // Keeps what is known below the action and observation; nothing where that was never simulated.
+  // Keeps the part of the trees below an action and an observation, which is empty if these were never simulated.
   void move_to(int action, Observation observation) {
     for (const auto& tree : threads_.trees()) tree->move_to(action, observation);
   }
@@ -119,7 +119,7 @@ class Pomcp {
     return threads_.simulate(start_state, budget, start, random, first, is_over);
   }
 
-  // What the running part of a belief is worth on average.
+  // The mean value of the running part of a belief.
   template <class Worth>
   static double mean_value(const Belief<Model>& belief, Worth&& worth) {
     double sum = 0;

@@ -1,9 +1,9 @@
-// Values of a search drawn towards a prior, as far as the search does not show that the prior is wrong: empirical Bayes
-// (Efron and Morris, 1973).
+// Draws the values of a search towards a prior, unless the search shows that the prior is wrong: empirical
+// Bayes (Efron and Morris, 1973).
 //
-// With many actions and few simulations the best of many noisy values is rarely the best action, while the prior, which
-// ranks them by what is learned of states, has no noise. How wrong the prior is shows in how far the values are from it
-// beyond what their errors explain; no farther than that they count.
+// With many actions and few simulations, the best of many noisy values is rarely the best action. The prior ranks
+// actions by values of states and has no noise. The error of the prior is estimated from the distances between values
+// and prior, beyond what the values' standard errors explain. The larger this error is, the more the values count.
 #pragma once
 
 #include <algorithm>
@@ -24,15 +24,15 @@ namespace aos {
 
 inline constexpr std::size_t max_prior_steps = 20'000;
 
-// A prior is how much less each action is worth than the best one.
+// Makes a prior: how much less each action is worth than the best one.
 inline std::vector<double> below_best(std::vector<double> worths) {
   const double best = *std::max_element(worths.begin(), worths.end());
   for (double& worth : worths) worth = best - worth;
   return worths;
 }
 
-// By the fully observable values of the next states, on average over some states of the belief and with the same luck for all
-// actions (QMDP: Littman, Cassandra and Kaelbling, 1995).
+// The prior by learned values of the next states, on average over some states of the belief and with the same
+// luck for all actions (QMDP: Littman, Cassandra and Kaelbling, 1995).
 template <class Model>
 std::vector<double> learned_prior(const LearnedValues<Model>& values, const Belief<Model>& belief, int horizon,
                                   Sampler& random) {
@@ -49,7 +49,7 @@ std::vector<double> learned_prior(const LearnedValues<Model>& values, const Beli
   return below_best(std::move(worths));
 }
 
-// The same by the values of listed states.
+// The prior by the values of listed states.
 template <class Model>
 std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpace<Model>& space, const Belief<Model>& belief) {
   std::vector<double> worths(static_cast<std::size_t>(Model::action_count()));
@@ -57,8 +57,8 @@ std::vector<double> listed_prior(const MdpValues<Model>& values, const StateSpac
   return below_best(std::move(worths));
 }
 
-// The prior is in the unit of the estimates. `counts(estimate)` tells whose value was searched for long enough; the others
-// are given the prior's.
+// Draws estimates towards a prior in their unit. `counts(estimate)` tells which actions were searched for
+// long enough; the others get the value of the prior.
 template <class Counts>
 void draw_towards(const std::vector<double>& prior, std::vector<ActionEstimate>& estimates, Counts&& counts) {
   double sum = 0;
@@ -69,7 +69,7 @@ void draw_towards(const std::vector<double>& prior, std::vector<ActionEstimate>&
     ++count;
   }
   if (count == 0) return;
-  const double level = sum / count;  // of the best action, by the prior
+  const double level = sum / count;  // the best action's value by the prior
   double unexplained = 0;
   for (std::size_t a = 0; a < prior.size(); ++a) {
     const double distance = estimates[a].q - (level - prior[a]);

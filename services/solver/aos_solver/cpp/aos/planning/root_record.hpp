@@ -1,6 +1,6 @@
-// What one decision's simulations found at the root, beside its values: what actions earn at once, and how far returns go.
+// What one decision's simulations found at the root besides values: immediate rewards, and the range of returns.
 //
-// POMCP's paper uses a budget up. Here a budget in time ends once the choice cannot change.
+// POMCP's paper uses up the budget. Here a budget in time ends once the choice cannot change.
 #pragma once
 
 #include <algorithm>
@@ -33,8 +33,8 @@ class RootRecord {
     return n > 0 ? sum / n : 0;
   }
 
-  // Whether so many more simulations of any other action could not lift its value, and of the best one not lower it, to
-  // where they meet, were they as good and as bad as the extremes seen.
+  // Whether `more` further simulations could not change the choice. In the worst case, all of them give
+  // another action the highest return seen, or give the best action the lowest one.
   bool is_decided(const HistoryNode& root, const ActionNode* actions, const BarredActions& barred, double more) const {
     if (root.n < settled_visits || barred.contains(root.best)) return false;
     const auto moved = [&](const ActionNode& node, double to) { return (node.n * node.q + more * to) / (node.n + more); };

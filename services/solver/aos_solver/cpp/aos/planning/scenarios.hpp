@@ -1,6 +1,5 @@
-// Scenarios: states with all the randomness that is to come, and what they are worth at least and at most.
-//
-// The draws of a step depend on the scenario and the depth alone, so that actions are compared under equal luck.
+// Scenarios: states with all their future randomness, and bounds of their values. The draws of a step depend
+// on the scenario and the depth alone, so that actions are compared under equal luck.
 #pragma once
 
 #include <algorithm>
@@ -29,14 +28,14 @@ inline constexpr int rollouts_per_scenario = 3;
 inline constexpr std::size_t smallest_group = 10;
 inline constexpr std::size_t max_evaluated = 50;  // of the scenarios with the same history
 
-// A scenario after a step, and what the step let it observe.
+// A scenario after a step, and the observation that the step gave.
 template <class Model>
 struct Observed {
   Scenario<Model> scenario;
   Observation observation;
 };
 
-// Mostly there is one observation only.
+// Mostly there is only one observation, and the elements are sorted already.
 template <class Element>
 void sort_by_observation(std::vector<Element>& elements, std::size_t first, std::size_t last) {
   const auto begin = elements.begin() + static_cast<std::ptrdiff_t>(first);
@@ -45,7 +44,7 @@ void sort_by_observation(std::vector<Element>& elements, std::size_t first, std:
   if (!std::is_sorted(begin, end, is_before)) std::stable_sort(begin, end, is_before);
 }
 
-// Where the elements end that have the observation of the one at `start`.
+// The end of the elements that have the observation of the one at `start`.
 template <class Element>
 std::size_t end_of_history(const std::vector<Element>& elements, std::size_t start, std::size_t last) {
   std::size_t end = start + 1;
@@ -62,24 +61,25 @@ void for_each_history(const std::vector<Element>& elements, Visit&& visit) {
   }
 }
 
-// What a scenario is worth at least and at most, discounted from its depth on.
+// The bounds of a scenario's value, discounted from its depth on.
 struct ScenarioBounds {
   double lower = 0;
   double upper = 0;
 };
 
-// Evaluates scenarios: what a default policy earns, and what nobody can exceed.
+// Evaluates scenarios. A lower bound is what a default policy earns; no policy exceeds an upper bound.
 //
-// Where the model is small enough (mdp_values.hpp), all is counted from the fully observable (MDP) value of a scenario's
-// state: a step costs what its action is worth less than the best one for that state. On average over all luck that adds up
-// to the same. Most of the luck is left out, and 0 is what nobody can exceed.
+// In a small model (mdp_values.hpp), returns are relative to the fully observable (MDP) value of a scenario's
+// state. A step then earns the MDP value of its action less that of the best action in that state. On average
+// over all luck, this adds up to the same return. Most of the luck is left out, and no policy exceeds 0.
 //
-// There are two default policies. One takes the action that is best by MDP values on average over the scenarios of a group,
-// and goes on by what is observed. Scenarios whose observation only few others share stay together: a policy that went by
-// those few would know what nobody can know. The other policy is that of the rollouts. A history has the better of the two.
+// There are two default policies, and a history has the better of the two. One takes the action with the best
+// mean MDP value over a group of scenarios, and the group splits by observations. Scenarios with rare
+// observations stay together: a policy that followed so few scenarios would know what no robot can know. The
+// other policy is that of the rollouts.
 //
-// Without MDP values the most that a few rollouts earn stands for the upper bound, though it is none. Of many scenarios with
-// the same history some stand for all.
+// Without MDP values, the highest return of a few rollouts replaces the upper bound, though it is no bound.
+// If many scenarios have the same history, only some of them are evaluated.
 template <class Model>
 class ScenarioEvaluation {
  public:
@@ -87,27 +87,27 @@ class ScenarioEvaluation {
 
   explicit ScenarioEvaluation(MdpValues<Model>& values) : values_(values) {}
 
-  // Derives values from the model where it is small enough.
+  // Prepares MDP values if the model is small enough.
   void prepare(const Belief<Model>& belief, int horizon) {
     horizon_ = horizon;
     has_values_ = values_.prepare(belief, horizon);
   }
   std::uint32_t seen(const State& state) const { return has_values_ ? values_.number_of(state) : 0; }
-  // The same for the state that an action has led to from one with the number `before`.
+  // The same for the state to which an action has led from the state with the number `before`.
   std::uint32_t seen_next(std::uint32_t before, int action, const State& state) const {
     if (!has_values_) return 0;
     const std::uint32_t next = values_.certain_next(before, action);
     return next != no_state ? next : values_.number_of(state);
   }
 
-  // What is counted from: the fully observable (MDP) value of a state, or nothing.
+  // The value that returns are relative to: the state's MDP value, or 0 without MDP values.
   double origin(std::uint32_t seen) const { return has_values_ ? values_.value(seen, horizon_) : 0; }
-  // What a step earns by this count.
+  // The reward of a step, relative to these values.
   double earned(std::uint32_t seen_before, int action, int depth, double reward) const {
     return has_values_ ? values_.advantage(seen_before, action, horizon_ - depth) : reward;
   }
 
-  // New luck for all scenarios.
+  // Begins a decision with new luck for all scenarios.
   void start(std::uint64_t seed) {
     seed_ = seed;
     steps_ = 0;
@@ -117,7 +117,7 @@ class ScenarioEvaluation {
     return Sampler{mixed(mixed(seed_, scenario), static_cast<std::uint64_t>(depth))};
   }
 
-  // Of each scenario; all have had the same history but for the last observation, by which they are sorted.
+  // The bounds of each scenario. All have the same history but for the last observation, by which they are sorted.
   const std::vector<ScenarioBounds>& bounds(const std::vector<Observed<Model>>& scenarios, int depth) {
     bounds_.assign(scenarios.size(), {});
     earned_.assign(scenarios.size(), 0);
@@ -141,13 +141,13 @@ class ScenarioEvaluation {
     });
     return bounds_;
   }
-  // How many steps of the model evaluations have taken since `start`; a rollout counts as what it may take.
+  // How many steps of the model evaluations have taken since `start`. A rollout counts with all steps that it may take.
   std::uint64_t steps() const { return steps_; }
-  // How far what scenarios earned lies apart, of the history evaluated last.
+  // The standard deviation of the returns in the history evaluated last.
   double deviation() const { return best_.deviation(); }
 
  private:
-  // What scenarios earn on average, and at most where that was looked for.
+  // The mean and the deviation of returns, and the mean of the highest returns found.
   class Earnings {
    public:
     void add(double earned, double upper = 0) {
@@ -171,7 +171,7 @@ class ScenarioEvaluation {
     std::size_t index;
   };
 
-  // Rollouts that nobody has written a policy for are at random, and say less than values do.
+  // Without a policy in the documents, rollouts are random and say less than MDP values.
   bool has_rollouts() const { return !has_values_ || Model::has_rollout_policy; }
   static std::size_t stride(std::size_t first, std::size_t last) {
     return std::max<std::size_t>((last - first) / max_evaluated, 1);
@@ -193,7 +193,7 @@ class ScenarioEvaluation {
     earnings.add(sum / count - origin, highest);
   }
 
-  // The followers from `first` to `last` part by what they have observed last.
+  // Splits the followers from `first` to `last` by their last observations.
   void split(std::size_t first, std::size_t last, int depth, double discount) {
     sort_by_observation(followers_, first, last);
     std::size_t kept = first;
@@ -209,7 +209,7 @@ class ScenarioEvaluation {
     follow(first, kept, depth, discount);
   }
 
-  // They take one action together, and go on.
+  // The followers take one action together and go on.
   void follow(std::size_t first, std::size_t last, int depth, double discount) {
     if (first == last || depth == horizon_) return;
     const int action = best_on_average(first, last);

@@ -1,8 +1,8 @@
-// The memory of a search tree: histories, and for each of them the actions that were tried after it.
+// The memory of a search tree: histories, and the actions that were tried after each of them.
 //
-// Nodes lie in two lists and are named by their numbers. The observations after an action are a list while they are few;
-// longer lists are indexed by one table for the whole tree. A history gets its actions when it is visited for the second
-// time, since most are visited once. When the memory is used up the tree stops growing, and goes on learning.
+// Nodes lie in two lists, and their indices name them. The children of an action are a linked list while they are few;
+// longer lists are indexed by one hash table for the whole tree. A history gets its actions at its second visit, since
+// most histories are visited once. When the memory is used up, the tree stops growing and goes on learning.
 //
 // Letters: n visits, q value of an action, v value of a history.
 #pragma once
@@ -26,10 +26,10 @@ inline constexpr std::uint32_t max_listed_children = 4;
 struct HistoryNode {
   Observation observation = default_observation;
   double v = 0;
-  double squares = 0;  // sum of its actions'
+  double squares = 0;  // sum of its actions' squares
   std::uint32_t n = 0;
-  std::uint32_t max_visits = 0;  // of an action
-  std::uint32_t parent = no_node;  // the action that leads here, whose other histories are a list
+  std::uint32_t max_visits = 0;  // the most visits of one of its actions
+  std::uint32_t parent = no_node;  // the action that leads here
   std::uint32_t sibling = no_node;
   std::uint32_t first_action = no_node;
   std::uint32_t best = 0;  // the best action among the well visited ones
@@ -41,7 +41,7 @@ struct ActionNode {
   double continuations = 0;  // sum over children of n * v
   double mean = 0;           // of the sampled returns
   double squares = 0;        // sum of the returns' squared deviations from their mean
-  double share = 1;          // of the exploration here, as a multiple of an even one
+  double share = 1;          // of the exploration; 1 is an even share
   std::uint32_t n = 0;
   std::uint32_t first_child = no_node;
   std::uint32_t children = 0;
@@ -49,7 +49,7 @@ struct ActionNode {
 
 class SearchTree {
  public:
-  // Takes no more than `bytes` for nodes, and never memory that it does not use.
+  // The nodes take at most `bytes`. Memory is only taken as nodes use it.
   SearchTree(int action_count, std::size_t bytes)
       : action_count_(static_cast<std::uint32_t>(action_count)),
         histories_(with_room_for<HistoryNode>(bytes / 4 / sizeof(HistoryNode))),
@@ -57,7 +57,7 @@ class SearchTree {
     clear();
   }
 
-  // Only the root, number 0, is left.
+  // Removes all nodes and adds an empty root, number 0.
   void clear() {
     histories_.clear();
     actions_.clear();
@@ -67,13 +67,13 @@ class SearchTree {
 
   HistoryNode& history(std::uint32_t number) { return histories_[number]; }
   const HistoryNode& history(std::uint32_t number) const { return histories_[number]; }
-  // The actions of a history that has them, one after the other.
+  // The actions of a history that has them, as an array.
   ActionNode* actions(const HistoryNode& history) { return actions_.data() + history.first_action; }
   const ActionNode* actions(const HistoryNode& history) const { return &actions_[history.first_action]; }
   ActionNode& action(std::uint32_t number) { return actions_[number]; }
   std::size_t size() const { return histories_.size(); }
 
-  // Returns false where there is no room for them.
+  // Gives a history its actions. Returns false if there is no room for them.
   bool give_actions(std::uint32_t number) {
     if (histories_[number].first_action != no_node) return true;
     if (!has_room_for(actions_, action_count_)) return false;
@@ -95,7 +95,7 @@ class SearchTree {
     return child;
   }
 
-  // A new history; `no_node` where there is no room.
+  // Adds a history after an action. Returns `no_node` if there is no room for it.
   std::uint32_t add_child(std::uint32_t action, Observation observation) {
     if (!has_room_for(histories_, 1)) return no_node;
     const auto number = static_cast<std::uint32_t>(histories_.size());
@@ -104,7 +104,7 @@ class SearchTree {
     return number;
   }
 
-  // This tree becomes what is below a history of another one, which becomes its root.
+  // Replaces this tree by the part of another one below a history, which becomes the root.
   void copy_subtree(const SearchTree& from, std::uint32_t root) {
     clear();
     copy_node(from, root, 0);
@@ -133,7 +133,7 @@ class SearchTree {
     for (; child != no_node; child = histories_[child].sibling) add_to_index(action, child);
   }
 
-  // Copies all of a history but its place in the tree, with its actions, which have no children yet.
+  // Copies a history with its actions, without their children and without the history's place in the tree.
   void copy_node(const SearchTree& from, std::uint32_t original, std::uint32_t copy) {
     sources_.push_back(original);
     const HistoryNode& node = from.histories_[original];

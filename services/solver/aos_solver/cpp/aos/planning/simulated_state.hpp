@@ -1,5 +1,5 @@
-// The state of the world in a simulation of a search: a block of bytes that the documents' code steps, or, in a model with
-// few states, the number of one in a table.
+// The state in a simulation of a search. It is a block of bytes that the documents' code steps. In a model
+// with few states, it is the number of a state in a table.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@ class ComputedState {
  public:
   using State = typename Model::State;
 
-  // The fully observable (MDP) values of states, by value iteration or as an estimate; null where that is not known.
+  // `values` are MDP values by value iteration, `estimates` are learned ones. Either may be null.
   ComputedState(const State& state, const MdpValues<Model>* values, const LearnedValues<Model>* estimates)
       : state_(state), values_(values), estimates_(estimates) {}
 
   Step step(int action, Sampler& random) { return Model::step(state_, action, random); }
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
-  // With `left` decisions to go; 0 where values are not known.
+  // The fully observable value with `left` decisions to go; 0 if values are not known.
   double value(int left) const {
     if (values_ != nullptr) return values_->value(values_->number_of(state_), left);
     return estimates_ != nullptr ? estimates_->value(state_, left) : 0;
   }
-  // What a new history starts with, beyond the value.
+  // The first return of a new history, beyond the value.
   double leaf(int left, Sampler& random) const { return is_valued() ? 0 : Model::rollout(state_, left, random); }
-  // With which probability a rollout takes each action first, into `odds`. False where new histories start with no rollout.
+  // Writes each action's probability to begin a rollout to `odds`. Returns false if new histories have no rollout.
   bool rollout_odds(double* odds, Sampler& random) const {
     if (is_valued()) return false;
     Model::rollout_odds(state_, odds, random);
@@ -48,7 +48,7 @@ class ComputedState {
 template <class Model>
 class ListedState {
  public:
-  // A state of the belief that the table was prepared for.
+  // Draws a state of the belief that the table was prepared for.
   ListedState(const StepTable<Model>& steps, const MdpValues<Model>& values, Sampler& random)
       : steps_(steps), values_(values), number_(steps.start(random.bits())) {}
 

@@ -1,8 +1,8 @@
-// The steps of a small model as a table, so that a step is one random number and one look-up, whatever the documents'
-// code would have taken.
+// The steps of a small model as a table. A step is one random number and one look-up, whatever the documents'
+// code takes.
 //
-// What is drawn from the table has the distribution of the code; a step's reward is the one that is expected in its state,
-// which leaves the mean of returns as it is and their spread smaller.
+// Draws from the table have the distribution of the code. The reward of a step is its expectation in its
+// state, which leaves the mean of returns as it is and makes their spread smaller.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,14 @@
 
 namespace aos {
 
-// Of a table that caches near the processor hold.
-inline constexpr std::size_t max_table_rows = 32'768;  // of a state and an action each
+// The limits of a table that fits the caches near the processor.
+inline constexpr std::size_t max_table_rows = 32'768;  // one for each state and action
 inline constexpr std::size_t max_table_outcomes = 131'072;
 
 template <class Model>
 class StepTable {
  public:
-  // In place of the number of a state in which the mission has ended.
+  // Stands for all states in which the mission has ended.
   static constexpr std::uint32_t ended = no_state;
 
   struct Outcome {
@@ -31,7 +31,7 @@ class StepTable {
     std::uint32_t next = ended;
   };
 
-  // Makes a table of a space in which the belief's states are listed. Returns whether the model is small enough.
+  // Makes the table of a space that lists the belief's states. Returns whether the model is small enough.
   bool prepare(const StateSpace<Model>& space, const Belief<Model>& belief) {
     if (!space.lists_observations()) return false;
     if (space.numbering() != numbering_) list(space);
@@ -50,7 +50,7 @@ class StepTable {
 
   std::size_t size() const { return numbering_.states; }
 
-  // A state of the belief; `ended` by the probability that it has.
+  // Draws a state of the belief, or `ended` with the probability of the belief's ended part.
   std::uint32_t start(std::uint64_t bits) const {
     return drawn(starts_.data(), static_cast<std::uint32_t>(starts_.size()), bits);
   }
