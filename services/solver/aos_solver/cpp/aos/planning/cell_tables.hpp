@@ -1,9 +1,9 @@
 // A function of the state as a sum of tables over few variables each, fitted to examples.
 //
-// A state is described by a row of cells: each single value is a cell, or a range of values where they are many. Which
-// variables have a table, alone or with up to two others, is chosen by what a table explains of the examples beyond what
-// chance would. Weights are fitted by ridge regression, table by table; how much a table is shrunk follows from the noise.
-// Each half of the examples has weights of its own, so that a choice made by the one can be valued by the other.
+// A row of cells describes a state: each value of a variable is a cell, or a range of values where they are
+// many. A table has one to three variables, and tables are chosen by what they explain of the examples beyond
+// chance. Weights are fitted by ridge regression, table by table, and shrunk by the noise. Each half of the
+// examples has its own weights, so that a choice by one half can be valued by the other.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace aos {
 
-// A single value of the state as one of few cells. Cell 0 is for values that no example had.
+// A variable of the state as one of few cells. Cell 0 is for values that no example had.
 class CellVariable {
  public:
   CellVariable(const Leaf& leaf, std::size_t offset) : leaf_(leaf), offset_(offset) {}
@@ -30,7 +30,7 @@ class CellVariable {
     return number;
   }
 
-  // Makes the cells by the numbers of the examples; returns whether these differ.
+  // Makes the cells from the numbers of the examples. Returns whether these differ.
   bool divide(std::vector<double>& numbers) {
     std::sort(numbers.begin(), numbers.end());
     lowest_ = numbers.front();
@@ -85,7 +85,7 @@ class CellTables {
     for (const Table& table : tables_) sum += (weights_[0][table.place(row)] + weights_[1][table.place(row)]) / 2;
     return sum;
   }
-  // By each half of the examples.
+  // The values by the weights of each half of the examples.
   std::array<double, 2> values(Row row) const {
     std::array<double, 2> sums{mean_, mean_};
     for (const Table& table : tables_) {
@@ -95,7 +95,7 @@ class CellTables {
     }
     return sums;
   }
-  // In ascending order: the variables that have a table.
+  // The variables that have a table, in ascending order.
   std::vector<std::uint32_t> used_variables() const {
     std::vector<std::uint32_t> used;
     for (const Table& table : tables_) used.insert(used.end(), table.variables, table.variables + table.order);
@@ -104,8 +104,8 @@ class CellTables {
     return used;
   }
 
-  // Fits the weights to the targets of the examples, one after the other in `rows`; then adds a table where one explains
-  // enough of what is left.
+  // Fits the weights to the targets of the examples, whose rows follow one another in `rows`. Then adds a
+  // table if one explains enough of what is left.
   void fit(const std::vector<std::uint16_t>& rows, const std::vector<double>& targets) {
     rows_ = rows.data();
     if (tables_.empty()) mean_ = mean_of(targets);
@@ -124,7 +124,7 @@ class CellTables {
   static constexpr int max_order = 3;
   static constexpr std::uint32_t max_cells = 1 << 16;
   static constexpr std::size_t max_tried = 6'000'000;  // lookups of a search for a new table
-  static constexpr double max_unexplained = 2e-4;      // of the targets' squares, that nobody looks for a table for
+  static constexpr double max_unexplained = 2e-4;      // of the targets' squares, which needs no table
   static constexpr double chance = 3;                  // what a cell has to explain, in variances of what is left
 
   struct Table {
@@ -132,7 +132,7 @@ class CellTables {
     std::uint32_t variables[max_order]{};
     std::uint32_t strides[max_order]{};
     std::uint32_t size = 1;
-    std::uint32_t first = 0;  // of the weights
+    std::uint32_t first = 0;  // its first weight
 
     std::uint32_t place(Row row) const {
       std::uint32_t place = first;
@@ -162,8 +162,8 @@ class CellTables {
     return sum;
   }
 
-  // Takes the table's weights anew from what all others leave, shrunk by the ratio of the noise within cells to what the
-  // cells differ by.
+  // Fits the table's weights to what all other tables leave. The weights are shrunk by the ratio of the noise
+  // within cells to the differences between cells.
   void fit(const Table& table) {
     for (std::size_t half = 0; half < 2; ++half) {
       float* const weights = &weights_[half][table.first];
@@ -203,8 +203,8 @@ class CellTables {
     return table;
   }
 
-  // The table that explains most: of one variable, of two where all pairs can be tried, or one that is there and one more
-  // variable.
+  // Adds the table that explains most: of one variable, of two if all pairs can be tried, or a known table
+  // with one more variable.
   void add_table(double min_gain) {
     const auto count = static_cast<std::uint32_t>(cells_.size());
     const bool tries_pairs = count <= max_pairs_of;
@@ -236,7 +236,7 @@ class CellTables {
     fit(best);
   }
 
-  // Of every `stride`-th example.
+  // What a table explains of every `stride`-th example, less what chance would.
   double gain(const Table& table, double variance, std::size_t stride) {
     sums_.assign(table.size, {});
     for (std::size_t i = 0; i < left_.size(); i += stride) {
@@ -260,12 +260,12 @@ class CellTables {
 
   static constexpr std::uint32_t max_pairs_of = 40;
 
-  std::vector<std::uint32_t> cells_;  // of each variable
+  std::vector<std::uint32_t> cells_;  // how many, by variable
   std::vector<Table> tables_;
   std::array<std::vector<float>, 2> weights_;
   double mean_ = 0;
   const std::uint16_t* rows_ = nullptr;  // while fitting
-  std::vector<double> left_;             // of the targets, while fitting
+  std::vector<double> left_;             // what is left of the targets, while fitting
   std::vector<Sum> sums_;
 };
 

@@ -1,10 +1,10 @@
-// Finite-horizon values by going through every observation of every action: the truth that searches are measured by, and
-// the best there is where it fits the budget.
+// Exact finite-horizon values, by enumerating every observation of every action. Searches are measured
+// against these values, and a planner uses them if they fit the budget.
 //
-// A belief is a sorted list of (state number, weight) without its ended part, which is worth nothing; equal beliefs at
-// equal depth are evaluated once. Below the root, an action is left out whose fully observable value is no higher than what
-// another action is worth. Of actions that are worth the same the one that earns sooner is better:
-// otherwise a free exit could be put off for ever.
+// A belief is a sorted list of (state number, weight) without its ended part, which is worth nothing. Equal
+// beliefs at equal depth are evaluated once. Below the root, an action is left out if its fully observable
+// value is no higher than the value of another action. Of two actions with the same value, the one that earns
+// sooner is better: otherwise a free exit could be put off for ever.
 #pragma once
 
 #include <algorithm>
@@ -22,19 +22,19 @@
 
 namespace aos {
 
-// What an evaluation may spend: distinct beliefs, outcomes walked (0: no limit), and until `is_over`.
+// The limits of an evaluation: distinct beliefs, outcomes that are visited (0: no limit), and `is_over`.
 struct ExactLimits {
   std::uint64_t beliefs = 0;
   std::uint64_t outcomes = 0;
   std::function<bool()> is_over = [] { return false; };
 };
 
-// What an action or a belief is worth, and how fast that grows with the discount: less so what is earned sooner.
+// The value of an action or a belief, and its derivative by the discount, which is smaller if rewards come sooner.
 struct ExactValue {
   double value = 0;
   double growth = 0;
 
-  // Whether it is better than another one, or as good and sooner.
+  // Whether this value is higher than another one, or as high and earned sooner.
   bool is_better_than(const ExactValue& other) const {
     constexpr double rounding = 1e-12;
     const double tie = rounding * (std::abs(value) + std::abs(other.value));
@@ -45,10 +45,10 @@ struct ExactValue {
 template <class Model>
 class ExactEvaluation {
  public:
-  // The space must hold all that `horizon` decisions can lead to from the beliefs that are evaluated.
+  // The space must list all that `horizon` decisions can lead to from the beliefs that are evaluated.
   ExactEvaluation(const StateSpace<Model>& space, ExactLimits limits) : space_(space), limits_(std::move(limits)) {}
 
-  // The value of every action at a belief with so many decisions to go. Throws NotEnumerable where a limit is met.
+  // The value of every action at a belief with `horizon` decisions to go. Throws NotEnumerable at a limit.
   std::vector<ExactValue> action_values(const Belief<Model>& belief, int horizon) {
     if (!space_.lists_observations()) throw NotEnumerable{numbers_are_observed};
     if (!belief.is_exact()) throw NotEnumerable{"the belief is only known by samples"};
@@ -76,7 +76,7 @@ class ExactEvaluation {
 
   const point_based::FlatModel& rows() const { return space_.rows(); }
 
-  // The fully observable (MDP) values of states, by decisions to go.
+  // Computes the fully observable (MDP) values of states, by decisions to go.
   void prepare_mdp_values(int horizon) {
     constexpr std::size_t max_values = 4'000'000;
     if (space_.size() * static_cast<std::size_t>(horizon) > max_values) return;
@@ -98,7 +98,7 @@ class ExactEvaluation {
     return rows().rewards[row] + Model::discount * rows().later_value(row, later);
   }
 
-  // Weights here need not sum to 1: a part's weight is how likely it is to get there.
+  // Posteriors are not normalised here: a weight is the probability of getting to that state.
   ExactValue action_value(const Weighted& belief, std::size_t action, int horizon) {
     ExactValue result;
     std::map<std::uint32_t, std::map<std::uint32_t, double>> posteriors;
@@ -139,7 +139,7 @@ class ExactEvaluation {
   }
   static ExactValue scaled(ExactValue value, double by) { return {by * value.value, by * value.growth}; }
 
-  // The action with the highest bound first.
+  // Evaluates the actions in the order of their bounds.
   ExactValue best_of_actions(const Weighted& belief, int horizon) {
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t action = 0; action < space_.actions(); ++action) order.emplace_back(-bound(belief, action, horizon), action);
@@ -152,7 +152,7 @@ class ExactEvaluation {
     return best;
   }
 
-  // What the action is worth at most; infinite where that is not known.
+  // An upper bound of the action's value; infinite if none is known.
   double bound(const Weighted& belief, std::size_t action, int horizon) const {
     if (static_cast<std::size_t>(horizon) > mdp_values_.size()) return std::numeric_limits<double>::infinity();
     const std::vector<double>& later = mdp_values_[static_cast<std::size_t>(horizon - 1)];
@@ -167,7 +167,7 @@ class ExactEvaluation {
     return sum + rounding * magnitude;
   }
 
-  // Probabilities are rounded to 1e-13, so that different orders of the same sum meet.
+  // Probabilities are rounded to 1e-13, so that sums of the same terms in different orders give the same key.
   static BeliefKey key_of(const Weighted& belief) {
     BeliefKey key{0x9ae16a3b2f90404fu, 0xc949d7c7509e6557u};
     for (const auto& [number, weight] : belief) {

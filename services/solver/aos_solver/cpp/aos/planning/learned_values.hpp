@@ -1,14 +1,15 @@
-// An estimate of the fully observable (MDP) value of a state, for models whose states are too many to list: tables over
-// few variables (cell_tables.hpp), learned from simulations by fitted value iteration. It is a guess, and never a bound.
+// Estimates of the fully observable (MDP) values of states, for models whose states are too many to list. They are
+// tables over few variables (cell_tables.hpp), learned from simulations by fitted value iteration. They are no bounds.
 //
-// Examples are states of walks that begin in the belief: at first at random, later half of them by the values. Each action
-// is simulated once from each example, all of them under the same luck. A sweep values each example by its best action,
-// as chosen by one half of the examples and valued by the other, since the best of many estimates is too high.
+// Examples are states of walks that begin in the belief. The first walks are random; half of the later ones
+// follow the values. Each action is simulated once from each example, all of them under the same luck. A
+// sweep values each example by its best action. One half of the examples chooses that action and the other
+// one values it, since the best of many estimates is too high.
 //
-// What was learned is tested before it is used, by a policy that observes the state and goes by the values. It has to earn at
-// least half of what they promise beyond what play at random earns: values fail by counting the same income twice; then
-// nothing like it is earned. And it has to earn more than a policy that goes by a few rollouts after each action (Bertsekas and
-// Castanon, 1999): where it does not, a search is better off with rollouts.
+// The values are tested before they are used, by a policy that observes the state and follows the values. It has to
+// earn at least half of what they promise beyond the return of random play: values fail by counting the same income
+// twice, and then nothing like it is earned. The policy also has to earn more than one that follows a few rollouts
+// after each action (Bertsekas and Castanon, 1999): otherwise a search is better off with rollouts.
 #pragma once
 
 #include <algorithm>
@@ -33,8 +34,8 @@ class LearnedValues {
  public:
   using State = typename Model::State;
 
-  // Learns once, from the first belief; returns whether the values can be used. The work is limited in steps, not in time,
-  // so that decisions can be repeated.
+  // Learns once, from the first belief. Returns whether the values can be used. The work is limited in steps
+  // and not in time, so that decisions can be repeated.
   bool prepare(const Belief<Model>& belief, int horizon, Sampler& random) {
     if (has_tried_) return is_usable_;
     if (Model::action_count() == 0 || belief.probability_of(Ending::running) <= 0) return false;
@@ -47,7 +48,7 @@ class LearnedValues {
     return is_usable_;
   }
 
-  // With so many decisions to go, of which only none at all counts.
+  // The value of a state; 0 without decisions to go. Otherwise it does not depend on `left`.
   double value(const State& state, int left) const {
     if (left <= 0) return 0;
     thread_local std::vector<std::uint16_t> row;
@@ -56,7 +57,7 @@ class LearnedValues {
     return std::clamp(tables_.value(row.data()), lowest_, highest_);
   }
 
-  // What an action is worth with so many decisions to go, under given luck.
+  // The value of an action with `left` decisions to go, under given luck.
   double action_value(State state, int action, int left, Sampler luck) const {
     const Step step = Model::step(state, action, luck);
     const bool goes_on = Model::ending(state) == Ending::running;
@@ -68,7 +69,7 @@ class LearnedValues {
   static constexpr std::size_t max_cells = 20'000'000;    // of all rows
   static constexpr int rounds = 2;
   static constexpr int sweeps = 30;
-  static constexpr int max_compared = 24;  // actions, of which a walk takes the best
+  static constexpr int max_compared = 24;  // actions; a policy takes the best of these
   static constexpr int tests = 64;
   static constexpr int max_rollouts = 32;  // before a decision, of all actions together
   static constexpr std::size_t max_compared_steps = 2'000'000;
@@ -94,7 +95,7 @@ class LearnedValues {
 
   // --- examples --------------------------------------------------------------------------------------
 
-  // One example of each walk, since states of the same walk have too much in common.
+  // Takes one example from each walk, since states of the same walk have too much in common.
   void walk(const Belief<Model>& belief, Sampler& random, bool has_values) {
     const std::size_t wanted = examples_.size() + std::max<std::size_t>(max_successors / action_count(), 100);
     for (std::size_t walks = 0; examples_.size() < wanted && walks < 4 * wanted; ++walks) {
@@ -107,7 +108,7 @@ class LearnedValues {
         if (i >= at_random) {
           action = best_action(state, horizon_ - i, random);
         } else if (repeats-- <= 0 || !is_possible(state, action, random)) {
-          // For a while, as walks that turn at every step stay where they are (Dabney, Ostrovski and Barreto, 2021).
+          // Actions repeat: walks that turn at every step stay where they are (Dabney, Ostrovski and Barreto, 2021).
           action = any_action(state, random);
           repeats = (1 << random.below(4)) - 1;
         }
@@ -147,7 +148,7 @@ class LearnedValues {
   }
   static int compared() { return std::min(Model::action_count(), max_compared); }
 
-  // Those that differ among the examples.
+  // Finds the variables that differ among the examples.
   bool find_variables() {
     std::vector<double> numbers;
     const State& any = examples_.front();
@@ -189,7 +190,7 @@ class LearnedValues {
 
   // --- values ----------------------------------------------------------------------------------------
 
-  // One decision more.
+  // One sweep of fitted value iteration.
   void improve() {
     targets_.resize(examples_.size());
     for (std::size_t i = 0; i < examples_.size(); ++i) {
@@ -225,7 +226,7 @@ class LearnedValues {
     return earned > at_random && earned >= (promised + at_random) / 2;
   }
 
-  // From the same states, by more than twice the standard error of the difference.
+  // Compares both policies from the same states. The difference must exceed twice its standard error.
   bool beats_rollouts(const Belief<Model>& belief, Sampler& random) const {
     double count = 0;
     double sum = 0;
@@ -245,7 +246,7 @@ class LearnedValues {
     return mean > 2 * std::sqrt(variance_of_mean);
   }
 
-  // The discounted return of one mission that sees its state.
+  // The discounted return of one mission whose policy observes the state.
   template <class Choice>
   double earned_by(State state, Choice&& choice, Sampler& random) const {
     double earned = 0;

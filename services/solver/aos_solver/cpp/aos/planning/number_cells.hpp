@@ -1,8 +1,8 @@
-// What a robot observes if it tells numbers only by the cells of a grid that they fall in: finitely much, so that
+// The observations of a robot that tells numbers only by the cells of a grid. There are finitely many of them, so
 // searches that enumerate observations can look ahead. The grid is the same for all states and actions.
 //
-// A robot that observes numbers can act as if it observed their cells only. So what is earned over cells is a lower bound of
-// what can be earned. An upper bound over cells bounds nothing.
+// A robot that observes numbers can act as if it observed only their cells. So a value over cells is a lower
+// bound of the true value. An upper bound over cells bounds nothing.
 #pragma once
 
 #include <algorithm>
@@ -25,12 +25,12 @@ namespace aos {
 
 class NumberCells {
  public:
-  // The cells of all that a step may report at once, multiplied.
+  // The most combinations of cells of the numbers that a step reports together.
   static constexpr std::size_t max_combinations = 256;
-  // How far the probabilities of a report's cells may be from the true ones, together.
+  // How far the probabilities of a report's cells may be from the true ones, in sum.
   static constexpr double error = 1e-13;
 
-  // Returns why there can be no cells; nothing where they are chosen.
+  // Chooses the cells. Returns why there can be none, or an empty text.
   std::string choose(const NumberReports& reports, std::size_t max = max_combinations) {
     if (reports.is_full()) return "too many different distributions of numbers are reported";
     make_grids(reports);
@@ -54,7 +54,7 @@ class NumberCells {
     return {};
   }
 
-  // Of a report.
+  // The largest number of cells for one report.
   std::size_t max_cells() const { return max_cells_; }
   std::size_t observations() const { return observations_; }
 
@@ -108,7 +108,7 @@ class NumberCells {
     return product;
   }
 
-  // The grid that loses least by what a merge takes off the combinations. None where all have two cells.
+  // The grid that loses least for the combinations that its next merge saves; null if all grids have two cells.
   NumberGrid* next_to_merge(const std::vector<std::uint32_t>& gauges) {
     NumberGrid* next = nullptr;
     double min_loss = std::numeric_limits<double>::infinity();
@@ -124,7 +124,8 @@ class NumberCells {
     return next;
   }
 
-  // A response with certain numbers beside it takes as many observations in a row as these have combinations of cells.
+  // Numbers the observations. A response with a set of numbers takes consecutive ones, one for each
+  // combination of cells.
   void expand(const NumberReports& reports) {
     std::vector<std::vector<double>> probabilities;
     for (const auto& [gauge, distribution] : reports.parts()) {
@@ -158,7 +159,7 @@ class NumberCells {
     return result;
   }
 
-  // What is not above the error of what is likely goes to the likeliest.
+  // Gives the probability of negligible cells to the likeliest cell.
   static std::vector<point_based::Likelihood> without_the_unlikeliest(std::vector<point_based::Likelihood> cells) {
     constexpr double min_probability = error / (4 * static_cast<double>(max_combinations));
     double left_out = 0;

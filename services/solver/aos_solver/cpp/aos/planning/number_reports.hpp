@@ -1,6 +1,6 @@
-// What steps report, by number: a response with the distributions of the numbers that are observed beside it.
+// The reports of steps, by number. A report is a response with the distributions of the numbers observed with it.
 //
-// The robot observes less: a draw from each distribution. What a search makes of that is in number_cells.hpp.
+// The robot observes less than a report: a draw from each distribution. number_cells.hpp makes observations of it.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace aos {
 
 class NumberReports final : public NumberSink {
  public:
-  // A number that a skill reports, from one of its distributions.
+  // A number of a skill with one of the distributions that it is reported from.
   struct Part {
     std::uint32_t gauge;  // which number of which skill
     DescribedDistribution distribution;
@@ -38,7 +38,7 @@ class NumberReports final : public NumberSink {
     distribution.describe(taken_.back().second);
   }
 
-  // The number of what a step of a skill reports that has begun last, with the number of its response.
+  // The number of the report of the step that began last, given the skill and the number of its response.
   std::uint32_t add(int skill, std::uint32_t response) {
     std::sort(taken_.begin(), taken_.end(), [](const auto& one, const auto& other) { return one.first < other.first; });
     Key key{response};
@@ -60,7 +60,7 @@ class NumberReports final : public NumberSink {
   const std::vector<Report>& reports() const { return reports_; }
   const std::vector<Part>& parts() const { return parts_; }
   std::size_t gauges() const { return gauges_.size(); }
-  // Whether there are so many that not all are told apart.
+  // Whether there are too many reports to tell all of them apart.
   bool is_full() const { return is_full_; }
 
  private:
@@ -77,7 +77,7 @@ class NumberReports final : public NumberSink {
     return entry->second;
   }
 
-  std::vector<std::pair<NumberKey, DescribedDistribution>> taken_;  // since the step has begun
+  std::vector<std::pair<NumberKey, DescribedDistribution>> taken_;  // since the step began
   std::vector<Report> reports_;
   std::vector<Part> parts_;
   std::unordered_map<std::uint64_t, std::uint32_t> gauges_;

@@ -27,7 +27,7 @@ namespace aos {
 enum class PlannerKind { pomcp, despot, sarsop, automatic, exact };
 inline constexpr const char* planner_names[] = {"pomcp", "despot", "sarsop", "auto", "exact"};
 
-// One that can be asked for; nothing where there is no such planner.
+// The planner of this name, if there is one that can be asked for.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
   const auto* const last = std::end(planner_names) - 1;
   const auto* const found = std::find(planner_names, last, name);
@@ -37,10 +37,10 @@ inline std::optional<PlannerKind> planner_kind(std::string_view name) {
 template <class Model>
 class Planner {
  public:
-  // See Pomcp, Despot, PointBased and ExactSearch.
+  // Chooses the planner and searches. See Pomcp, Despot, PointBased and ExactSearch.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {
-    // What was barred has few visits in the tree, and would go on to be passed over.
+    // Actions that were barred have few visits in the tree and would be neglected further.
     if (barred != barred_) forget();
     barred_ = barred;
     horizon_ = horizon;
@@ -73,7 +73,7 @@ class Planner {
       default: return pomcp_.estimates(belief);
     }
   }
-  // What to do: what is worth most, as far as its value can be believed.
+  // The action to take: the one with the highest value among those with reliable values.
   int choice(const std::vector<ActionEstimate>& estimates, const BarredActions& barred = {}) const {
     if (used_ == PlannerKind::exact) return exact_.best(barred);
     const auto is_barred = [&](const ActionEstimate& estimate) {
@@ -89,14 +89,14 @@ class Planner {
     });
   }
 
-  // Looks ahead below the action that is carried out, if the last search was one that can use it.
+  // Searches below the action that is being carried out, if the last planner can use that.
   template <class IsOver>
   void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                    IsOver&& is_over) {
     if (used_ == PlannerKind::pomcp) pomcp_.ponder(action, belief, budget, horizon, random, is_over);
     if (used_ == PlannerKind::sarsop) point_based_.ponder(action, budget, is_over);
   }
-  // How many simulations the next search need not make, since they were made before.
+  // How many simulations of earlier searches serve the next one.
   std::uint64_t known_simulations() const {
     return used_ == PlannerKind::sarsop ? point_based_.known_simulations() : pomcp_.known_simulations();
   }
@@ -108,9 +108,9 @@ class Planner {
       pomcp_.forget();
     }
   }
-  // What is known below the belief holds no longer.
+  // Drops the trees below the belief, which hold no longer.
   void forget() { pomcp_.forget(); }
-  // Another mission begins.
+  // Begins another mission.
   void start_over() {
     forget();
     exact_.start_over();
@@ -118,7 +118,7 @@ class Planner {
   }
 
  private:
-  // Sets `why_`.
+  // Also sets `why_`.
   PlannerKind chosen_kind(PlannerKind asked_for, const Belief<Model>& belief, Budget budget, int horizon) {
     if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon);
     why_ = "it was asked for";

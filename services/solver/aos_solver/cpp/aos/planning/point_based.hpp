@@ -1,7 +1,7 @@
 // Point-based search from the belief of each decision (SARSOP: Kurniawati, Hsu and Lee, 2008), for models whose states
-// can be listed. The search itself is in point_based/; this is what it takes from a model, and when it may be used.
+// can be listed. The search itself is in point_based/. This file gives it the model and decides when it may be used.
 //
-// Alpha vectors are lower bounds at every belief, so what one decision has found out serves all later ones.
+// Alpha vectors are lower bounds at every belief, so the results of one decision serve all later ones.
 #pragma once
 
 #include <algorithm>
@@ -30,8 +30,8 @@ class PointBased {
  public:
   explicit PointBased(const StateSpace<Model>& space) : space_(space) {}
 
-  // Takes over the model from a space in which the belief's states are listed. Returns why the search cannot be used; nothing
-  // where it can. That takes long once, before the first decision, and is in no budget.
+  // Takes the model from a space that lists the belief's states. Returns why the search cannot be used, or an
+  // empty text. The first decision may take long here, which no budget counts.
   std::string prepare(const Belief<Model>& belief, int horizon) {
     if (Model::action_count() == 0) return "there are no actions";
     const auto entries = space_.weights_of(belief);
@@ -48,21 +48,21 @@ class PointBased {
     }
     return take_model(entries);
   }
-  // Whether observed numbers count by their cells only. There are no upper bounds then.
+  // Whether observed numbers count by their cells only. Then there are no upper bounds.
   bool tells_by_cells() const { return Model::reports_numbers(); }
-  // Of an observation, at most.
+  // The largest number of cells for one report.
   std::size_t cells() const { return cells_.max_cells(); }
-  // Whether values are of missions without end: the discount leaves next to nothing of what comes after the horizon, or
-  // there are too many states to tell them apart by the decisions to go.
+  // Whether values are those of missions without a horizon. This is so if the discount leaves next to nothing
+  // of what comes after the horizon, or if there are too many states for a layer of bounds for each decision.
   bool is_endless() const { return is_endless_; }
-  // What the running part of the prepared belief is worth at least and at most. With cells the upper bound holds for a robot
-  // that observes no more than cells.
+  // The bounds of the value of the belief's running part. With cells, the upper one holds for a robot that
+  // observes cells only.
   std::pair<double, double> bounds() const {
     if (running_ <= 0) return {0, 0};
     const auto [lower, upper] = search_->bounds();
     return {lower - error_, upper + error_};
   }
-  // Of all searches so far.
+  // How many simulations all searches took so far.
   std::uint64_t known_simulations() const { return known_; }
 
   // Forgets what searches have found out, so that a mission does not depend on those before it.
@@ -71,7 +71,7 @@ class PointBased {
     known_ = 0;
   }
 
-  // Runs trials from the prepared belief, and returns how many simulations they were.
+  // Runs trials from the prepared belief. Returns how many simulations these count as.
   std::uint64_t search(Budget budget) {
     if (running_ <= 0 || (budget.simulations == 0 && budget.seconds <= 0)) return 0;
     const std::uint64_t simulations = simulations_of(search_->improve(work_of(budget), until(budget, [] { return false; })));
@@ -79,14 +79,14 @@ class PointBased {
     return simulations;
   }
 
-  // The same below an action that is carried out.
+  // The same below an action that is being carried out.
   template <class IsOver>
   void ponder(int action, Budget budget, IsOver&& is_over) {
     if (running_ <= 0 || budget.seconds <= 0) return;
     known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), until(budget, is_over)));
   }
 
-  // What each action is worth at least. `n` is how many trials began with it, and the look at where it leads.
+  // The lower bounds of the actions. `n` counts the trials that began with the action, and 1 for opening it.
   std::vector<ActionEstimate> estimates() const {
     if (running_ <= 0) return std::vector<ActionEstimate>(static_cast<std::size_t>(Model::action_count()));
     std::vector<ActionEstimate> result;
@@ -99,7 +99,7 @@ class PointBased {
  private:
   static constexpr double next_to_nothing = 0.01;
   static constexpr double little = 0.1;
-  // A step of a state through a search tree takes as long as so many products of numbers.
+  // A step of a state through a search tree takes as long as this many multiplications.
   static constexpr std::uint64_t work_per_step = 100;
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
@@ -117,7 +117,7 @@ class PointBased {
     search_->move_to(entries);
     return {};
   }
-  // Whether it takes long to look at all observations of all states once for each decision to go.
+  // Whether it takes long to go through all observations of all states once for each decision to go.
   bool is_large(const point_based::FlatModel& model) const {
     constexpr double max_likelihoods = 2e6;
     double likelihoods = 0;
@@ -139,7 +139,7 @@ class PointBased {
     model.horizon = static_cast<std::size_t>(horizon);
     return std::make_unique<point_based::OnlineSarsop>(std::move(model));
   }
-  // What the probabilities of cells may move values by: so much of all that follows, at every decision.
+  // How far errors in the probabilities of cells may move values: at each decision, by their share of all that follows.
   double error_of(const point_based::FlatModel& model) const {
     if (!tells_by_cells()) return 0;
     double largest = 0;
@@ -164,8 +164,8 @@ class PointBased {
   }
 
   const StateSpace<Model>& space_;
-  Numbering numbering_;                          // when the model was taken over
-  std::vector<point_based::Start> starts_;  // one where nothing surprising has happened
+  Numbering numbering_;                          // of the model that was taken
+  std::vector<point_based::Start> starts_;  // only one unless something surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;
   int horizon_ = 1;  // decisions
   bool is_endless_ = false;

@@ -1,7 +1,7 @@
-// One search by several threads, each in a tree of its own, whose values are merged by visits.
+// One search by several threads. Each thread has a tree of its own, and the values of the trees are merged by visits.
 //
-// POMCP's paper has one tree. Of a budget in simulations each thread has a fixed share here, so that a seed gives the same
-// result however the threads are scheduled.
+// POMCP's paper has one tree. Here each thread has a fixed share of a budget in simulations, so that a seed
+// gives the same result however the threads are scheduled.
 #pragma once
 
 #include <chrono>
@@ -21,14 +21,14 @@
 namespace aos {
 
 inline constexpr std::size_t max_search_bytes = std::size_t{1} << 30;  // for the trees of all threads
-inline constexpr double min_time_share = 0.1;  // of a budget in time that is always used
+inline constexpr double min_time_share = 0.1;  // of a budget in time, which is always used
 
 template <class Model>
 class SearchThreads {
  public:
   using Tree = TreeSearch<Model>;
 
-  // As many trees as the budget has threads.
+  // Makes one tree for each thread.
   void prepare(int threads) {
     const auto count = static_cast<std::size_t>(threads);
     if (trees_.size() == count) return;
@@ -37,8 +37,8 @@ class SearchThreads {
   }
   const std::vector<std::unique_ptr<Tree>>& trees() const { return trees_; }
 
-  // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or `is_over()`. Returns
-  // how many simulations that took. `first` is as of TreeSearch.
+  // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or
+  // `is_over()`. Returns the number of simulations. `first` is that of TreeSearch.
   template <class StartState, class IsOver>
   std::uint64_t simulate(StartState&& start_state, Budget budget, PlanningClock::time_point start, Sampler& random,
                          int first, IsOver&& is_over) {
@@ -67,7 +67,7 @@ class SearchThreads {
   }
 
  private:
-  // What one thread has done; a fault of model code with the piece that ran.
+  // The result of one thread, with a fault of model code and the piece that ran.
   struct Work {
     std::uint64_t simulations = 0;
     std::exception_ptr fault;

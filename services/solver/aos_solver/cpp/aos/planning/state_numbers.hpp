@@ -1,8 +1,7 @@
-// States by number: two states that agree in every variable that matters have one number.
+// States by number. Two states that agree in every relevant variable have the same number.
 //
-// Which variables do not matter follows from the text of the documents' code (lower_relevance.py), for every input.
-// All others tell states apart. Most words of a state are the same in all states; they are compared, and only the
-// others are hashed.
+// Which variables are irrelevant follows from the text of the documents' code (lower_relevance.py), for every input.
+// Most words of a state are the same in all states. These words are compared, and only the others are hashed.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +31,7 @@ class StateNumbers {
   std::size_t size() const { return states_.size(); }
   const State& operator[](std::uint32_t number) const { return states_[number]; }
 
-  // The number of a state, which is `size()` if it is new.
+  // The number of a state, which is `size()` if the state is new.
   std::uint32_t add(const State& state) {
     if (!states_.empty() && !agrees_elsewhere(state)) tell_apart_by_more(state);
     const auto known = static_cast<std::uint32_t>(states_.size());
@@ -41,7 +40,7 @@ class StateNumbers {
     return number;
   }
 
-  // `no_state` for a state that has no number.
+  // The number of a state; `no_state` if it has none.
   std::uint32_t find(const State& state) const {
     if (states_.empty() || !agrees_elsewhere(state)) return no_state;
     return numbers_.find(hash_of(state), is_same_as(state));
@@ -56,7 +55,7 @@ class StateNumbers {
     return value & mask_[word];
   }
 
-  // Whether a state has what all have had so far, in the words that are not hashed.
+  // Whether a state agrees with all earlier ones in the words that are not hashed.
   bool agrees_elsewhere(const State& state) const {
     std::uint64_t difference = 0;
     for (std::size_t word = 0; word < words(); ++word) {
@@ -91,7 +90,7 @@ class StateNumbers {
 
   std::vector<std::uint64_t> mask_;
   std::vector<bool> is_hashed_;
-  std::vector<std::size_t> hashed_;  // words in which any two states differ
+  std::vector<std::size_t> hashed_;  // the words in which some states differ
   std::vector<State> states_;
   NumberIndex numbers_;
 };

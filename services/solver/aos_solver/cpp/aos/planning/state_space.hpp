@@ -1,7 +1,7 @@
-// The model as numbers: the states that can be reached, and all that each action can lead to from each of them.
+// The model as numbers: the states that can be reached, and all outcomes of each action in each of them.
 //
-// The planner owns one and lends it. Each pair of a state and an action is enumerated once, from the documents' code.
-// Limits are in numbers and work, not in time, so that decisions repeat.
+// The planner owns one space and lends it. The documents' code enumerates each pair of a state and an action
+// once. Limits are in numbers and work, not in time, so that decisions repeat.
 #pragma once
 
 #include <algorithm>
@@ -31,10 +31,10 @@ struct SpaceLimits {
   std::size_t states = 400'000;
   std::size_t bytes = std::size_t{100} << 20;  // of states
   std::size_t outcomes = 12'000'000;
-  std::size_t work = 30'000'000;  // of one call, in draws and copies of 64 bytes: one to two seconds'
+  std::size_t work = 30'000'000;  // of one call, in draws and copies of 64 bytes: one to two seconds
 };
 
-// Which number stands for which state: the same one in two equal numberings.
+// Tells which number stands for which state: in two equal numberings, the numbers are the same.
 struct Numbering {
   std::uint64_t restarts = 0;
   std::size_t states = 0;
@@ -54,8 +54,8 @@ class StateSpace {
     rows_.likelihoods.first.push_back(0);
   }
 
-  // Lists what can be reached from a belief, without what is observed where there is too much of it. Returns whether all
-  // of it is listed; `obstacle` tells why it is not.
+  // Lists what can be reached from a belief. Observations are left out if there are too many. Returns whether
+  // everything is listed; otherwise `obstacle` tells why not.
   bool reach(const Belief<Model>& belief) {
     if (!obstacle_.empty() && !is_worth_another_try(belief)) return false;
     try {
@@ -74,36 +74,36 @@ class StateSpace {
     return false;
   }
 
-  // Lists what so many decisions can lead to from a belief. Throws NotEnumerable, or what model code throws.
+  // Lists what `decisions` decisions can lead to from a belief. Throws NotEnumerable, or what model code throws.
   void reach_within(const Belief<Model>& belief, int decisions) {
     add_states_of(belief);
     for (; decisions > 0 && !is_closed(); --decisions) list_rows_before(numbers_.size());
   }
 
   const std::string& obstacle() const { return obstacle_; }
-  // What anybody who keeps numbers of states compares before they are used again.
+  // Code that keeps numbers of states compares numberings before it uses these again.
   Numbering numbering() const { return {restarts_, size()}; }
   std::size_t size() const { return numbers_.size(); }
   std::size_t actions() const { return rows_.actions; }
   const State& operator[](std::uint32_t number) const { return numbers_[number]; }
-  // `no_state` for one that has ended or cannot be reached.
+  // The number of a state; `no_state` if it has ended or cannot be reached.
   std::uint32_t find(const State& state) const {
     return Model::ending(state) == Ending::running ? numbers_.find(state) : no_state;
   }
   // Whether every state has its rows.
   bool is_closed() const { return listed_ == numbers_.size(); }
-  // Rewards and outcomes by state and action; without starts.
+  // Rewards and outcomes by state and action, without starts.
   const point_based::FlatModel& rows() const { return rows_; }
   const ObservationNumbers<Model>& observations() const { return observations_; }
-  // Whether the observations of the rows are what the robot observes. In a model that reports numbers they are reports.
+  // Whether the observations of the rows are those of the robot. In a model that reports numbers they are reports.
   bool lists_observations() const { return !Model::reports_numbers() && !skips_sensing_; }
-  // Whether there are no observations in the rows, and why.
+  // Whether the rows have no observations, and why.
   bool leaves_out_observations() const { return skips_sensing_; }
   const std::string& observations_obstacle() const { return observations_obstacle_; }
   const NumberReports& reports() const { return reports_; }
   bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
 
-  // The running part of a belief, by number, ascending; weights as they are.
+  // The running part of a belief, by ascending numbers. The weights are not normalised.
   std::vector<std::pair<std::uint32_t, double>> weights_of(const Belief<Model>& belief) const {
     std::vector<std::pair<std::uint32_t, double>> weights;
     for (const auto& [state, weight] : belief.particles()) {
@@ -123,8 +123,8 @@ class StateSpace {
   }
 
  private:
-  using SensingKey = std::vector<std::uint64_t>;  // observations with their probabilities
-  // A path through an action that the mission goes on after.
+  using SensingKey = std::vector<std::uint64_t>;  // of observations with their probabilities
+  // A path through an action after which the mission goes on.
   struct Path {
     std::uint32_t next;
     std::uint32_t observation;
@@ -137,7 +137,7 @@ class StateSpace {
     *this = StateSpace{limits_};
     restarts_ = restarts;
   }
-  // Far fewer states may be few enough.
+  // A belief of far fewer states may lead to few enough.
   bool is_worth_another_try(const Belief<Model>& belief) const {
     constexpr std::size_t far_fewer = 8;
     return far_fewer * belief.particles().size() <= given_up_with_;
@@ -154,7 +154,7 @@ class StateSpace {
     given_up_with_ = belief.particles().size();
   }
 
-  // Where most states of a belief were drawn once only, there are more.
+  // Adds the states of a belief. If a sampled belief has most of its states only once, there are more.
   void add_states_of(const Belief<Model>& belief) {
     obstacle_.clear();
     work_ = 0;
@@ -227,9 +227,9 @@ class StateSpace {
     }
   }
 
-  // The distribution of what is observed on paths with the same next state. Most have been met before.
+  // The sensing of paths with the same next state. Most sensings have been met before.
   std::uint32_t sensing_of(std::size_t first, std::size_t last, double total) {
-    constexpr double unit = 0x1p51;  // what rounding tells apart by less is the same
+    constexpr double unit = 0x1p51;  // differences below 1 / unit come from rounding
     likelihoods_.clear();
     key_.clear();
     for (std::size_t i = first; i < last; ++i) {
@@ -256,14 +256,14 @@ class StateSpace {
   bool reports_numbers_ = Model::reports_numbers();
   NumberReports reports_;
   point_based::FlatModel rows_;
-  std::uint32_t listed_ = 0;  // states that have their rows
+  std::uint32_t listed_ = 0;  // how many states have their rows
   std::uint64_t restarts_ = 0;
   bool reached_[ending_count]{};
   std::size_t work_ = 0;
   bool skips_sensing_ = false;
   std::string observations_obstacle_;
   std::string obstacle_;
-  std::size_t given_up_with_ = 0;  // states of the belief
+  std::size_t given_up_with_ = 0;  // how many states the belief had
 
   Enumerator draws_;
   std::unordered_map<SensingKey, std::uint32_t, NumbersHash> sensings_;

@@ -1,8 +1,8 @@
-// POMCP's simulations (Silver and Veness, 2010) in the tree of one thread: read from `simulate` down.
+// POMCP's simulations (Silver and Veness, 2010) in the tree of one thread. Read this file from `simulate` down.
 //
-// A simulation goes down from the root by upper confidence bounds (`choose`). The first new history that it comes to is valued
-// by a rollout or by the values of states (`SimulatedState::leaf`). The return is taken back up (`back_up`). Departures from
-// the paper have their reasons in the files that are called; docs/planning.md lists them.
+// A simulation goes down from the root by upper confidence bounds (`choose`). The first new history is valued by a
+// rollout or by values of states (`SimulatedState::leaf`). The return is backed up along the path (`back_up`). The
+// files that are called give the reasons for departures from the paper; docs/planning.md lists them.
 //
 // Letters: n visits, q value of an action, v value of a history.
 #pragma once
@@ -31,14 +31,14 @@ inline constexpr std::uint64_t turns = 8;
 template <class Model>
 class TreeSearch {
  public:
-  // Takes no more than `bytes` for its tree, and for a copy of what is kept of it when a step is taken.
+  // The tree takes at most `bytes`, with a copy of what is kept of it after a step.
   explicit TreeSearch(std::size_t bytes)
       : tree_(Model::action_count(), bytes / 2), spare_(Model::action_count(), bytes / 2) {
     forget();
   }
 
-  // Begins a decision. `prior` is how much less each action is worth than the best one, as far as can be said before; empty
-  // where nothing can. The root's `barred` actions are not tried.
+  // Begins a decision. `prior` is how much less each action is worth than the best one; empty if nothing is
+  // known before the search. The `barred` actions are not tried at the root.
   void begin(int horizon, const std::vector<double>& prior, const BarredActions& barred) {
     horizon_ = horizon;
     barred_ = barred;
@@ -46,8 +46,8 @@ class TreeSearch {
     record_ = RootRecord{action_count()};
   }
 
-  // One simulation from a running state, as of simulated_state.hpp, which goes on with it. `first` is the first action; -1
-  // leaves it to the search.
+  // Runs one simulation from a running state (simulated_state.hpp), which the simulation changes. `first` is
+  // the first action; -1 leaves the choice to the search.
   template <class SimulatedState>
   void simulate(SimulatedState& state, int first, Sampler& random) {
     if (!give_actions(0, state, random)) return;
@@ -59,13 +59,13 @@ class TreeSearch {
     spread_.add(seen);
   }
 
-  // What is known about a root action: value, simulations, and the variance of one. Values are relative to those of the
-  // states, where these are known.
+  // What is known about a root action: its value, its simulations, and the variance of one simulation. Values
+  // are relative to those of the states, if these are known.
   struct Known {
     double q = 0;
     std::uint32_t n = 0;
     double variance = 0;
-    double reward = 0;  // earned at once, in this decision's simulations
+    double reward = 0;  // mean immediate reward in this decision's simulations
   };
   Known known(int action) const {
     if (!has_actions()) return {};
@@ -80,8 +80,8 @@ class TreeSearch {
     return has_actions() && record_.is_decided(root, tree_.actions(root), barred_, more);
   }
 
-  // Keeps what is known below the action and observation; nothing where that was never simulated, or where numbers were
-  // observed, whose cell says less than they do.
+  // Keeps the part of the tree below an action and an observation. Nothing is kept if these were never
+  // simulated, or if numbers were observed: a cell says less than its numbers.
   void move_to(int action, Observation observation) {
     if (reports_numbers_ || !has_actions()) return forget();
     const std::uint32_t taken = tree_.history(0).first_action + static_cast<std::uint32_t>(action);
@@ -108,7 +108,7 @@ class TreeSearch {
   static std::uint32_t action_count() { return static_cast<std::uint32_t>(Model::action_count()); }
   bool has_actions() const { return tree_.history(0).first_action != no_node; }
 
-  // Goes down to a history that is new, or to an end, and back up. Returns the discounted return.
+  // Goes down to a new history or to an end, and backs up. Returns the discounted return.
   template <class SimulatedState>
   double descend(SimulatedState& state, std::uint32_t a, Sampler& random) {
     visits_.clear();
@@ -147,7 +147,7 @@ class TreeSearch {
     return later;
   }
 
-  // The highest upper confidence bound.
+  // The action with the highest upper confidence bound.
   [[gnu::always_inline]] std::uint32_t choose(std::uint32_t number) const {
     const HistoryNode& history = tree_.history(number);
     const ActionNode* const actions = tree_.actions(history);
@@ -166,14 +166,15 @@ class TreeSearch {
     return best;
   }
 
-  // Of a history without actions. Returns the change of n * v.
+  // Adds a return to a history without actions. Returns the change of its n * v.
   static double add_return(HistoryNode& node, double seen) {
     ++node.n;
     node.v += (seen - node.v) / node.n;
     return seen;
   }
 
-  // Returns the change of n * v of the history. As often as a step, and so without a call, as is `choose`.
+  // Backs up a visit. Returns the change of the history's n * v. It is inlined, as `choose` is, since it runs
+  // at each step.
   [[gnu::always_inline]] double back_up(const Visit& visit, double change, double seen) {
     HistoryNode& parent = tree_.history(visit.history);
     ActionNode* const actions = tree_.actions(parent);
@@ -197,23 +198,24 @@ class TreeSearch {
     return parent.n * parent.v - before;
   }
 
-  // Without a prior every action with a usual share comes once before the bounds decide, at the root every action.
+  // Without a prior, the bounds decide only after each action with a usual share was tried; at the root,
+  // after every action.
   bool comes_first(const ActionNode& action, bool is_root) const {
     return action.n == 0 && prior_.empty() && (action.share >= usual_share || is_root);
   }
-  // What was never tried counts as what its history is worth, less what the prior says.
+  // An action that was never tried has the value of its history, less what the prior says.
   double value_of(const ActionNode& action, std::uint32_t a, const HistoryNode& history) const {
     return action.n > 0 ? action.q : history.v - (prior_.empty() ? 0 : prior_[a]);
   }
 
-  // The root's actions take every eighth simulation in turn, so that the values of all of them are worth reading.
+  // Every eighth simulation begins with the next of the root's actions in turn, so that all their values can be read.
   int turn() const {
     if (spread_.simulations() % turns != 0) return -1;
     const auto next = static_cast<int>(spread_.simulations() / turns % action_count());
     return barred_.contains(static_cast<std::size_t>(next)) ? -1 : next;
   }
 
-  // What the step reports is drawn, too.
+  // Takes a step and draws what it reports.
   template <class SimulatedState>
   Step step_of(SimulatedState& state, int action, Sampler& random, ObservationCells::Drawn& drawn) const {
     if (!reports_numbers_) return state.step(action, random);
@@ -222,15 +224,15 @@ class TreeSearch {
     return state.step(action, random);
   }
 
-  // With a prior a history stays a leaf until it has been visited as often as there are actions. The fully observable value
-  // of states is too high, and less so the deeper the tree: few visits below each of many actions would tell them apart by
-  // how deep these happened to go.
+  // With a prior, a history stays a leaf until it has as many visits as there are actions. Fully observable
+  // values are too high, and less so the deeper the tree. With few visits below each of many actions, the
+  // values would tell apart how deep these visits went, and not the actions.
   bool stays_leaf(std::uint32_t number) const {
     const HistoryNode& history = tree_.history(number);
     return !prior_.empty() && history.first_action == no_node && history.n < action_count();
   }
 
-  // Returns false where there is no room for them.
+  // Gives a history its actions. Returns false if there is no room for them.
   template <class SimulatedState>
   bool give_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
     const bool is_new = tree_.history(number).first_action == no_node;
