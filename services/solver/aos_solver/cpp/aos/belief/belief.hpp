@@ -1,9 +1,9 @@
-// A belief: distinct states with weights that sum to 1, and Bayes' rule on it.
+// A belief: distinct states with weights that sum to 1, and Bayes' rule for it.
 //
-// While steps can be enumerated the update is exact: every outcome of every state, equal states merged, no sampling and
-// so no depletion. Where the states become too many, the heavy ones stay and the light ones are thinned out, and where a
-// loop has endless paths, the improbable ones are left out: the belief then bounds how far it may be from the exact one.
-// Where steps cannot be enumerated, it is drawn from then on: see particle_filter.hpp.
+// If steps can be enumerated, the update is exact. It takes every outcome of every state and merges equal states, so no
+// sampling depletes the particles. If there are too many states, the heavy ones stay and the light ones are thinned
+// out. If a loop has endless paths, the improbable ones are left out. In both cases the belief bounds its distance from
+// the exact one. If steps cannot be enumerated, the belief is drawn from then on: see particle_filter.hpp.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ inline constexpr int max_initial_paths = 1'000'000;
 inline constexpr std::size_t max_enumerated_paths = 4'000'000;  // of one update of an exact belief
 inline constexpr double negligible_weight = 1e-12;
 
-// What the belief becomes when the model holds an observation impossible.
+// What a belief becomes after an observation that it held impossible.
 enum class ImpossiblePolicy { hold, widen, reset };
 
 using ObservationOdds = std::vector<std::pair<Observation, double>>;
@@ -48,14 +48,14 @@ class Belief {
 
   const std::vector<Particle>& particles() const { return particles_; }
   bool is_exact() const { return error_bound_ == 0; }
-  // Whether its states were drawn at random.
+  // Whether the states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
-  // Of a drawn one: how its particles came to be, if that is known.
+  // How the particles of a drawn belief came to be, if that is known.
   const History<Model>& history() const { return history_; }
   const std::vector<Lineage>& lineages() const { return lineages_; }
-  // No event's probability is further than this from the exact belief's; 1 where steps were sampled.
+  // No event's probability is further than this from that of the exact belief. It is 1 if steps were sampled.
   double error_bound() const { return error_bound_; }
-  // How many states of equal weight would tell as much; of a drawn belief, how many independent samples.
+  // How many states of equal weight tell as much; for a drawn belief, how many independent samples.
   double effective_states() const {
     if (!lineages_.empty()) return Cloud<Model>{particles_, lineages_, history_}.effective();
     double squares = 0;
@@ -87,14 +87,14 @@ class Belief {
   // The initial belief as particles.
   static Belief drawn(Sampler& random) { return Belief{ParticleFilter<Model>{random}.initial()}; }
 
-  // After an action, before any observation; or after one of which nobody knows whether it ran.
+  // The belief after an action that ran with probability `ran_probability`, before any observation.
   Belief predicted(int action, Sampler& random, double ran_probability = 1) const {
     if (is_drawn()) return stepped({.action = action, .ran_probability = ran_probability}, ignored_numbers, random).first;
     Belief ran = enumerated_or_drawn({.action = action}, ignored_numbers, random).first;
     return ran_probability < 1 ? mixed_with(ran, ran_probability) : ran;
   }
 
-  // How likely each response is after an action, whatever numbers come with it; the likeliest first.
+  // The probability of each response after an action, whatever numbers come with it; the likeliest first.
   ObservationOdds observations(int action, Sampler& random) const {
     std::unordered_map<Observation, double> odds;
     const auto add = [&](Observation observation, double weight) { odds[observation] += weight; };
@@ -113,8 +113,8 @@ class Belief {
     return sorted;
   }
 
-  // The posterior and the logarithm of the observation's probability, which is a density where numbers were observed; an
-  // empty belief where that is impossible. `numbers` weighs each step by those that it reports.
+  // The posterior, and the logarithm of the observation's probability or, if numbers were observed, of its density. The
+  // belief is empty if the observation is impossible. `numbers` weighs each step by the numbers that it reports.
   template <class Numbers>
   std::pair<Belief, double> posterior(int action, Observation response, Numbers& numbers, Sampler& random) const {
     HistoryStep step{.action = action, .observation = response, .is_observed = true};
@@ -129,7 +129,7 @@ class Belief {
     }
   }
 
-  // `share` of `other` and the rest of this one.
+  // A mixture: `share` of `other` and the rest of this belief.
   Belief mixed_with(const Belief& other, double share) const {
     Gathering<Model> gathering;
     for (const auto& [state, weight] : particles_) gathering.add(state, weight * (1 - share));
@@ -145,7 +145,7 @@ class Belief {
     return particles_[index].state;
   }
 
-  // Of all weights; 1 but for rounding.
+  // The sum of the weights: 1 but for rounding.
   double total() const { return cumulative_.empty() ? 0 : cumulative_.back(); }
 
   double probability_of(Ending ending) const {
@@ -154,7 +154,7 @@ class Belief {
     return sum;
   }
 
-  // In nats.
+  // The entropy in nats.
   double entropy() const {
     double sum = 0;
     for (const auto& particle : particles_) sum -= particle.weight * std::log(particle.weight);
@@ -171,7 +171,7 @@ class Belief {
     json.member("is_exact", is_exact()).member("error_bound", error_bound_).end_object();
   }
 
-  // One that was kept; of a drawn one, with the lineages and the history if they were.
+  // A belief that was saved. If a drawn one was saved with lineages and a history, it has these again.
   static Belief of(Cloud<Model> cloud, double error_bound, bool is_drawn) {
     if (is_drawn && !cloud.lineages.empty()) return Belief{std::move(cloud)};
     Gathering<Model> gathering;
@@ -179,7 +179,7 @@ class Belief {
     return Belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
   }
 
-  // The same belief without what it knows of how it came to be.
+  // The same belief without its lineages and its history.
   Belief without_history() const {
     Belief alone = *this;
     alone.lineages_.clear();
@@ -215,8 +215,8 @@ class Belief {
     return std::clamp(max_weighted_bytes / Model::state_bytes(), particle_count, max_weighted_states);
   }
 
-  // About how many combinations of draws the initial belief has: the median of estimates from single paths, each of which
-  // is right on average (Knuth, 1975). Infinite where a draw is continuous.
+  // An estimate of the combinations of draws in the initial belief: the median of estimates from single
+  // paths, each of which is right on average (Knuth, 1975). Infinite if a draw is continuous.
   static double combinations(Sampler& random) {
     struct Alternatives final : DrawWatcher {
       double product = 1;
@@ -239,12 +239,12 @@ class Belief {
     return estimates[5];
   }
 
-  // By enumeration, else by drawing.
+  // The belief after a step, by enumeration or else by drawing, and the probability of what was observed.
   //
-  // Let two beliefs agree but for a share e of each. What was observed has probability p under this one, and so at least
-  // p - e under what they share: after it they agree but for e / p. Thinning out adds what it drops, and so do paths that
-  // are left out. A density may be any number under the share: where numbers weigh, nothing is known of a belief that is
-  // not exact.
+  // Let two beliefs agree but for a share e of each. If the observation has probability p under this one, it
+  // has at least p - e under their common part. So the posteriors agree but for e / p. Thinning out adds what
+  // it drops, and so do paths that are left out. A density may be any number under the share e: if numbers
+  // weigh, the bound is 1 unless the belief is exact.
   std::pair<Belief, double> enumerated_or_drawn(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {
     try {
       Gathering<Model> gathering;

@@ -1,8 +1,8 @@
-// Which draws of the origin nothing observed has felt, learnt from moves that change several of them at once: group testing
-// (Dorfman, 1943) with scores in place of certainty.
+// Learns which draws of the origin no observation depends on, from moves that change several of them at once:
+// group testing (Dorfman, 1943) with scores in place of certainty.
 //
-// What is far away is drawn in the beginning and matters later. Such draws can be made anew together, in one move that is
-// nearly always accepted, where one draw at a time would take as many moves as there are draws.
+// Whatever is far away is drawn at the origin and matters later. Such draws can be made anew together, in one
+// move that is nearly always accepted. One draw at a time would take as many moves as there are draws.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace aos {
 
 class FreeDraws {
  public:
-  // A set of draws to make anew, of the first `count`. It does not depend on what the draws are, so that it would be chosen
-  // as often on the way back. Its size is of any scale, so that few draws are tried, too.
+  // Chooses a set of draws to make anew. The choice does not depend on the draws' values, so that the way
+  // back is as likely. The size of the set is of any scale, so that few draws are tried, too.
   const std::vector<std::size_t>& choose(std::size_t count, Sampler& random) {
     if (scores_.size() < count) scores_.resize(count, unknown);
     const double scale = std::exp(-random.uniform() * std::log(static_cast<double>(scores_.size()) + 1));
@@ -28,12 +28,11 @@ class FreeDraws {
     return chosen_;
   }
 
-  // How many of the proposals to make so, by how often that has succeeded lately. Half are left to draws that were felt, and
-  // to those of later steps.
+  // The share of proposals to make in this way, by how often they succeeded lately. At least half of the
+  // proposals are left to draws that observations depend on, and to those of later steps.
   double share() const { return std::clamp(acceptance_, 0.25, 0.5); }
 
-  // Whether the draws that were chosen last could be made anew together. Where not, those are blamed more that have been
-  // free less often.
+  // Learns whether the last set of draws could be made anew. If not, draws with lower scores are blamed more.
   void note(bool was_accepted) {
     acceptance_ += 0.02 * ((was_accepted ? 1 : 0) - acceptance_);
     double doubts = 0;
@@ -49,7 +48,7 @@ class FreeDraws {
   static constexpr double gain = 0.3;
   static constexpr double loss = 0.7;
 
-  // Nothing is trusted fully, since later observations may feel it.
+  // No draw is trusted fully, since later observations may depend on it.
   double doubt(std::size_t draw) const { return 1.02 - scores_[draw]; }
 
   double acceptance_ = 0.5;

@@ -1,4 +1,4 @@
-// Distinct states with weights, as they come in.
+// Distinct states with weights, collected one by one.
 #pragma once
 
 #include <algorithm>
@@ -31,10 +31,10 @@ void draw_evenly(const std::vector<Particle<Model>>& particles, std::size_t coun
   }
 }
 
-// The weight c with which the sum of min(weight / c, 1) over all weights is `count`, of which there are more.
+// The weight c for which min(weight / c, 1) sums to `count` over all weights. There are more than `count` weights.
 inline double common_weight(std::vector<double> weights, std::size_t count) {
   std::sort(weights.begin(), weights.end());
-  double light = 0;  // of the lightest so far
+  double light = 0;  // the sum of the lightest so far
   std::size_t heavy = weights.size();
   for (const double weight : weights) {
     if (heavy < count && weight * static_cast<double>(count - heavy) >= light) break;
@@ -44,9 +44,9 @@ inline double common_weight(std::vector<double> weights, std::size_t count) {
   return light / static_cast<double>(count - heavy);
 }
 
-// Leaves at most `count` weights, the others become 0; no weight's mean changes (Fearnhead and Clifford, 2003). Heavy ones
-// stay as they are, of the light ones some are drawn and get the same weight. Returns the weight of those that went,
-// which is the total variation distance to what was there, in its unit.
+// Leaves at most `count` weights and sets the others to 0; no weight's mean changes (Fearnhead and Clifford,
+// 2003). Heavy weights stay as they are. Some of the light ones are drawn and get the same weight. Returns
+// the sum of the others, which is the total variation distance to the weights before, in their unit.
 inline double thin_out(std::vector<double>& weights, std::size_t count, Sampler& random) {
   if (weights.size() <= count) return 0;
   const double common = common_weight(weights, count);
@@ -65,7 +65,7 @@ inline double thin_out(std::vector<double>& weights, std::size_t count, Sampler&
   return gone;
 }
 
-// Merges equal states; the order of first appearance is kept, so that results do not depend on hashing.
+// Merges equal states. Their order is that of first appearance, so that results do not depend on hashing.
 template <class Model>
 class Gathering {
  public:
@@ -96,7 +96,7 @@ class Gathering {
     return sum;
   }
 
-  // Leaves at most `count` states. Returns the weight of those that went.
+  // Leaves at most `count` states. Returns the weight of those that were dropped.
   double reduce(std::size_t count, Sampler& random) {
     if (particles_.size() <= count) return 0;
     std::vector<double> weights;

@@ -1,24 +1,24 @@
-// Steps that lead to what was observed, each with its weight: likelihood weighting for models that give no likelihood.
+// Steps that lead to the observation, each with its weight: likelihood weighting for models that give no likelihood.
 //
-// A step is a sequence of draws. The first ones are left to chance. At each of the others (sequential importance
-// sampling) all that the draw can give is tried: every outcome of a discrete draw, and of a continuous one a point of each
-// of some strata. A trial runs to the end of the step with chance for the later draws, and has a promise:
+// A step is a sequence of draws. The first draws are left to chance. Each of the others (sequential
+// importance sampling) has trials: one for every outcome of a discrete draw, or one in each of some strata of
+// a continuous draw. A trial runs to the end of the step, with chance for the later draws, and has a promise:
 //
-//   1     it ended with the observation, or has written its beginning
-//   0     it ended with another one, and no draw was left to chance
-//   0.25  nothing is written, and chance has not led to the observation this time
-//   0.001 chance has not, and the text of the response, as far as it was written before the next draw, does not begin what was
-//         observed: that promises nothing, as long as something else does
+//   1     it ended with the observation, or has written the beginning of the observed text
+//   0     it ended with another observation, and no draw was left to chance
+//   0.25  no text is written, and chance has not led to the observation this time
+//   0.001 the text written before the next draw contradicts the observation, and chance has not led to it
 //
-// Of discrete draws all that is promising is followed, up to 16 branches in all; else one trial, drawn in proportion to
-// probability times promise, and weighted by what makes up for that. Once in 10,000 draws what promises nothing is followed
-// all the same, and counts by so much more. Only where it is certain that nothing can come, nothing is expected: so the
-// weights estimate the probability of the observation, and of all that comes with it, without bias, whatever the code does.
-// (A document may assign its text anew after it began another one; then a promise misleads, and costs precision only.)
+// All promising trials of a discrete draw are followed, up to 16 branches in all. Otherwise one trial is followed: it
+// is drawn in proportion to probability times promise, and its weight makes up for that. A promise of 0.001 counts as
+// none while other trials are promising. Once in 10,000 draws such a trial is followed all the same, and counts by so
+// much more. Only trials that are certain to fail are never followed. So the weights estimate the probability of the
+// observation, and of all that comes with it, without bias, whatever the code does. (A document may assign a text anew
+// after it began another one. A promise then misleads, which costs precision only.)
 //
-// The strata of a continuous draw are found before, at eleven points and by bisection between those that agree and those that
-// do not: long ones where all points tell the same, short ones between. They are other points than those of the trials,
-// so that a trial in each stratum, at random within it, is without bias, too.
+// The strata of a continuous draw are found before the trials, at eleven points and by bisection between those that
+// agree and those that do not. They are long where all points give the same result, and short between different
+// results. The trial in each stratum is at another point, at random, and so without bias, too.
 #pragma once
 
 #include <algorithm>
@@ -42,9 +42,9 @@ inline constexpr int max_alternatives = 64;              // of a discrete draw; 
 inline constexpr std::size_t max_guided_draws = 64;      // of one step; chance makes the others
 inline constexpr double doubtful = 0.25;
 inline constexpr double contradicted = 0.001;
-inline constexpr double misled = 1e-4;   // how often what is contradicted is followed beside what is not
+inline constexpr double misled = 1e-4;   // how often a contradicted trial is followed beside others
 
-// Whether a response's text is being written now; false before, and where none is.
+// Whether the text of a response is being written now.
 inline bool is_text_begun() { return response_text != nullptr && *response_text != no_text_response; }
 
 template <class Model>
@@ -52,23 +52,23 @@ class GuidedStep {
  public:
   using State = typename Model::State;
 
-  // Numbers that steps report are weighed by `numbers`, or ignored where it is null.
+  // `numbers` weighs the numbers that steps report; if it is null, they are ignored.
   GuidedStep(int action, Observation observation, NumberSink* numbers, Sampler& random)
       : action_(action), observation_(observation), random_(random), watch_(observation, random) {
     replay_.report_to(numbers);
   }
 
-  // How many draws come first that only chance makes.
+  // Leaves the first draws of each step to chance.
   void leave_to_chance(std::size_t draws) { by_chance_ = draws; }
 
-  // Whether the last call left nothing to chance but for what has no promise.
+  // Whether the last call left nothing to chance, apart from what has no promise.
   bool was_exhaustive() const { return is_exhaustive_; }
 
-  // How many steps were run until now.
+  // How many steps were run so far.
   std::size_t runs() const { return runs_; }
 
-  // Calls `visit(next, weight, values)` for steps from a state that agree, `values` being all their draws. Returns the sum
-  // of the weights.
+  // Calls `visit(next, weight, values)` for steps from a state that agree with the observation. `values` are
+  // all draws of a step. Returns the sum of the weights.
   template <class Visit>
   double from(const State& state, Visit&& visit, int branches = max_branches) {
     const WholeText whole{text_};
@@ -88,18 +88,18 @@ class GuidedStep {
   }
 
  private:
-  // How the text of a response is to the observed one, as far as it is written: before it in the order of characters,
-  // its beginning, after it; or there is no text.
+  // How the text of a response, as far as it is written, compares with the observed one: it is its beginning,
+  // or it is before or after it in the order of characters, or there is no text.
   enum class Order { agreeing = 0, before = 1, unknown = 2, after = 3 };
 
-  // Sees what the first random draw can be, and how the response's text begins before it.
+  // Notes what the first random draw can be, and how the response's text compares before that draw.
   class Watch final : public DrawWatcher {
    public:
     Watch(Observation observation, Sampler& random)
         : observed_(observation < default_observation ? observation_text(observation) : std::string_view{}),
           random_(random) {}
 
-    // `alternatives` is null where they are of no interest; they stay empty for a continuous draw.
+    // `alternatives` may be null. They stay empty for a continuous draw.
     void start(std::size_t given, std::vector<Alternative>* alternatives) {
       given_ = given;
       alternatives_ = alternatives;
@@ -134,7 +134,7 @@ class GuidedStep {
   };
 
   struct Trial {
-    bool has_ended;  // with the draws that were given
+    bool has_ended;  // within the given draws
     bool agrees;
     Order order;
 
@@ -145,7 +145,7 @@ class GuidedStep {
     }
   };
 
-  // The step with the draws in `values_`, and chance for the others.
+  // Runs the step with the draws in `values_`, and with chance for the others.
   Trial tried(std::vector<Alternative>* alternatives) {
     next_ = *start_;
     watch_.start(values_.size(), alternatives);
@@ -165,16 +165,16 @@ class GuidedStep {
     return trial;
   }
 
-  // A point of a continuous draw and what it leads to.
+  // A point of a continuous draw, and the kind of its result.
   struct Point {
     double value;
-    int kind;  // equal where the same was found
+    int kind;  // equal for equal results
 
     static int kind_of(const Trial& trial) { return 4 * (trial.has_ended ? 1 : 0) + static_cast<int>(trial.order); }
     bool agrees() const { return kind == 0 || kind == 4; }
   };
 
-  // A random point in each stratum of a continuous draw.
+  // Finds the strata of a continuous draw. Returns a random point in each.
   std::vector<Alternative> explored() {
     std::vector<Point> points;
     add_point(points, explored_tail);
@@ -199,7 +199,7 @@ class GuidedStep {
   void add_point(std::vector<Point>& points, double value) {
     points.push_back({value, Point::kind_of(tried_at(value))});
   }
-  // Between points of which one agrees, or of which one comes before the observed text and one after it.
+  // Bisects between two points if one agrees, or if one is before the observed text and the other after it.
   void bisect(std::vector<Point>& points, Point left, Point right, int depth) {
     if (depth == 0 || left.kind == right.kind) return;
     const bool is_between = (left.kind & 3) + (right.kind & 3) == 4 && (left.kind & 3) != 2;
@@ -210,7 +210,7 @@ class GuidedStep {
     bisect(points, middle, right, depth - 1);
   }
 
-  // From the draws in `values_` on.
+  // Follows the step from the draws in `values_` on. Returns the sum of the weights.
   template <class Visit>
   double follow(double weight, int branches, Visit& visit) {
     std::vector<Alternative> alternatives;
@@ -246,7 +246,7 @@ class GuidedStep {
     return weight;
   }
 
-  // Each that is promising, and now and then one of the others.
+  // Follows each promising alternative, and now and then one of the others.
   template <class Visit>
   double follow_all(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
                     int branches, Visit& visit) {
@@ -261,7 +261,7 @@ class GuidedStep {
     return sum;
   }
 
-  // One that is promising, or now and then one of the others.
+  // Follows one promising alternative, or now and then one of the others.
   template <class Visit>
   double follow_one(const std::vector<Alternative>& alternatives, const std::vector<double>& promises, double weight,
                     int branches, Visit& visit) {

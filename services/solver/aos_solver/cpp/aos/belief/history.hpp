@@ -1,7 +1,7 @@
-// What happened since a belief was drawn, and how each of its particles came to be: the draws that led there.
+// The history since a belief was drawn, and for each particle its trace: the draws that led to it.
 //
-// A trace is a chain of blocks, one for the origin and one for each step, which particles with common ancestors share. A
-// block that was drawn freely is known by the seed of its draws.
+// A trace is a chain of blocks, one for the origin and one for each step. Particles with common ancestors
+// share blocks. A block that was drawn freely is known by the seed of its draws.
 #pragma once
 
 #include <algorithm>
@@ -20,12 +20,11 @@
 
 namespace aos {
 
-// A window longer than this is closed, and another one begins: it costs time to replay, and memory.
+// A longer history is closed, and a new one begins: a history costs memory, and time when it is replayed.
 inline constexpr std::size_t max_history = 400;
 
-// The draws of one block: values of the first ones, and the seed of the others. `likelihood` is what was estimated for
-// the observation where the step was guided; such a step is never replayed with other draws before it, but guided anew.
-// Where it was not, it is the density of the numbers that were observed, or 1.
+// The draws of one block: the values of the first ones, and the seed of the others. For a guided step, `likelihood` is
+// the estimated likelihood of the observation. For any other step it is the density of the observed numbers, or 1.
 struct Block {
   std::vector<double> values;
   std::uint64_t seed = 0;
@@ -49,7 +48,7 @@ inline TraceLink longer(TraceLink before, Block block) {
   const Trace* const origin = before->origin;
   return std::make_shared<Trace>(Trace{std::move(before), origin, std::move(block)});
 }
-// The blocks from the origin on.
+// The blocks of a trace, from the origin on.
 inline std::vector<const Block*> blocks_of(const TraceLink& trace) {
   std::vector<const Block*> blocks;
   for (const Trace* block = trace.get(); block != nullptr; block = block->before.get()) blocks.push_back(&block->block);
@@ -62,16 +61,16 @@ struct HistoryStep {
   Observation observation = default_observation;
   bool is_observed = false;
   bool is_guided = false;
-  std::uint32_t by_chance = 0;  // of the draws of a guided one
-  double ran_probability = 1;   // below 1 where nobody knows whether it ran
-  // What was observed besides; null where the numbers of the step are ignored. Their densities are relative to the scale.
+  std::uint32_t by_chance = 0;  // how many draws a guided step leaves to chance
+  double ran_probability = 1;   // below 1 if nobody knows whether the action ran
+  // The numbers that were observed; null if the step's numbers are ignored. Densities are relative to `log_scale`.
   std::shared_ptr<const ObservedNumbers> numbers = nullptr;
   double log_scale = 0;
 
   bool agrees(const Step& step) const { return !is_observed || step.observation == observation; }
 };
 
-// As long as it is there, numbers that replayed steps report are weighed as the step's were.
+// As long as this object lives, the numbers of replayed steps are weighed as those of the step were.
 class NumbersOf {
  public:
   NumbersOf(const HistoryStep& step, Replay& replay) : replay_(replay) {
@@ -93,7 +92,7 @@ class History {
  public:
   using State = typename Model::State;
 
-  // It begins with the documents' initial belief, or with these states.
+  // A history begins with the documents' initial belief, or with these states.
   History() = default;
   explicit History(const std::vector<Particle<Model>>& particles) {
     auto origins = std::make_shared<Origins>();
@@ -105,19 +104,19 @@ class History {
   }
 
   bool begins_with_the_documents() const { return origins_ == nullptr; }
-  // A number in [0, 1) that originates the state of that number.
+  // A number in [0, 1) for which `originate` gives the state with this number.
   double origin_value(std::size_t number, Sampler& random) const {
     const double below = number > 0 ? origins_->cumulative[number - 1] : 0;
     return (below + random.uniform() * (origins_->cumulative[number] - below)) / origins_->cumulative.back();
   }
-  // Whether all states that it may begin with are among the particles, so that none can be missed. Traces of equal states
-  // are merged, so that few origins then say nothing.
+  // Whether the particles include all states that the history may begin with. Then few origins are no sign of
+  // depletion, since traces of equal states are merged.
   bool has_all_origins() const { return has_all_origins_; }
   void note_all_origins() { has_all_origins_ = true; }
   const std::vector<HistoryStep>& steps() const { return steps_; }
   void add(const HistoryStep& step) { steps_.push_back(step); }
 
-  // Whether it is time to move particles of few origins; moves that lead nowhere are tried less and less often.
+  // Whether it is time to move particles of few origins. Moves that do not help are tried less and less often.
   bool is_time_to_move() { return ++since_moves_ > pause_; }
   void note_moves(bool have_helped) {
     since_moves_ = 0;
@@ -131,7 +130,7 @@ class History {
     state = origins_->states[std::min<std::size_t>(found - cumulative.begin(), cumulative.size() - 1)];
   }
 
-  // One step as its draws say.
+  // Runs one step with the given draws.
   static Step run(State& state, const HistoryStep& step, Replay& draws) {
     if (step.ran_probability < 1 && draws.uniform() >= step.ran_probability) return {};
     return Model::step(state, step.action, draws);
@@ -149,15 +148,15 @@ class History {
   unsigned pause_ = 0;        // updates between moves
 };
 
-// What a particle of a drawn belief carries beside its state and weight.
+// The lineage of a particle of a drawn belief.
 //
-// It stands for weight^2 / squares independent samples, `squares` being the sum of the squares of their weights; 0 for a
-// weight that is known exactly.
+// The particle stands for weight^2 / squares independent samples. `squares` is the sum of the squares of
+// their weights, or 0 if the weight is known exactly.
 struct Lineage {
   double squares = 0;
   TraceLink trace;
 
-  // What it is when the weight, which was drawn to grow or else to vanish, has grown.
+  // The value of `squares` after a draw let the weight grow, where it could have vanished.
   double grown_squares(double weight, double grown) const {
     const double growth = grown / weight;
     return squares * growth * growth + grown * (grown - weight);
@@ -166,7 +165,7 @@ struct Lineage {
 
 inline constexpr std::size_t particle_count = 5000;
 
-// A drawn belief: particles, not normalised, with their lineages.
+// A drawn belief: particles with their lineages. The weights are not normalised.
 template <class Model>
 struct Cloud {
   using State = typename Model::State;
@@ -180,7 +179,7 @@ struct Cloud {
     for (const auto& particle : particles) sum += particle.weight;
     return sum;
   }
-  // How many independent samples its weights are worth (Kong, Liu and Wong, 1994), up to `particle_count`.
+  // How many independent samples the weights are worth (Kong, Liu and Wong, 1994), up to `particle_count`.
   double effective() const {
     double squares = 0;
     for (const Lineage& lineage : lineages) squares += lineage.squares;
@@ -188,7 +187,7 @@ struct Cloud {
     if (sum <= 0) return 0;
     return std::min(sum * sum / std::max(squares, 1e-300), static_cast<double>(particle_count));
   }
-  // The same of the origins that they descend from.
+  // How many independent samples the weights of the particles' origins are worth.
   double effective_origins() const {
     std::vector<std::pair<const Trace*, double>> weights;
     for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -209,7 +208,7 @@ struct Cloud {
   }
 };
 
-// Particles as they come in: equal states are merged, and one of their traces goes on, drawn by weight.
+// Collects particles. Equal states are merged, and one of their traces is kept, drawn by weight.
 template <class Model>
 class GatheredCloud {
  public:
@@ -224,7 +223,7 @@ class GatheredCloud {
   }
   std::size_t size() const { return lineages_.size(); }
 
-  // Its lightest particles thinned out.
+  // The particles, of which the lightest are thinned out.
   Cloud<Model> thinned(std::size_t max_particles, History<Model> history, Sampler& random) const {
     std::vector<double> weights;
     for (const auto& particle : states_.particles()) weights.push_back(particle.weight);

@@ -1,6 +1,6 @@
-// Beliefs that outlive a process, in a file that its parent holds open. Each change of the belief has a number, and the
-// parent counts those that it was told of. The file has room for two beliefs: when a process ends amid a change, the one
-// before it is whole.
+// Beliefs that outlive a process, in a file that its parent holds open. Each change of the belief has a
+// number, and the parent counts the changes that it was told of. The file has room for two beliefs: if a
+// process ends during a change, the belief before the change is whole.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ class KeptBeliefs {
   // An empty path keeps nothing.
   explicit KeptBeliefs(const char* path) : file_(path, std::ios::in | std::ios::out | std::ios::binary) {}
 
-  // The belief after one more change. A file without room for it keeps none.
+  // Keeps the belief after one more change. A file without room for the belief keeps none.
   void keep(const Belief<Model>& belief) {
     ++changes_;
     if (!file_.is_open()) return;
@@ -39,7 +39,7 @@ class KeptBeliefs {
     file_.flush();
   }
 
-  // The belief after the change of this number, from which counting goes on; nothing where it was not kept.
+  // The belief after this change, from which counting goes on; nothing if that belief was not kept.
   std::optional<Belief<Model>> restore(std::uint64_t change) {
     changes_ = change;
     Head head{};
@@ -69,10 +69,10 @@ class KeptBeliefs {
     bool is_drawn;
   };
 
-  // Far apart, in a file that takes memory only for what is written.
+  // The two places are far apart; the file takes memory only for what is written.
   std::streamoff begin() const { return static_cast<std::streamoff>(changes_ % 2) << 36; }
 
-  // To move there writes what was put before, so that the order holds in the file as well.
+  // The seek writes what was put before, so that the file has the same order.
   void put_head(const Head& head) {
     file_.seekp(begin());
     put(&head, sizeof head);

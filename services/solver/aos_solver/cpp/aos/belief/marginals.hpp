@@ -1,4 +1,4 @@
-// The distribution of each single variable under weighted states, for people: of every variable its likeliest values.
+// The distribution of each variable under weighted states, for people: the likeliest values of each variable.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class Marginals {
  public:
   using State = typename Model::State;
 
-  // The particles must outlive this.
+  // The particles must outlive this object.
   explicit Marginals(const std::vector<Particle<Model>>& particles) : particles_(particles) {
     if (particles.empty()) return;
     const std::vector<std::byte> differences = differing_bits();
@@ -38,7 +38,7 @@ class Marginals {
     }
   }
 
-  // An array with an entry for each variable: its name, its likeliest values, and the probability of all others.
+  // Writes an array with an entry for each variable: its name, its likeliest values, and the probability of the others.
   void write(JsonWriter& json) {
     choose_reported();
     write_texts();
@@ -59,14 +59,14 @@ class Marginals {
   struct Value {
     std::uint64_t number;
     double weight;
-    std::size_t particle;  // the first that has it, and as which of its leaves
+    std::size_t particle;  // the first one with this value, in its leaf `leaf`
     std::size_t leaf;
   };
 
   struct Variable {
     std::string name;
     std::vector<Value> values;
-    std::vector<std::string> texts;  // of those that are reported
+    std::vector<std::string> texts;  // of the reported values
     NumberIndex places;
 
     void add(const Value& added) {
@@ -81,7 +81,7 @@ class Marginals {
     }
   };
 
-  // The single values of a state, where they stand.
+  // The leaves of a state, with their addresses.
   struct StateLeaves final : ValueVisitor {
     explicit StateLeaves(const State& state) : state(Model::bytes_of(state)) { Model::visit_values(state, *this); }
     void leaf(const Leaf& leaf) override { all.push_back(leaf); }
@@ -89,7 +89,7 @@ class Marginals {
       return static_cast<std::size_t>(static_cast<const std::byte*>(leaf.place) - state);
     }
 
-    // Whether no byte differs outside of them: then all states have the same shape.
+    // Whether no byte differs outside of the leaves. Then all states have the same shape.
     bool hold_all_of(const std::vector<std::byte>& differences) const {
       std::vector<std::byte> outside = differences;
       for (const Leaf& leaf : all) std::memset(outside.data() + offset(leaf), 0, leaf.size);
@@ -111,7 +111,7 @@ class Marginals {
     return differences;
   }
 
-  // In states of one shape a single value stands at one place. Most have one value in all of them.
+  // In states of one shape, a leaf has one place. Most leaves have the same value in all states.
   void add_by_place(const std::vector<Leaf>& leaves, const std::vector<std::byte>& differences) {
     const std::byte* const first = Model::bytes_of(particles_.front().state);
     double total = 0;
@@ -148,7 +148,7 @@ class Marginals {
     }
   }
 
-  // The variable of each leaf, for states of a shape.
+  // The variable of each leaf, for states of this shape.
   const std::vector<std::size_t>& variables_of(std::uint64_t shape, const State& state) {
     const auto [entry, is_new] = shapes_.try_emplace(shape);
     if (is_new) {
@@ -172,7 +172,7 @@ class Marginals {
     }
   }
 
-  // Texts take long and are made of what is reported only, of all that a state shows at once.
+  // Making texts takes long, so only reported values get one, and each state makes all of its texts at once.
   void write_texts() {
     struct Wanted {
       std::size_t particle, leaf;

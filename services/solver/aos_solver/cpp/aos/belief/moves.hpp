@@ -1,17 +1,18 @@
-// Resample-move (Gilks and Berzuini, 2001): particles that have become few, or that descend from few origins, are copied,
-// and each copy is moved by Metropolis and Hastings' rule, which leaves the belief as it is.
+// Resample-move (Gilks and Berzuini, 2001). Particles that have become few, or that descend from few origins,
+// are copied. Each copy is moved by the Metropolis-Hastings rule, which leaves the belief as it is.
 //
-// What is moved is the whole trace of a particle: all draws from the origin on, as numbers in [0, 1) that are uniform and
-// independent under the documents (primary sample space: Kelemen and others, 2002). A proposal changes some draws of one
-// block, the origin's or a step's, and the rest is replayed: it is accepted with what the later steps make of it. A step
-// that was drawn freely must bring what was observed then. A step that was guided is guided anew from where the trace is
-// now, and its likelihood counts (pseudo-marginal: Andrieu and Roberts, 2009). So variables of two particles are never
-// mixed, and what all histories have in common stays.
+// A move changes the trace of a particle: all draws from the origin on, as numbers in [0, 1) that are uniform
+// and independent under the documents (primary sample space: Kelemen and others, 2002). A proposal changes
+// some draws of one block, the origin's or a step's. The rest is replayed, and the later steps decide on the
+// proposal. A step that was drawn freely must give what was observed then. A guided step is guided anew from
+// its new state, and its likelihood counts (pseudo-marginal: Andrieu and Roberts, 2009). So variables of two
+// particles are never mixed, and what all histories have in common stays.
 //
-// Another kind of proposal makes many draws of the origin anew that nothing observed seems to have felt (free_draws.hpp). All
-// later steps are replayed with their own draws, guided ones too, which costs one run a step. A guided step keeps the
-// likelihood that was estimated for it. It has to draw from the same weights as before, so that other draws would have
-// been guided alike. Nobody compares the parameters of continuous draws: there the kept likelihood is an approximation.
+// Another kind of proposal makes many draws of the origin anew on which no observation seems to depend
+// (free_draws.hpp). All later steps are replayed with their own draws, guided ones too, which costs one run a
+// step. A guided step keeps its estimated likelihood. It has to draw from the same weights as before, so that
+// other draws would have been guided alike. The parameters of continuous draws are not compared: there the
+// kept likelihood is an approximation.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +35,7 @@ inline constexpr std::size_t max_moving_steps = 600'000;  // of one update
 inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
 inline constexpr std::size_t proposals_that_tell = 500;
-inline constexpr std::size_t min_accepted = 1;          // of them; else there is little to be gained
+inline constexpr std::size_t min_accepted = 1;          // of these; with fewer, there is little to gain
 
 template <class Model>
 class Moves {
@@ -43,8 +44,8 @@ class Moves {
 
   Moves(const History<Model>& history, Sampler& random) : history_(history), random_(random) {}
 
-  // Copies of a cloud's particles, after moves; the cloud as it is where moves lead nowhere. The longer the history, the
-  // fewer copies, so that each has enough of them.
+  // Copies of a cloud's particles after moves, or the cloud as it is if no move succeeds. A longer history
+  // has fewer copies, so that each copy has enough moves.
   Cloud<Model> moved(const Cloud<Model>& cloud) {
     const std::size_t copies = std::clamp(max_moving_steps / (20 * (1 + cloud.history.steps().size())), min_copies, max_copies);
     copy(cloud, copies);
@@ -69,7 +70,7 @@ class Moves {
     bool is_moved;
   };
 
-  // In proportion to the weights, and where there are not too many particles each of them once at least.
+  // Makes copies in proportion to the weights. Each particle has at least one unless there are too many particles.
   void copy(const Cloud<Model>& cloud, std::size_t copies) {
     const double unit = cloud.total() / static_cast<double>(copies);
     std::vector<double> weights;
@@ -86,7 +87,7 @@ class Moves {
     }
   }
 
-  // Copies that were not moved are worth as many samples as their particle was.
+  // Merges the copies. Those that were not moved are worth as many samples as their particle was.
   Cloud<Model> gathered(const Cloud<Model>& cloud, std::size_t max_particles) {
     std::vector<double> unmoved(cloud.particles.size(), 0);
     for (const Copy& copy : copies_) unmoved[copy.particle] += copy.is_moved ? 0 : copy.weight;
@@ -104,7 +105,7 @@ class Moves {
     return gathered.thinned(max_particles, cloud.history, random_);
   }
 
-  // One proposal, at one of all the draws of the trace. A change that leads to the same state is none.
+  // Makes one proposal, at one of all draws of the trace. A change that leads to the same state is no move.
   bool move(Copy& copy) {
     const std::vector<const Block*> blocks = blocks_of(copy.trace);
     const auto [place, first] = random_draw(blocks);
@@ -138,7 +139,7 @@ class Moves {
     return true;
   }
 
-  // A proposal to make many draws of the origin anew at once.
+  // Makes one proposal, of many draws of the origin made anew at once.
   bool refresh(Copy& copy) {
     const std::vector<const Block*> blocks = blocks_of(copy.trace);
     if (blocks[0]->draws == 0) return false;
@@ -167,8 +168,8 @@ class Moves {
     return true;
   }
 
-  // Runs all steps from either origin, to their last states. Returns whether the second origin is accepted in place of the
-  // first: it has to bring what was observed, and the densities of the numbers decide by chance.
+  // Runs all steps from either origin, to their last states. Returns whether the second origin is accepted in
+  // place of the first. It has to give what was observed, and the densities of the numbers decide by chance.
   bool still_brings(const std::vector<const Block*>& blocks, State& before, State& after) {
     double ratio = 1;
     for (std::size_t i = 1; i < blocks.size(); ++i) {
@@ -186,7 +187,7 @@ class Moves {
     std::size_t block;
     std::size_t draw;
   };
-  // After the last block where nothing was drawn.
+  // One draw of all, at random. The block is the one after the last if there are no draws.
   DrawPlace random_draw(const std::vector<const Block*>& blocks) {
     std::size_t left = 0;
     for (const Block* block : blocks) left += block->draws;
@@ -196,8 +197,8 @@ class Moves {
     while (left >= blocks[place]->draws) left -= blocks[place++]->draws;
     return {place, left};
   }
-  // How much likelier it is to choose the same place from the proposed trace than it was from this one: the same draw, or
-  // any of a guided block.
+  // How much likelier the same place is to be chosen from the proposed trace than from this one. The place is
+  // the same draw, or any draw of a guided block.
   double way_back(const std::vector<const Block*>& blocks, const std::vector<Block>& proposed, std::size_t place) const {
     double before = 0;
     double after = 0;
@@ -211,7 +212,7 @@ class Moves {
 
   bool is_guided(std::size_t place) const { return place > 0 && history_.steps()[place - 1].is_guided; }
 
-  // Runs a block's draws. Returns 0 where it does not bring what was observed, else the density of the numbers.
+  // Runs a block's draws. Returns the density of the numbers, or 0 if the step does not give what was observed.
   double repeat(std::size_t place, const Block& block, State& state) {
     Sampler later{block.seed};
     return run(place, block.values, later, state, nullptr);
@@ -231,8 +232,8 @@ class Moves {
     return step.agrees(History<Model>::run(state, step, replay_)) ? replay_.weight() : 0;
   }
 
-  // A block with some draws changed from one on, and what that makes of the ratio; 0 where it does not bring what was
-  // observed.
+  // Proposes a block with some draws changed from `first` on. Returns the factor of the acceptance ratio,
+  // which is 0 if the block does not give what was observed.
   double changed(std::size_t place, std::size_t first, const Block& block, State& state, std::vector<Block>& proposed) {
     std::vector<double> values;
     State old = state;
@@ -246,7 +247,7 @@ class Moves {
     return likelihood / block.likelihood;
   }
 
-  // A few in a row are drawn anew, or turned by a little: both are as likely there as back.
+  // Draws a few values in a row anew, or turns them by a little. Both are as likely on the way back.
   void perturb(std::vector<double>& values, std::size_t first) {
     const std::size_t length = random_.flag(0.5) ? 1 : random_.flag(0.05) ? values.size() : 2 + random_.below(3);
     const bool is_turned = random_.flag(0.3);
@@ -262,7 +263,7 @@ class Moves {
     }
   }
 
-  // A step guided anew, and what its likelihood makes of the ratio.
+  // Proposes a step that is guided anew. Returns the factor of the acceptance ratio.
   double guided(std::size_t place, const Block& block, State& state, std::vector<Block>& proposed) {
     const HistoryStep& step = history_.steps()[place - 1];
     NumbersOf numbers{step, replay_};
@@ -293,7 +294,7 @@ class Moves {
     return trace;
   }
 
-  // Tells whether two steps draw from the same weights.
+  // A digest of the weights that a step draws from, to compare two steps.
   class Weights final : public DrawWatcher {
    public:
     void start() { digest_ = 0; }

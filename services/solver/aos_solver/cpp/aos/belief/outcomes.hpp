@@ -1,4 +1,4 @@
-// What an action can lead to from weighted states: every outcome, where steps can be enumerated.
+// The outcomes of an action from weighted states, if steps can be enumerated.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,9 @@
 
 namespace aos {
 
-// Calls `visit(before, next, observation, weight)` for nearly every outcome of an action, whose numbers go to `numbers`,
-// and returns the weight of the others.
-// Throws NotEnumerable where a step cannot be enumerated, or where all together have more than `max_paths` paths, soon if
-// the first states tell.
+// Calls `visit(before, next, observation, weight)` for nearly every outcome of an action. Returns the weight
+// of the others. `numbers` takes the numbers that steps report. Throws NotEnumerable if a step cannot be
+// enumerated, or if there are more than `max_paths` paths, which the first states often tell.
 template <class Model, class Visit>
 double enumerate_outcomes(const std::vector<Particle<Model>>& particles, int action, NumberSink& numbers,
                           std::size_t max_paths, Visit&& visit) {

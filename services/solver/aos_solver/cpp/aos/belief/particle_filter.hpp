@@ -1,9 +1,10 @@
-// A belief that cannot be enumerated, as particles: one step of the filter.
+// The particle filter of beliefs that cannot be enumerated.
 //
-// Each particle makes trials in proportion to its weight, and at least one. A trial draws the whole step where many agree
-// with what was observed (the bootstrap filter: Gordon, Salmond and Smith, 1993), else it is guided towards the observation
-// and weighted (guided_step.hpp). Equal states are merged, light particles thinned out (gathering.hpp). Where too few agree,
-// or the particles are worth too few samples or descend from too few origins, they are moved (moves.hpp).
+// Each particle makes trials in proportion to its weight, and at least one. If many steps agree with the
+// observation, a trial draws the whole step (the bootstrap filter: Gordon, Salmond and Smith, 1993).
+// Otherwise a trial is guided towards the observation and weighted (guided_step.hpp). Equal states are
+// merged, and light particles are thinned out (gathering.hpp). Particles are moved (moves.hpp) if too few
+// agree, if they are worth too few samples, or if they descend from too few origins.
 //
 // All limits are numbers of steps, so that the same seed gives the same belief.
 #pragma once
@@ -27,21 +28,21 @@
 namespace aos {
 
 inline constexpr std::size_t pilot_count = 200;         // steps that tell how likely an observation is
-inline constexpr double rare_observation = 0.25;        // in that share of steps
-inline constexpr std::size_t few_particles = 300;       // more are not guessed at, as far as each can have a trial
+inline constexpr double rare_observation = 0.25;        // an observation in fewer of all steps
+inline constexpr std::size_t few_particles = 300;       // more have a trial each, if affordable
 inline constexpr std::size_t few_states = 500;
 inline constexpr std::size_t max_guesses = 500;         // about
 inline constexpr std::size_t max_guessing_runs = 500'000;
 inline constexpr std::size_t price_count = 50;          // trials that tell how many runs one takes
-inline constexpr double max_guided_runs = 150'000;      // of an update where few particles are to be covered
-inline constexpr double max_covering_runs = 2'000'000;  // where many are
-inline constexpr double dear_trial = 50;                // in runs; of cheap ones there can be many
-inline constexpr double nearly_all = 1 - 1e-8;          // of the weight is covered
+inline constexpr double max_guided_runs = 150'000;      // of an update that covers few particles
+inline constexpr double max_covering_runs = 2'000'000;  // of one that covers many
+inline constexpr double dear_trial = 50;                // in runs; cheap trials can be many
+inline constexpr double nearly_all = 1 - 1e-8;          // of the weight, which is covered
 inline constexpr double few_effective = 0.2 * particle_count;
 inline constexpr double few_origins = 250;
 inline constexpr double too_few_effective = 150;
 inline constexpr int max_rescues = 2;
-inline constexpr int max_rescues_of_none = 3;           // where no particle is left
+inline constexpr int max_rescues_of_none = 3;           // if no particle is left
 
 template <class Model>
 class ParticleFilter {
@@ -54,7 +55,7 @@ class ParticleFilter {
 
   explicit ParticleFilter(Sampler& random) : random_(random) {}
 
-  // The documents' initial belief. Where it has few states more of it is drawn, which takes no more room.
+  // Draws the documents' initial belief. If the belief has few states, more draws of it take no more room.
   Cloud<Model> initial() {
     GatheredCloud<Model> gathered;
     State state{};
@@ -73,7 +74,7 @@ class ParticleFilter {
     return gathered.thinned(particle_count, std::move(history), random_);
   }
 
-  // A belief from which a history begins, of weights that are known exactly, or of one sample each.
+  // Begins a history with particles. Their weights are known exactly, or are worth one sample each.
   Cloud<Model> begun(const std::vector<Particle<Model>>& particles, bool exact) {
     Cloud<Model> cloud{particles, {}, History<Model>{particles}};
     for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -83,7 +84,7 @@ class ParticleFilter {
     return cloud;
   }
 
-  // After a step. The cloud has no particle where no trial brought what was observed.
+  // Updates a cloud by a step. The result has no particles if no trial gave what was observed.
   Updated after(Cloud<Model> before, HistoryStep step, NumberSink& numbers) {
     const ForgottenTexts forgotten;
     numbers_ = &numbers;
@@ -112,22 +113,22 @@ class ParticleFilter {
   }
 
  private:
-  // How trials are made: of each particle so many, on average.
+  // How trials are made, and how many of each particle on average.
   struct Plan {
     bool is_guided = false;
     std::size_t by_chance = 0;
     std::vector<double> trials;
   };
 
-  // Notes of each draw how many outcomes it has, 0 for a continuous one, and whether a text is begun.
+  // Notes how many outcomes each draw has, 0 for a continuous one, and whether a text is begun.
   class Look final : public DrawWatcher {
    public:
     void before_draw(std::size_t, const double* weights, int count, double) override {
       const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
       draws_.push_back({weights == nullptr ? 0 : static_cast<int>(positive), is_text_begun()});
     }
-    // Of the draws since the last call: how many come before those that are best guided. They are those that write a text,
-    // or else the last ones, with as many before them as have few combinations.
+    // How many of the draws since the last call come before those that are guided. Draws are guided from the
+    // beginning of a text on, or else at the end, and so are as many before these as have few combinations.
     std::size_t first_guided() {
       const auto begun = std::find_if(draws_.begin(), draws_.end(), [](const Draw& draw) { return draw.is_text_begun; });
       auto first = static_cast<std::size_t>(begun - draws_.begin());
@@ -185,12 +186,12 @@ class ParticleFilter {
     return {true, by_chance, by_promise(before, step, by_chance)};
   }
 
-  // As many trials that agree as are wanted. Where there are few states, more of them take no more room.
+  // How many agreeing trials are wanted. If there are few states, more trials take no more room.
   static double wanted(const Cloud<Model>& before) {
     return before.particles.size() <= few_states ? 4.0 * particle_count : particle_count;
   }
 
-  // In proportion to the weights, at least one each.
+  // Trials in proportion to the weights, at least one for each particle.
   static std::vector<double> by_weight(const Cloud<Model>& before, double all) {
     std::vector<double> trials;
     const double total = before.total();
@@ -198,9 +199,9 @@ class ParticleFilter {
     return trials;
   }
 
-  // In proportion to the weights and to a rough guess at how likely the observation is from each particle (as the auxiliary
-  // particle filter: Pitt and Shephard, 1999), and a few of them to the weights alone. Of many particles one trial each
-  // tells more.
+  // Trials in proportion to the weights and to a rough estimate of the observation's likelihood from each
+  // particle (as the auxiliary particle filter: Pitt and Shephard, 1999). A few trials follow the weights
+  // alone. If there are many particles, one trial for each tells more.
   std::vector<double> by_promise(const Cloud<Model>& before, const HistoryStep& step, std::size_t by_chance) {
     GuidedStep<Model> guided{step.action, step.observation, numbers_, random_};
     guided.leave_to_chance(by_chance);
@@ -237,8 +238,8 @@ class ParticleFilter {
     return priced(before, std::move(trials), guided);
   }
 
-  // As many trials as the budget allows, shared out like this; and one at least for each of the particles that make up
-  // nearly all of it.
+  // As many trials as the budget allows, in these shares. Each of the particles that make up nearly all of
+  // the shares has at least one trial.
   std::vector<double> priced(const Cloud<Model>& before, std::vector<double> shares, GuidedStep<Model>& guided) {
     std::vector<Particle<Model>> promising;
     for (std::size_t i = 0; i < shares.size(); ++i) promising.push_back({before.particles[i].state, shares[i]});
@@ -298,7 +299,7 @@ class ParticleFilter {
     double weight_of_trial() const { return weight / static_cast<double>(trials); }
   };
 
-  // Whole steps at random. One is enough where nothing is drawn.
+  // Draws whole steps at random. One is enough if the step makes no draw.
   void draw(const Parent& parent, const HistoryStep& step, GatheredCloud<Model>& gathered) {
     for (long trial = 0; trial < parent.trials; ++trial) {
       State next = parent.state;
@@ -316,7 +317,7 @@ class ParticleFilter {
     }
   }
 
-  // Steps guided towards the observation. One is enough where it followed all that can be.
+  // Guides steps towards the observation. One is enough if it followed all outcomes.
   void guide(const Parent& parent, GuidedStep<Model>& guided, GatheredCloud<Model>& gathered) {
     for (long trial = 0; trial < parent.trials; ++trial) {
       outcomes_.clear();

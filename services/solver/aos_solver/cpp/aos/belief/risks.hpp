@@ -1,4 +1,4 @@
-// How probable it is that a step violates the mission's constraints.
+// The probability that a step violates the mission's constraints.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@
 
 namespace aos {
 
-// Of one step; a mission that is over violates nothing any more.
+// The violations of one step. A mission that is over violates nothing.
 template <class Model>
 Violations violations_of(const typename Model::State& before, const typename Model::State& next, int action) {
   if (Model::constraint_count() == 0 || Model::ending(before) != Ending::running) return 0;
   return Model::violations(before, next, action);
 }
 
-// By constraint. Sampled are steps that cannot be enumerated.
+// The probabilities by constraint. Steps that cannot be enumerated are sampled.
 struct Risks {
   std::vector<double> probabilities;
   bool is_sampled = false;
@@ -28,7 +28,7 @@ struct Risks {
 
 inline constexpr int risk_samples = 20'000;
 
-// Of an action under a belief. What an enumeration leaves out counts as a violation.
+// The risks of an action under a belief. Outcomes that an enumeration leaves out count as violations.
 template <class Model>
 Risks risks_of(const Belief<Model>& belief, int action, std::size_t max_paths, Sampler& random) {
   using State = typename Model::State;

@@ -1,7 +1,7 @@
 // The history and the traces of a drawn belief as words, for an engine that takes the belief over.
 //
-// Whether they make sense there is tried: each trace must lead to the state of its particle, and bring what was observed.
-// If not, as where the documents have changed, the belief is taken over alone, and a new history begins with it.
+// That engine checks them: each trace must lead to the state of its particle and give what was observed. If one does
+// not, because the documents have changed, the belief is taken over alone, and a new history begins with it.
 #pragma once
 
 #include <bit>
@@ -35,7 +35,7 @@ inline void add_text(Words& words, std::string_view text) {
   std::memcpy(words.data() + first, text.data(), text.size());
 }
 
-// Reads what was written; 0 after the end.
+// Reads words; 0 after the end.
 class WordReader {
  public:
   explicit WordReader(const Words& words) : words_(words) {}
@@ -58,7 +58,7 @@ class WordReader {
 
 }  // namespace detail
 
-// Nothing where there is none that begins with the documents' initial belief, or too much.
+// Empty if there is no history from the documents' initial belief on, or if it has too many words.
 template <class Model>
 Words saved_history(const Belief<Model>& belief) {
   Words words;
@@ -93,7 +93,7 @@ Words saved_history(const Belief<Model>& belief) {
   return words;
 }
 
-// The particles with their lineages and their history, if there are any.
+// The particles, with their lineages and their history if the words fit this model.
 template <class Model>
 Cloud<Model> with_history(std::vector<Particle<Model>> particles, const Words& words) {
   Cloud<Model> alone{std::move(particles), {}, {}};
