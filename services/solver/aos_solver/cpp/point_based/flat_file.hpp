@@ -52,6 +52,7 @@ class FlatFile {
 
 }  // namespace detail
 
+// Throws std::runtime_error if the file is not there, no flat model, or too short.
 inline FlatModel read_flat_model(const std::string& path) {
   detail::FlatFile file{path};
   const auto counts = file.numbers<std::uint64_t>(8);

@@ -221,7 +221,7 @@ class InitialBounds {
     return sum;
   }
 
-  // What a reward at every decision adds up to, and a little more in size.
+  // The value of a reward at every decision, and a little more in size.
   double summed_up(double reward) const {
     return reward * (1 + 8 * ulp) / (1 - model_.discount * max_row_sum_ - 4 * ulp);
   }

@@ -46,7 +46,7 @@ class OnlineSarsop {
   // Runs at least one trial, until `is_over()`, until `max_work` is done (0: no limit), or until nothing is
   // left to find out. Returns the work: the number of multiplications for predictions and for alpha vectors.
   std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over);
-  // The same below an action that is being carried out, without a limit of the work.
+  // Runs trials below an action that is being carried out, without a limit of the work. Returns the work.
   std::uint64_t improve_below(std::uint32_t action, const IsOver& is_over);
 
   // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and

@@ -38,7 +38,7 @@ class Posterior {
     return branch.is_ascending ? listed(branch) : gathered(branch);
   }
 
-  // The weights as a belief, given their sum. States that are next to impossible are left out.
+  // The weights as a belief, given their sum. States with no more than `negligible` probability are left out.
   const Belief& normalised(double total, double negligible) {
     weights_ = belief_.probabilities;
     weighted_ = belief_.states;

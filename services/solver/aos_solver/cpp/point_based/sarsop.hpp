@@ -77,7 +77,7 @@ class Sarsop {
     return widest != nullptr && improve_from(widest->node, precision, is_over);
   }
 
-  // The same below an action that is carried out at the only start.
+  // Runs one trial below an action that is being carried out at the only start.
   template <class IsOver>
   bool improve_below(std::uint32_t action, double precision, IsOver&& is_over) {
     if (roots_.empty()) return false;

@@ -20,7 +20,7 @@ class Trial {
 
   // The nodes of the last trial, from its start on.
   const std::vector<std::uint32_t>& path() const { return path_; }
-  // By action: how many sampled trials began with it.
+  // How many sampled trials began with each action.
   const std::vector<std::uint32_t>& begun() const { return begun_; }
   void forget_begun() { begun_.assign(model_.actions, 0); }
   // Begins again with the first of the rules.

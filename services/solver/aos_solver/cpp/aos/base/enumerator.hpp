@@ -22,7 +22,7 @@ inline constexpr std::size_t max_draws_of_path = 100'000;
 // A path with more draws than this counts as a loop that chance ends.
 inline constexpr std::size_t max_draws_depth_first = 64;
 inline constexpr std::size_t max_frontier = 4'000'000;  // of nodes, in a best-first walk
-inline constexpr double negligible_paths = 1e-9;        // probability in all of paths that may stay unwalked
+inline constexpr double negligible_paths = 1e-9;        // the total probability of paths that may be left out
 inline constexpr double max_left_out = 1e-6;            // the same once the budget is used up
 
 // Replays model code, one path of draws in each run. A run repeats the choices that are known of its path,
@@ -49,7 +49,7 @@ class Enumerator final : public DirectedDraws {
     walk(run, max_paths, std::numeric_limits<std::size_t>::max());
   }
 
-  // The same for models with loops that chance ends. Returns the probability of the paths that were not
+  // Does the same for models with loops that chance ends. Returns the probability of the paths that were not
   // walked, which is at most `max_left_out`. Throws NotEnumerable.
   template <class Run>
   double for_nearly_each_path(Run&& run, int max_paths = path_budget) {

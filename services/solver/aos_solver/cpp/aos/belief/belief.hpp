@@ -63,6 +63,7 @@ class Belief {
     return squares > 0 ? 1 / squares : 0;
   }
 
+  // The documents' initial belief: enumerated if possible, else drawn.
   static Belief initial(Sampler& random) {
     if (combinations(random) > 2 * max_initial_paths) return drawn(random);
     try {

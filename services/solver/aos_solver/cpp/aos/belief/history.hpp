@@ -56,6 +56,7 @@ inline std::vector<const Block*> blocks_of(const TraceLink& trace) {
   return blocks;
 }
 
+// An action, what was observed after it, and how its draws were made.
 struct HistoryStep {
   int action;
   Observation observation = default_observation;
@@ -109,8 +110,8 @@ class History {
     const double below = number > 0 ? origins_->cumulative[number - 1] : 0;
     return (below + random.uniform() * (origins_->cumulative[number] - below)) / origins_->cumulative.back();
   }
-  // Whether the particles include all states that the history may begin with. Then few origins are no sign of
-  // depletion, since traces of equal states are merged.
+  // Whether the particles include all possible origins of the history. Equal states merge, so few origins are
+  // no lack then.
   bool has_all_origins() const { return has_all_origins_; }
   void note_all_origins() { has_all_origins_ = true; }
   const std::vector<HistoryStep>& steps() const { return steps_; }

@@ -46,6 +46,7 @@ inline void look(int) {
 
 }  // namespace detail
 
+// From now on, `look` runs after each `period_us` of processor time.
 inline void start() {
   struct sigaction action{};
   action.sa_handler = detail::look;

@@ -77,7 +77,7 @@ class Objects {
   State* state_;
 };
 
-// A pointer to an object of a state, const where the state is.
+// A pointer to an object of a state; it is const if the state is.
 template <class T, class State>
 using Pointer = std::conditional_t<std::is_const_v<std::remove_reference_t<State>>, const T*, T*>;
 

@@ -50,7 +50,7 @@ struct SkillDefaults {
   static constexpr double violation_penalty = 0;
   static constexpr bool has_text_response = false;
   static constexpr int number_count = 0;
-  // Whether the code of a step reads `state` (`state_`) where it has already changed a later copy.
+  // Whether a step reads `state` (or `state_`) after it has changed a later copy of the state.
   static constexpr bool keeps_state = false;
   static constexpr bool keeps_state_ = false;
   static void make_groundings(const auto&, Groundings groundings) {

@@ -19,6 +19,7 @@ inline bool is_well_visited(std::uint32_t n, std::uint32_t max_visits) {
   return static_cast<std::uint64_t>(n) * well_visited_share >= max_visits && n > 0;
 }
 
+// Makes action `a` the best one if its value is reliable, and higher or more reliable than that of the best so far.
 inline void take_better(HistoryNode& history, const ActionNode* actions, std::uint32_t a) {
   const bool is_better = actions[a].q > actions[history.best].q || !is_well_visited(actions[history.best].n, history.max_visits);
   if (is_better && is_well_visited(actions[a].n, history.max_visits)) history.best = a;

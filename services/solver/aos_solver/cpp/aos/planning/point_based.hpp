@@ -79,7 +79,7 @@ class PointBased {
     return simulations;
   }
 
-  // The same below an action that is being carried out.
+  // Runs trials below an action that is being carried out.
   template <class IsOver>
   void ponder(int action, Budget budget, IsOver&& is_over) {
     if (running_ <= 0 || budget.seconds <= 0) return;

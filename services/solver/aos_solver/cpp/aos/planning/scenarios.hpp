@@ -93,7 +93,7 @@ class ScenarioEvaluation {
     has_values_ = values_.prepare(belief, horizon);
   }
   std::uint32_t seen(const State& state) const { return has_values_ ? values_.number_of(state) : 0; }
-  // The same for the state to which an action has led from the state with the number `before`.
+  // The number of the state to which an action has led from the state with the number `before`.
   std::uint32_t seen_next(std::uint32_t before, int action, const State& state) const {
     if (!has_values_) return 0;
     const std::uint32_t next = values_.certain_next(before, action);

@@ -1,5 +1,5 @@
-// The state in a simulation of a search. It is a block of bytes that the documents' code steps. In a model
-// with few states, it is the number of a state in a table.
+// The state in a simulation of a search. A ComputedState is a block of bytes that the documents' code steps.
+// In a model with few states, a ListedState is the number of a state in a table.
 #pragma once
 
 #include <cstdint>
