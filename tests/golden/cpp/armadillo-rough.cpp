@@ -10,7 +10,7 @@
 
 namespace model {
 
-using namespace std;  // Documents write `vector` and `sqrt`.
+using namespace std;  // Documents write `vector` and `sqrt` without `std::`.
 using anyValue = bool;
 
 enum Place : std::int8_t { EasyTable, HardTable, Corridor, RobotHand, Unknown };
@@ -34,7 +34,7 @@ struct Destination {
   bool operator==(const Destination&) const = default;
 };
 
-// What no code changes; every state refers to it.
+// The variables that no code changes. Every state refers to them.
 struct Constants {
   Destination easy_table{};
   Destination hard_table{};
@@ -42,7 +42,7 @@ struct Constants {
 };
 inline Constants constants;
 
-// What a particle holds.
+// The variables that each particle holds.
 struct State {
   Place easy_can_at{};
   Place hard_can_at{};
@@ -80,14 +80,14 @@ inline constexpr std::array<aos::Member, 7> members{
 };
 inline std::span<const aos::Member> State::aos_members() { return members; }
 
-// All variables, open to the code that gives them their first values.
+// All variables, writable for the code that gives them their first values.
 struct Draft : State, Constants {
   using Constants::easy_table;
   using Constants::hard_table;
   using Constants::corridor;
 };
 
-// The values that the documents declare, in their order.
+// Sets the values that the documents declare, in the order of the declarations.
 inline void default_values(Draft& state) {
   {
     aos::blame::at(5);
@@ -381,7 +381,7 @@ if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
 inline State start;
 inline std::vector<aos::GroundedAction> actions;
 
-// Calls `use` with the skill's type.
+// Calls `use` with the type of the skill.
 decltype(auto) with_skill(int skill, auto&& use) {
   switch (skill) {
     case 0:
@@ -397,7 +397,7 @@ decltype(auto) with_skill(int skill, auto&& use) {
   }
 }
 
-// Calls `use` with the type of the action's skill and its parameters.
+// Calls `use` with the type of the action's skill and with the action's parameters.
 decltype(auto) with_action(int action, auto&& use) {
   const auto& chosen = actions[action];
   return with_skill(chosen.skill, [&]<class Skill>(std::type_identity<Skill> skill) -> decltype(auto) {
@@ -405,7 +405,7 @@ decltype(auto) with_action(int action, auto&& use) {
   });
 }
 
-// What the engine runs.
+// The model that the engine runs.
 struct Model {
   using State = model::State;
   static constexpr const char* project = "armadillo";
@@ -418,7 +418,7 @@ struct Model {
       aos::facts_of<aos_skill_pick>("pick"),
       aos::facts_of<aos_skill_serve>("serve"),
   };
-  // What no reward, observation or ending depends on.
+  // The variables on which no reward, observation or ending depends.
   static constexpr std::array<aos::ByteRange, 0> irrelevant{
   };
   static constexpr bool has_rollout_policy = false;
@@ -464,7 +464,7 @@ struct Model {
       return aos::rollout_weight<Skill>(state, parameters, random);
     });
   }
-  // The weights of all actions, one after another; `take` gets each.
+  // Calls `take` with the weight of each action, in the order of the actions.
   static void rollout_weights(const State& state, auto& random, auto&& take) {
     const auto weigh = [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       take(aos::rollout_weight<Skill>(state, parameters, random));
@@ -497,16 +497,16 @@ struct Model {
     const auto ended = static_cast<std::uint64_t>(state.aos_ending);
     return aos::mixed(aos::hashed(0, state), ended);
   }
-  // What differs between states.
+  // The variables that differ between states, as text.
   static std::string save_state(const State& state) {
     aos::StateWriter text;
     text.write(state);
     text.write(state.aos_ending);
     return text.text();
   }
-  // What does not.
+  // The variables that are the same in all states, as text.
   static aos::SavedConstants save_constants() { return {}; }
-  // Either may have come from documents in which other variables were constants.
+  // Both texts may come from documents in which other variables were constants.
   static void load_state(State& state, std::string_view saved, const aos::SavedConstants& constants) {
     aos::StateReader text{saved};
     constants.read_all(members, &state, text);
