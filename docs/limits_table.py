@@ -74,7 +74,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
         Row(
             "one call of document code, in tenths of a second of processor time",
-            "child/watchdog.hpp:max_periods", "", "AOS211",
+            "aos_solver.child.engine_child.HANG_PERIODS", "", "AOS211",
         ),
         Row(
             "combinations of discrete draws in a step",

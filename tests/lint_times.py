@@ -77,6 +77,7 @@ MISTAKES = {
     "an exception of the library": "std::vector<int> two(2); two.at(state.place + 1) = 1;",
     "a bad index": "state__.cells[state.place + 2] = 1;",
     "too many elements": "while (true) state__.cells.push_back(1);",
+    "a division by zero": "int left = state.place == 7 ? 1 : 0; state__.place += 3 / left;",
     "the end of the program": "if (state.place == 1) exit(0);",
     "an abort": "if (state.place == 1) abort();",
     "a reward without end": "__reward = 1.0 / (state.place - 1);",

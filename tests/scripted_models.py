@@ -159,7 +159,7 @@ async def _compiled(emitted: EmittedModel, cache: BuildCache) -> Path:
 
 async def _precompile(compiler: Compiler, staging: Path) -> None:
     """Reads the driver, and with it what models include, once for all of them."""
-    _run(compiler.precompilation(_HEADER, str(_DRIVER), *_OPTIONS), staging)
+    _run(compiler.precompilation(_HEADER, str(_DRIVER), ".", *_OPTIONS), staging)
 
 
 def _run(command: list[str], staging: Path) -> None:

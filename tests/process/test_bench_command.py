@@ -67,10 +67,11 @@ def test_a_bundle_of_ones_own_is_measured_by_its_folder(bundles: Path, cache_dir
     assert {row["problem"] for row in json.loads(done.stdout)["rows"]} == {"tiger"}
 
 
-def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path) -> None:
-    done = run_bench(cache_dir, "lion")
+@pytest.mark.parametrize("name", ["lion", "no/such/bundle"])
+def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path, name: str) -> None:
+    done = run_bench(cache_dir, name)
     assert done.returncode == 2
-    assert "lion is none of tiger, tag," in " ".join(done.stderr.split())
+    assert f"{name} is none of tiger, tag," in " ".join(done.stderr.split())
 
 
 async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path) -> None:

@@ -47,7 +47,7 @@ async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
         await engine.ponder(0, seed=1, time_s=0.0)
         await engine.count_processor_time(False)
         await engine.exact(2)
-        await engine.reach(0.1)
+        await engine.reach(0.1, 5)
         await engine.list_states(100)
         await engine.write_listing(cache_dir / "model.flat", cache_dir / "states")
         await engine.predict(0)
@@ -78,7 +78,7 @@ async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path,
         for field in fields:
             lines.append("\t".join(part for part in (name, *rest) if part != field))
             lacking.append((name, field.partition("=")[0]))
-    command = [str(executable[0]), str(tmp_path / "blame"), "", "1", "widen"]
+    command = [str(executable[0]), str(tmp_path / "blame"), "", "1", "widen", "12"]
     asked = "\n".join([command_line("list", max_states=100), *lines]) + "\n"
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
     printed, _ = await asyncio.wait_for(engine.communicate(asked.encode()), timeout=HANG_S)

@@ -68,7 +68,7 @@ async def test_documents_with_another_state_wait_for_another_mission(cache_dir: 
 
 async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:
     built = await built_text(LAMP, cache_dir)
-    command = [str(built.executable), str(tmp_path / "blame"), "", "1", "widen"]
+    command = [str(built.executable), str(tmp_path / "blame"), "", "1", "widen", "12"]
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
     answers, _ = await asyncio.wait_for(engine.communicate(b"sing\n"), timeout=HANG_S)
     assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS213"

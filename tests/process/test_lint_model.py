@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -13,11 +15,15 @@ import typer
 from processes import HANG_S
 from typer.testing import CliRunner
 
+from aos_deploy import reachability
 from aos_deploy.cli import aos_app
+from aos_deploy.commands import documents
 from aos_protocol.errors import ModelError
+from aos_registry import load
+from aos_solver import hot_plug
 from aos_solver.building import build as building
 from aos_solver.building.compiler import find_compiler
-from aos_solver.child import engine, replay
+from aos_solver.child import replay
 
 HALL = """project: hall
 horizon: 4
@@ -96,11 +102,15 @@ def _place(span: dict[str, Any]) -> str:
 FAULTS = [
     ("int* nothing = nullptr;\n*nothing = 1;", "AOS210"),
     ("volatile bool is_on = true;\nwhile (is_on) {\n    state__.place += 1;\n}", "AOS211"),
+    ("int left = state.place == 9 ? 1 : 0;\nstate__.place += 3 / left;", "AOS210"),
 ]
-"""Each is wrong in its second line; for others see test_fault_statements."""
+"""Each is wrong in its second line; for others see test_fault_statements.
+
+A compiler that does not check divisions derives that `left` is 1.
+"""
 
 
-@pytest.mark.parametrize(("code", "error_code"), FAULTS, ids=["segfault", "loop"])
+@pytest.mark.parametrize(("code", "error_code"), FAULTS, ids=["segfault", "loop", "division"])
 def test_a_fault_of_model_code_names_its_document_line(
     app: typer.Typer,
     hall: Callable[..., Path],
@@ -108,7 +118,7 @@ def test_a_fault_of_model_code_names_its_document_line(
     code: str,
     error_code: str,
 ) -> None:
-    monkeypatch.setattr(replay, "HANG_DEADLINE_S", HANG_S)
+    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", HANG_S)
     result = CliRunner().invoke(app, ["plan", str(hall(code)), "--time", "0.1"])
     assert isinstance(result.exception, ModelError)
     (diagnostic,) = result.exception.diagnostics
@@ -120,10 +130,17 @@ REACHED = [
     (STEP + "if (state.place == 2) throw 1;", "AOS215"),
     (STEP + "int i = 0; while (i >= 0) { i = state.place; state__.place = i; }", "AOS211"),
     (STEP + "std::vector<int> cells(2); cells.at(state.place + 1) = 1;", "AOS215"),
+    (STEP + "while (true) { if (AOS.Bernoulli(0.5) && state.place < 0) break; }", "AOS211"),
+    (STEP + "if (AOS.SampleNormal(0, 1) > -9) throw 1;", "AOS215"),
 ]
+"""The last two cannot be enumerated, so they are met by random actions."""
 
 
-@pytest.mark.parametrize(("code", "error_code"), REACHED, ids=["exception", "loop", "index"])
+@pytest.mark.parametrize(
+    ("code", "error_code"),
+    REACHED,
+    ids=["exception", "loop", "index", "draws", "drawn"],
+)
 def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
     app: typer.Typer,
     hall: Callable[..., Path],
@@ -131,9 +148,7 @@ def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
     code: str,
     error_code: str,
 ) -> None:
-    # A loop is told by its processor time, which a busy machine may give it later than lint waits.
-    monkeypatch.setattr(engine, "REACH_MARGIN_S", HANG_S)
-    monkeypatch.setattr(replay, "HANG_DEADLINE_S", HANG_S)
+    monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", HANG_S)
     severity, place, _ = linted(app, hall(code), exit_code=1)[error_code]
     assert (severity, place) == ("error", "walk.sd:5")
 
@@ -141,11 +156,24 @@ def test_a_fault_that_the_actions_lead_to_is_an_error_of_lint(
 def test_steps_that_take_long_and_end_are_a_warning(
     app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(engine, "REACH_MARGIN_S", -1.4)
+    monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
     slow = "int s = 0; for (int i = 0; i < 200000000; i++) s += (i ^ state.place) % 7;\n"
     severity, place, hint = linted(app, hall(slow + "state__.place = state.place + 1 + s % 2;"))["AOS211"]
     assert (severity, place) == ("warning", "walk.sd:4")
     assert hint.startswith("Make steps cheaper")
+
+
+def test_steps_that_wait_for_a_processor_are_not_slow(
+    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reachability, "MAX_CPU_S", 0.1)
+    waiting = "timespec pause{0, 300'000'000}; nanosleep(&pause, nullptr);\n"
+    assert linted(app, hall(waiting + STEP)) == {}
+
+
+def test_a_loop_that_chance_ends_is_no_error(app: typer.Typer, hall: Callable[..., Path]) -> None:
+    loop = "while (AOS.Bernoulli(0.5) || AOS.Bernoulli(0.999)) {}"
+    assert "AOS211" not in linted(app, hall(STEP + loop))
 
 
 RECURSIVE = """auto sum = []<int N>(auto self, std::integral_constant<int, N>) -> int {
@@ -186,6 +214,28 @@ def test_a_model_whose_goal_and_doors_can_be_reached_is_clean(
     app: typer.Typer, hall: Callable[..., Path]
 ) -> None:
     assert linted(app, hall("state__.place = state.place + 1;")) == {}
+
+
+def test_documents_are_read_and_lowered_once(
+    app: typer.Typer, hall: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls: Counter[str] = Counter()
+
+    def counted(module: ModuleType, name: str) -> None:
+        original = getattr(module, name)
+
+        def call(*arguments: Any, **options: Any) -> Any:
+            calls[name] += 1
+            return original(*arguments, **options)
+
+        monkeypatch.setattr(module, name, call)
+
+    counted(load, "load_files")
+    counted(documents, "load_files")
+    counted(hot_plug, "lower")
+    counted(hot_plug, "emit")
+    assert linted(app, hall("state__.place = state.place + 1;  // once")) == {}
+    assert calls == {"load_files": 1, "lower": 1, "emit": 1}
 
 
 def test_a_goal_and_a_precondition_that_nothing_leads_to_are_told_with_the_extent(

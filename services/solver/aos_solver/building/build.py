@@ -50,11 +50,13 @@ _OPTIONS: dict[BuildKind, tuple[str, ...]] = {
     "unoptimized": ("-O0", "-DAOS_QUICK"),
 }
 
-MODEL_CPU_S = 4.0
-ENGINE_SHARE = 1 / 8
-LINES_PER_CPU_S = 250
+_HURRIED: tuple[BuildKind, ...] = ("quick", "unoptimized")
+MODEL_CPU_S = 2.0
+ENGINE_SHARE = 1 / 16
+LINES_PER_CPU_S = 150
 """A quick build may take `MODEL_CPU_S` of processor time, or `ENGINE_SHARE` of the engine's where that is
-more, and a second more for `LINES_PER_CPU_S` lines. A usual model takes half a second, the engine 25 s."""
+more, and a second more for `LINES_PER_CPU_S` lines. A model of 200 lines takes half a second, of 700 lines up
+to 3 s, the engine 30 s."""
 
 _LIMITS = ("-ftemplate-depth=100",)
 """Models' templates need a third of this depth. Document code that recurses without end is told at once."""
@@ -115,7 +117,7 @@ async def build(
         if (entry := cache.find(names[known])) is not None:
             return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=True)
     deadline_s = deadline_s or compiler.deadline_s
-    work = _Build(emitted, cache, compiler, on_progress, deadline_s, _OPTIONS[kind], niceness)
+    work = _Build(emitted, cache, compiler, on_progress, deadline_s, kind, niceness)
     started_s = time.monotonic()
     entry = await cache.fill(names[kind], work.make)
     seconds = time.monotonic() - started_s
@@ -143,9 +145,10 @@ async def build_engine(
             on_progress("ziglang's first build prepares its C++ library as well; allow some minutes")
         commands = [_part(compiler, _ENGINE_OBJECT, f"-DAOS_STATE_BYTES={state_bytes}")]
         if state_bytes == STATE_BYTES[0]:
-            (staging / _SUPPORT).parent.mkdir(parents=True)
             commands.append(_part(compiler, _NUMBERS_OBJECT, "-O3"))
-            commands.append(compiler.precompilation(_SUPPORT, str(SOURCES), *_OPTIONS["quick"]))
+            for kind in _HURRIED:
+                (staging / kind / _SUPPORT).parent.mkdir(parents=True)
+                commands.append(compiler.precompilation(_SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
         # Our own sources are known to end: only a busy machine takes long for them.
         deadline_s = 5 * compiler.deadline_s
         started_s = time.monotonic()
@@ -177,7 +180,7 @@ class _Build(msgspec.Struct, frozen=True):
     compiler: Compiler
     on_progress: Callable[[str], None]
     deadline_s: float
-    options: tuple[str, ...]
+    kind: BuildKind
     niceness: int
 
     async def make(self, staging: Path) -> None:
@@ -201,7 +204,7 @@ class _Build(msgspec.Struct, frozen=True):
     @property
     def _cpu_s(self) -> int | None:
         """The limit for a model that somebody waits for. Long models and slow machines have more."""
-        if self.options == _OPTIONS["thorough"]:
+        if self.kind not in _HURRIED:
             return None
         engine_s = _engine_seconds(self._ready_engine(STATE_BYTES[0]))
         return int(max(MODEL_CPU_S, ENGINE_SHARE * engine_s) + self.emitted.cpp.count("\n") / LINES_PER_CPU_S)
@@ -209,7 +212,7 @@ class _Build(msgspec.Struct, frozen=True):
     async def _compile(self, staging: Path) -> None:
         (staging / MODEL_FILE).write_text(self.emitted.cpp)
         (staging / _SOURCE).write_text(without_line_directives(self.emitted.cpp))
-        options = [*self.options, *self._precompiled, *_LIMITS]
+        options = [*_OPTIONS[self.kind], *self._precompiled, *_LIMITS]
         compilation = self.compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
         output, status = await self._run(compilation, staging, cpu_s=self._cpu_s)
         if status != 0:
@@ -218,11 +221,11 @@ class _Build(msgspec.Struct, frozen=True):
 
     @property
     def _precompiled(self) -> list[str]:
-        """The options for what quick builds include, if that is compiled already."""
+        """The options for what hurried builds include, if that is compiled already."""
         entry = self._ready_engine(STATE_BYTES[0])
-        if entry is None or self.options != _OPTIONS["quick"]:
+        if entry is None or self.kind not in _HURRIED:
             return []
-        return self.compiler.precompiled(_SUPPORT, str(entry))
+        return self.compiler.precompiled(_SUPPORT, str(entry / self.kind))
 
     def _state_bytes(self, model: Path) -> int:
         """The size of the quickest engine that takes the model's states."""
@@ -237,7 +240,7 @@ class _Build(msgspec.Struct, frozen=True):
 
     def _ready_size(self, state_bytes: int) -> int:
         """`state_bytes`, or `ANY_SIZE` where a quick build would have to compile that engine first."""
-        is_waiting = self.options == _OPTIONS["quick"] and self._ready_engine(state_bytes) is None
+        is_waiting = self.kind in _HURRIED and self._ready_engine(state_bytes) is None
         return ANY_SIZE if is_waiting and self._ready_engine(ANY_SIZE) is not None else state_bytes
 
     async def _link(self, staging: Path, engine: list[Path]) -> None:

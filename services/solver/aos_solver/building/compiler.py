@@ -51,31 +51,35 @@ class Compiler(msgspec.Struct, frozen=True):
         common = ["-std=c++20", "-O2", "-ffp-contract=off", "-fno-math-errno", "-w"]
         # A loop of a document that does not end shall be told, and not be left out as one that ends.
         common += ["-fno-finite-loops"]
+        if self.family == "zig":
+            # Zig adds checks and information for debuggers by itself.
+            common += ["-fno-sanitize=all", "-g0"]
+        # Code that divides an integer by zero shall crash. Compilers would assume that there is none.
+        common += ["-fsanitize=integer-divide-by-zero"]
         if self.family == "gcc":
+            common += ["-fsanitize-undefined-trap-on-error"]
             own = ["-Wno-narrowing", "-fdiagnostics-column-unit=byte", "-fdiagnostics-color=never"]
             own += ["-fno-diagnostics-show-caret", "-fmax-errors=40"]
             # Code that follows a draw is not copied for each outcome: a jump costs less than a wrong guess.
             own += ["--param=max-jump-thread-duplication-stmts=0"]
         else:
+            common += ["-fsanitize-trap=integer-divide-by-zero"]
             own = ["-Wno-c++11-narrowing", "-fno-color-diagnostics", "-fno-caret-diagnostics"]
             # A null pointer shall crash where it is used, and not be optimised into a trap elsewhere.
             own += ["-ferror-limit=40", "-fno-delete-null-pointer-checks"]
-        if self.family == "zig":
-            # Zig adds checks and information for debuggers by itself.
-            own += ["-fno-sanitize=all", "-g0"]
         return [*self.command, *common, *own, *more, "-I", include]
 
-    def precompilation(self, header: str, include: str, *more: str) -> list[str]:
+    def precompilation(self, header: str, include: str, directory: str, *more: str) -> list[str]:
         """The command that reads a header for all files that include it first.
 
-        The result is put below the directory where the command runs. A compilation finds it there that has
-        the same options `more` and those of `precompiled`.
+        The result is put below the directory, in the header's folders. A compilation finds it there that
+        has the same options `more` and those of `precompiled`.
         """
         suffix = "gch" if self.family == "gcc" else "pch"
         # Clang would refuse the result once the header has been written anew, even with the same text.
         own = [] if self.family == "gcc" else ["-Xclang", "-fno-pch-timestamp"]
         language = ["-x", "c++-header", f"{include}/{header}"]
-        return [*self._command(include, *more, *own), *language, "-o", f"{header}.{suffix}"]
+        return [*self._command(include, *more, *own), *language, "-o", f"{directory}/{header}.{suffix}"]
 
     def precompiled(self, header: str, directory: str) -> list[str]:
         """The options that make a compilation use a header precompiled in a directory.

@@ -73,7 +73,6 @@ ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
 """Of a search with a budget in simulations. A budget in time leaves ANSWER_DEADLINE_S beyond it."""
 LISTING_DEADLINE_S = 600.0
-REACH_MARGIN_S = 2.5
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000
 
@@ -207,17 +206,12 @@ class Engine:
         )
         return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
-    async def reach(self, time_s: float) -> Reach:
-        """Which states the actions can lead to from the current belief, looked at for so long at most.
+    async def reach(self, seconds: float, max_seconds: float) -> Reach:
+        """Which states the actions can lead to from the current belief, looked at for so much processor time.
 
-        OverdueError where the last of many steps takes more than `REACH_MARGIN_S` beyond that.
+        OverdueError where the last of many steps goes beyond `max_seconds`, here and in `rate`.
         """
-        return await self._ask(
-            command_line("reach", seconds=time_s),
-            Reach,
-            deadline_s=time_s + REACH_MARGIN_S,
-            locates_overdue=False,
-        )
+        return await self._ask(command_line("reach", seconds=seconds, max_seconds=max_seconds), Reach)
 
     async def list_states(self, max_states: int = 0) -> Listed:
         """Lists what one more decision leads to: from the current belief on where `max_states` is given, else
@@ -357,9 +351,12 @@ class Engine:
         """Runs an action in each world, by the bytes of an int32 for each; -1 starts a world anew."""
         return await self._ask(command_line("step_worlds", actions=b64encode(indices).decode()), WorldSteps)
 
-    async def rate(self, seconds: float, seed: int, stepping: Stepping = "code") -> SampleCount:
+    async def rate(
+        self, seconds: float, seed: int, stepping: Stepping = "code", max_seconds: float | None = None
+    ) -> SampleCount:
         """Draws samples with random actions for so long; by a table none where searches use no table."""
-        command = command_line("rate" if stepping == "code" else "rate_by_table", seconds=seconds, seed=seed)
+        name = "rate" if stepping == "code" else "rate_by_table"
+        command = command_line(name, seconds=seconds, seed=seed, max_seconds=max_seconds)
         return await self._ask(command, SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S)
 
     def variables_of(self, action: str) -> dict[str, str]:
@@ -380,14 +377,7 @@ class Engine:
         self._changes += 1
         return answer
 
-    async def _ask(
-        self,
-        command: str,
-        kind: type[A],
-        *,
-        deadline_s: float = ANSWER_DEADLINE_S,
-        locates_overdue: bool = True,
-    ) -> A:
+    async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
         async with self._asking:
             if self._child is None or not self._child.is_running:
                 await self._restart_child()
@@ -398,9 +388,9 @@ class Engine:
                 log.warning("asking again: %s", error)
                 await self._restart_child()
                 return await self._child.ask(command, kind, deadline_s)
+            except OverdueError:
+                raise
             except AosError as error:
-                if isinstance(error, OverdueError) and not locates_overdue:
-                    raise
                 raise await self._located(error, command) from None
 
     async def _located(self, fault: AosError, command: str) -> AosError:

@@ -32,6 +32,8 @@ START_DEADLINE_S = 20.0
 EXIT_DEADLINE_S = 2.0
 HANG_STATUS = 71
 """How a child ends whose document code ran too long; known to watchdog.hpp."""
+HANG_PERIODS = 12
+"""How many tenths of a second of processor time a call of document code may take."""
 
 ADDRESS_SPACE_BYTES = 8 * 1024**3
 ANSWER_LIMIT_BYTES = 32 * 1024**2
@@ -60,7 +62,7 @@ class KilledError(ModelError):
 
 
 class OverdueError(EndlessCodeError):
-    """No answer in time: what ran may come to an end later."""
+    """No answer within the processor time that was allowed: what ran may come to an end later."""
 
 
 class EngineChild:
@@ -86,10 +88,10 @@ class EngineChild:
         return engine
 
     @classmethod
-    async def launch(cls, built: BuiltModel, start: EngineStart) -> Self:
+    async def launch(cls, built: BuiltModel, start: EngineStart, periods: int = HANG_PERIODS) -> Self:
         """A child of which nobody knows yet whether it can `begin`."""
         blame = new_blame_page()
-        arguments = [blame.path, start.beliefs, str(start.seed), start.policy]
+        arguments = [blame.path, start.beliefs, str(start.seed), start.policy, str(periods)]
         try:
             child = await Child.start(
                 guarded([str(built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)),
@@ -177,10 +179,10 @@ class EngineChild:
         if status == -signal.SIGKILL:
             return KilledError("the engine was killed", code="AOS213")
         if status is None:
-            fault = self.fault(kind.code, message, piece)
-            if kind is not EndlessCodeError:
-                return fault
-            return OverdueError(fault.message, hint=fault.hint, diagnostics=fault.diagnostics)
+            return self.fault(kind.code, message, piece)
+        if status == -signal.SIGVTALRM:
+            fault = self.fault(OverdueError.code, "this code takes long", piece)
+            return OverdueError(fault.message, diagnostics=fault.diagnostics)
         if status == HANG_STATUS and piece:
             return self.fault(EndlessCodeError.code, "this code does not come to an end", piece)
         how = _status_text(status)

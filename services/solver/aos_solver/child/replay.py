@@ -21,7 +21,7 @@ from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, Mode
 from aos_solver.building.build import BuiltModel, build
 from aos_solver.child.answers import BeliefUpdate
 from aos_solver.child.command_line import command_line
-from aos_solver.child.engine_child import EngineChild, EngineStart
+from aos_solver.child.engine_child import HANG_PERIODS, EngineChild, EngineStart
 from aos_solver.emission.trace import TracedModel, traced
 
 __all__ = ["at_its_statement"]
@@ -31,7 +31,8 @@ log = logging.getLogger(__name__)
 A = TypeVar("A")
 
 REPLAY_DEADLINE_S = 12.0
-HANG_DEADLINE_S = 4.0
+_HANG_PERIODS = 4
+"""An endless loop is known to be one: it runs again for its statement alone."""
 _RANDOM_ACTIONS_S = 2.0
 _SAMPLE_PERIOD_S = 0.02
 _LAST_SAMPLES = 20
@@ -97,9 +98,10 @@ class _Replay:
         return found
 
     async def _fault_of(self, commands: Sequence[str]) -> Span | None:
-        child = await EngineChild.launch(self._built, self._start)
+        periods = _HANG_PERIODS if isinstance(self._fault, EndlessCodeError) else HANG_PERIODS
+        child = await EngineChild.launch(self._built, self._start, periods)
         try:
-            await self._watched(child, child.begin(self._deadline_s))
+            await self._watched(child, child.begin(REPLAY_DEADLINE_S))
             for command in commands:
                 await self._asked(child, command)
         except ModelError as error:
@@ -110,15 +112,11 @@ class _Replay:
 
     async def _asked(self, child: EngineChild, command: str) -> None:
         if not command.startswith("update\t"):
-            await self._watched(child, child.ask(command, dict, self._deadline_s))
+            await self._watched(child, child.ask(command, dict, REPLAY_DEADLINE_S))
             return
-        update = await self._watched(child, child.ask(command, BeliefUpdate, self._deadline_s))
+        update = await self._watched(child, child.ask(command, BeliefUpdate, REPLAY_DEADLINE_S))
         if (fault := update.uncorrected) is not None:
             raise child.fault(fault.code, fault.text, fault.piece)
-
-    @property
-    def _deadline_s(self) -> float:
-        return HANG_DEADLINE_S if isinstance(self._fault, EndlessCodeError) else REPLAY_DEADLINE_S
 
     async def _watched(self, child: EngineChild, question: Coroutine[Any, Any, A]) -> A:
         """The answer; what runs until then is looked at."""

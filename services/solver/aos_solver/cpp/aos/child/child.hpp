@@ -79,16 +79,16 @@ inline void say(std::FILE* out, const JsonWriter& json) {
 
 }  // namespace detail
 
-// The main function of an engine child. BELIEF_FILE is for KeptBeliefs; the last argument is an ImpossiblePolicy.
+// The main function of an engine child. BELIEF_FILE is for KeptBeliefs, MAX_PERIODS for the watchdog.
 template <class Model>
 int run_child(int argc, char** argv) {
-  if (argc != 5) {
-    std::fprintf(stderr, "usage: %s BLAME_FILE BELIEF_FILE SEED hold|widen|reset\n", argv[0]);
+  if (argc != 6) {
+    std::fprintf(stderr, "usage: %s BLAME_FILE BELIEF_FILE SEED hold|widen|reset MAX_PERIODS\n", argv[0]);
     return 2;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   detail::share_blame(argv[1]);
-  watchdog::start();
+  watchdog::start(std::atoi(argv[5]));
   std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
 
@@ -114,6 +114,7 @@ int run_child(int argc, char** argv) {
     if (!text.empty() && text.back() == '\n') text.remove_suffix(1);
     json.clear();
     detail::guarded(json, [&] { commands->answer(Command{text}, json); });
+    watchdog::allow(0);
     detail::say(out, json);
     commands->go_on_pondering(detail::has_input);
   }

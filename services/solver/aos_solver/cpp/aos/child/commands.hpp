@@ -11,6 +11,7 @@
 #include "aos/child/planning_commands.hpp"
 #include "aos/child/rates.hpp"
 #include "aos/child/risk_commands.hpp"
+#include "aos/child/watchdog.hpp"
 #include "aos/child/world_commands.hpp"
 #include "aos/planning/planner.hpp"
 
@@ -44,6 +45,7 @@ class Commands {
 
   void answer(const Command& command, JsonWriter& json) {
     const std::string_view name = command.name();
+    if (command.optional_text("max_seconds")) watchdog::allow(command.number<double>("max_seconds"));
     if (name == "describe") return describe(json);
     if (name == "summary") return beliefs_.belief().write_summary(json);
     if (name == "reset_belief") return beliefs_.reset(json);

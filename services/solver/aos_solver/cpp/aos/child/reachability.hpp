@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/planning/state_space.hpp"
@@ -16,15 +17,15 @@ namespace aos {
 template <class Model>
 class Reachability {
  public:
+  // `seconds` are of processor time.
   Reachability(const Belief<Model>& belief, double seconds)
       : unmet_(static_cast<std::size_t>(Model::action_count())), is_met_(unmet_, false) {
-    using Clock = std::chrono::steady_clock;
-    const auto latest = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{seconds});
+    const auto latest = processor_time() + std::chrono::duration<double>{seconds};
     try {
       if (!belief.is_exact()) throw NotEnumerable{"the initial belief is only known by samples"};
       space_.reach_within(belief, 0);
       while (!is_done()) {
-        if (Clock::now() > latest) throw NotEnumerable{"it takes longer than allowed"};
+        if (processor_time() > latest) throw NotEnumerable{"it takes longer than allowed"};
         const std::size_t known = space_.size();
         space_.reach_within(belief, 1);
         if (space_.size() > known) ++depth_;

@@ -18,9 +18,10 @@ namespace aos::watchdog {
 
 inline constexpr int exit_status = 71;  // known to engine_child.py
 inline constexpr long period_us = 100'000;
-inline constexpr int max_periods = 12;  // of processor time, for each thread that runs document code
 
 namespace detail {
+
+inline int max_periods = 0;  // of processor time, for each thread that runs document code
 
 struct Seen {
   std::uint32_t ends = 0;
@@ -46,8 +47,17 @@ inline void look(int) {
 
 }  // namespace detail
 
-// From now on, `look` runs after each `period_us` of processor time.
-inline void start() {
+// Lets SIGVTALRM end the process once it has spent so much more processor time; 0 takes that back. engine_child.py knows
+// the signal.
+inline void allow(double seconds) {
+  const auto whole = static_cast<long>(seconds);
+  const itimerval once{{0, 0}, {whole, static_cast<long>((seconds - static_cast<double>(whole)) * 1e6)}};
+  ::setitimer(ITIMER_VIRTUAL, &once, nullptr);
+}
+
+// From now on, `look` runs after each `period_us` of processor time. Document code may run for `max_periods` of these.
+inline void start(int max_periods) {
+  detail::max_periods = max_periods;
   struct sigaction action{};
   action.sa_handler = detail::look;
   action.sa_flags = SA_RESTART;

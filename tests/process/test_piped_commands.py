@@ -1,0 +1,36 @@
+"""What commands write where nobody looks at a terminal: their results, and nothing beside them."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from models import built_bundle
+from processes import HANG_S
+
+AOS = Path(sys.executable).parent / "aos"
+COMMANDS = {
+    "simulate": ("--runs", "2", "--simulations", "10"),
+    "plan": ("--simulations", "10"),
+}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_piped_command_says_nothing_beside_its_result(command: str, bundles: Path, cache_dir: Path) -> None:
+    bundle = bundles / "bench" / "tiger"
+    asyncio.run(built_bundle(bundle, cache_dir))
+    done = subprocess.run(
+        [AOS, command, str(bundle), *COMMANDS[command], "--json"],
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
+        env={**os.environ, "AOS_CACHE_DIR": str(cache_dir)},
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)
+    assert done.stderr == ""
