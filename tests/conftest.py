@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
 
 import pytest
+
+from aos_deploy.program import cache_dir as user_cache_dir
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -33,10 +36,15 @@ def corpus() -> Path:
 
 @pytest.fixture(scope="session")
 def cache_dir(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Compiled models, shared by all tests of one run."""
+    """Compiled models, shared by all tests of one run, and the engines that setup.sh has compiled."""
     folder = tmp_path_factory.getbasetemp()
     # pytest-xdist gives each process a folder of its own in that of the run.
     run = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
     cache = run / "cache"
     cache.mkdir(exist_ok=True)
+    # An entry's name says what it was made from: engines of other sources are not found by it.
+    for engine in user_cache_dir().glob("engine-*-*"):
+        if engine.suffix != ".building":
+            with contextlib.suppress(FileExistsError):
+                (cache / engine.name).symlink_to(engine)
     return cache

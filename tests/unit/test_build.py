@@ -232,7 +232,7 @@ def text_of(path: Path) -> str:
 async def answers(built: BuiltModel) -> dict[str, Any]:
     """What the engine says about itself when it starts."""
     child = await asyncio.create_subprocess_exec(
-        built.executable, "/dev/null", "/dev/null", "1", "widen",
+        built.executable, "/dev/null", "/dev/null", "1", "widen", "12",
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE,
     )  # fmt: skip
     async with asyncio.timeout(HANG_S):
