@@ -100,9 +100,9 @@ def _place(span: dict[str, Any]) -> str:
 
 
 FAULTS = [
-    ("int* nothing = nullptr;\n*nothing = 1;", "AOS210"),
-    ("volatile bool is_on = true;\nwhile (is_on) {\n    state__.place += 1;\n}", "AOS211"),
-    ("int left = state.place == 9 ? 1 : 0;\nstate__.place += 3 / left;", "AOS210"),
+    ("int* nothing = nullptr;\n*nothing = 1;", "AOS210", "signal 11"),
+    ("volatile bool is_on = true;\nwhile (is_on) {\n    state__.place += 1;\n}", "AOS211", "come to an end"),
+    ("int left = state.place == 9 ? 1 : 0;\nstate__.place += 3 / left;", "AOS210", "divided by zero"),
 ]
 """Each is wrong in its second line; for others see test_fault_statements.
 
@@ -110,19 +110,21 @@ A compiler that does not check divisions derives that `left` is 1.
 """
 
 
-@pytest.mark.parametrize(("code", "error_code"), FAULTS, ids=["segfault", "loop", "division"])
+@pytest.mark.parametrize(("code", "error_code", "told"), FAULTS, ids=["segfault", "loop", "division"])
 def test_a_fault_of_model_code_names_its_document_line(
     app: typer.Typer,
     hall: Callable[..., Path],
     monkeypatch: pytest.MonkeyPatch,
     code: str,
     error_code: str,
+    told: str,
 ) -> None:
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", HANG_S)
     result = CliRunner().invoke(app, ["plan", str(hall(code)), "--time", "0.1"])
     assert isinstance(result.exception, ModelError)
     (diagnostic,) = result.exception.diagnostics
     assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 5)
+    assert told in diagnostic.message
 
 
 STEP = "state__.place = state.place + 1;\n"

@@ -201,4 +201,6 @@ class EngineChild:
 
 
 def _status_text(returncode: int) -> str:
+    if -returncode in (signal.SIGFPE, signal.SIGILL, signal.SIGTRAP):
+        return f"signal {-returncode}, as for an integer that is divided by zero"
     return f"signal {-returncode}" if returncode < 0 else f"exit status {returncode}"
