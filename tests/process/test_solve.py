@@ -15,6 +15,7 @@ from models import built_bundle, built_text, engine_of
 from processes import HANG_S
 
 from aos_deploy.formats.graph_writers import c_header, graphviz
+from aos_deploy.formats.policy_graph import OVER, PolicyGraph, policy_graph
 from aos_deploy.formats.problem_files import read_problem
 from aos_protocol.errors import ModelError, PlanningError
 from aos_solver.building.compiler import find_compiler
@@ -22,7 +23,6 @@ from aos_solver.endings import MissionLimits
 from aos_solver.offline.enumeration import Enumeration, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
 from aos_solver.offline.policy import Policy, PolicyHeader, PolicySearch
-from aos_solver.offline.policy_graph import OVER, PolicyGraph, policy_graph
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, solve
 from aos_solver.offline.stopping import with_stopping
 from aos_solver.simulation import simulate_mission

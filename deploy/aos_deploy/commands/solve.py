@@ -19,6 +19,7 @@ from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.formats.graph_writers import c_header, graphviz, write_text
+from aos_deploy.formats.policy_graph import PolicyGraph, policy_graph
 from aos_deploy.formats.problem_files import PROBLEM_ENDINGS, read_problem
 from aos_deploy.formats.problem_writers import WRITERS, write_problem
 from aos_deploy.printing import count, print_json
@@ -29,7 +30,6 @@ from aos_solver.child.answers import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
 from aos_solver.offline.policy import Policy, PolicyHeader
-from aos_solver.offline.policy_graph import PolicyGraph, policy_graph
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits
 from aos_solver.offline.solving import solve as solve_model
 from aos_solver.offline.stopping import with_stopping

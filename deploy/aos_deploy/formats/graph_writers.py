@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from aos_deploy.formats.policy_graph import OVER, PolicyGraph
 from aos_deploy.formats.symbols import symbols
 from aos_protocol.errors import PlanningError
-from aos_solver.offline.policy_graph import OVER, PolicyGraph
 
 __all__ = ["c_header", "graphviz", "write_text"]
 
