@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -53,9 +54,15 @@ def test_every_row_has_the_same_keys_and_ours_are_compared(report: dict[str, Any
     assert ours["return, pomcp", ""]["unit"] == "2 runs"
 
 
-def test_a_return_is_told_with_and_without_the_documents_rollout_policy(cache_dir: Path) -> None:
+def test_a_return_is_told_with_and_without_the_documents_rollout_policy(
+    bundles: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    folder = shutil.copytree(bundles / "bench" / "tiger", tmp_path / "tiger")
+    listen = folder / "listen.sd"
+    policy = "rollout_policy:\n__heuristicValue = 2;\n"
+    listen.write_text(listen.read_text().replace("dynamic_model:", f"{policy}\ndynamic_model:"))
     one_mission = ("--metric", "return", "--runs", "1", "--time", "0.001", "--planner", "pomcp", "--json")
-    done = run_bench(cache_dir, "rocksample-7-8", *one_mission)
+    done = run_bench(cache_dir, str(folder), *one_mission)
     assert done.returncode == 0, done.stderr
     metrics = [row["metric"] for row in json.loads(done.stdout)["rows"] if row["name"] == "aos"]
     assert metrics == ["return, pomcp", "return, pomcp, no rollout policy"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from collections.abc import AsyncIterator, Callable, Iterable, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager
 from pathlib import Path
 
@@ -87,9 +87,11 @@ class Suite:
                 await self._measure_ours(problem)
             with self._telling(f"{pomdp_py_peer.NAME} on {problem.name}"):
                 self._measure_peer(problem)
-        with self._telling(baseline.NAME):
-            async with baseline.Baselines(compiler) as baselines:
-                await self._measure_baselines(baselines)
+        compared = [problem for problem in self._problems if problem.name in baseline.PROBLEMS]
+        if compared and {"steps", "simulations"} & set(self._effort.metrics):
+            with self._telling(baseline.NAME):
+                async with baseline.Baselines(compiler) as baselines:
+                    await self._measure_baselines(baselines, compared)
         return Report(machine, with_ratios(self._rows), tuple(self._skipped))
 
     async def _measure_ours(self, problem: Problem) -> None:
@@ -167,11 +169,9 @@ class Suite:
             rate = pomdp_py_peer.search_rate(problem.name, effort.peer_simulations, effort.seed)
             self._rows.append(figure(pomdp_py_peer.NAME, problem.name, "simulations", [rate], "1/s"))
 
-    async def _measure_baselines(self, baselines: baseline.Baselines) -> None:
+    async def _measure_baselines(self, baselines: baseline.Baselines, problems: Iterable[Problem]) -> None:
         effort = self._effort
-        for problem in self._problems:
-            if problem.name not in baseline.PROBLEMS:
-                continue
+        for problem in problems:
             self._on_step(f"{problem.name}: {baseline.NAME}")
             repetitions = [
                 await baselines.measure(problem.name, effort.seconds, effort.seed + turn)
