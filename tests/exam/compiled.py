@@ -77,9 +77,11 @@ async def _mission(
     problem = tabulate(bundle.name, bundle.world, 10_000)
     false: list[str] = []
     decisions, worst = 0, 0.0
+    # The problem goes on from running states alone. In the engine's belief ended states stay and are worth 0.
+    running = 1.0
     for step in range(bundle.world.horizon):
         brackets = truth.report(problem)["values"]
-        claimed = [value.q for value in (await engine.exact()).actions]
+        claimed = [value.q / running for value in (await engine.exact()).actions]
         false += [
             f"step {step}: exact value of action {action} is {value!r}, but it is {bracket}"
             for action, (value, bracket) in enumerate(zip(claimed, brackets, strict=True))
@@ -101,6 +103,8 @@ async def _mission(
         if update.is_impossible:
             false.append(f"step {step}: {names[seen]} is held impossible")
             break
+        summary = update.summary
+        running = 1 - summary.goal_probability - summary.failure_probability - summary.over_probability
         problem = following[seen]
     return Examined(bundle.name, bundle.idioms, tuple(false), decisions, 100 * worst)
 
