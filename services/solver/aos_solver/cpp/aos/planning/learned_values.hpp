@@ -66,6 +66,7 @@ class LearnedValues {
 
  private:
   static constexpr std::size_t max_successors = 100'000;  // simulated in a round
+  static constexpr std::size_t max_example_bytes = std::size_t{32} << 20;  // of the states of a round
   static constexpr std::size_t max_cells = 20'000'000;    // of all rows
   static constexpr int rounds = 2;
   static constexpr int sweeps = 30;
@@ -97,7 +98,8 @@ class LearnedValues {
 
   // Takes one example from each walk, since states of the same walk have too much in common.
   void walk(const Belief<Model>& belief, Sampler& random, bool has_values) {
-    const std::size_t wanted = examples_.size() + std::max<std::size_t>(max_successors / action_count(), 100);
+    const std::size_t more = std::min(max_successors / action_count(), max_example_bytes / Model::state_bytes());
+    const std::size_t wanted = examples_.size() + std::max<std::size_t>(more, 100);
     for (std::size_t walks = 0; examples_.size() < wanted && walks < 4 * wanted; ++walks) {
       State state = belief.sample(random);
       const int stop = random.below(horizon_);
