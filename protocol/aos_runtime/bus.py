@@ -21,6 +21,7 @@ from aos_protocol.errors import AosError, BusError, LateAnswerError, LostAnswerE
 from aos_protocol.messages import Message
 from aos_runtime.bus_config import LEASE_S, client_config
 from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.server_watch import ServerWatch
 from aos_runtime.subscription import Subscription, Undeclare
 
 __all__ = ["Bus", "Subscription"]
@@ -35,6 +36,10 @@ _ROUND_TRIPS = 5
 
 _LATE_S = 0.5
 """How long after Zenoh's own deadline a question ends by ours, in case Zenoh says nothing."""
+
+_UNANSWERED_S = 1.0
+"""How often it is asked whether the key of an open question is served still, and how long an answer may be
+under way whose giver has left."""
 
 _TAKEN = b"taken"
 """The attachment of a question that asks for a receipt, and of the receipt: a first, empty reply. Somebody
@@ -173,11 +178,17 @@ class Bus:
             # Otherwise a reply is held back until every responder has finished.
             consolidation=zenoh.ConsolidationMode.NONE,
         )
+        watch = ServerWatch(self._session, key)
         try:
             async with asyncio.timeout(timeout_s + _LATE_S if on_stray is None else timeout_s):
-                result = await answer
+                await self._wait_while_served(watch, answer)
+                result = answer.result()
         except TimeoutError:
             result = (False, _ZENOH_TIMEOUT)
+        finally:
+            answer.cancel()
+            if not self._is_closed:
+                watch.end()
         if result is None and is_taken:
             raise LostAnswerError(
                 f"who took the question on {key} ended before the answer",
@@ -307,6 +318,22 @@ class Bus:
         except TimeoutError:
             return False
         return True
+
+    async def _wait_while_served(
+        self, watch: ServerWatch, answer: asyncio.Future[tuple[bool, bytes] | None]
+    ) -> None:
+        """Returns when `answer` is there; it is settled as lost once nobody serves its key."""
+        is_served = True
+        while is_served:
+            ends: set[asyncio.Future[Any]] = {answer, watch.left}
+            await asyncio.wait(ends, timeout=_UNANSWERED_S, return_when=asyncio.FIRST_COMPLETED)
+            if answer.done():
+                return
+            is_served = not watch.left.done() and (not await self._has_gone_round() or watch.is_served)
+        # An answer that was under way when its giver left comes first.
+        await asyncio.wait({answer}, timeout=_UNANSWERED_S)
+        if not answer.done():
+            answer.set_result(None)
 
     def _start_answering(
         self,
