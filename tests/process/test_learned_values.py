@@ -1,4 +1,4 @@
-"""Problems with too many states to list: what POMCP learns of their states before the first decision."""
+"""Problems with too many states to list: what POMCP knows of their states before the first decision."""
 
 from __future__ import annotations
 
@@ -119,11 +119,86 @@ __moduleResponse = picked ? found : nothing;
 }
 """A ring of 24 bushes, of which a number has a bit each: no table of few values tells of the berries."""
 
+SHELVES = {
+    "shelves.ef": """project: shelves
+horizon: 40
+discount: 0.95
+
+state_variable: int at
+state_variable: bool full []
+code:
+state.full.assign(16, false);
+
+initial_belief:
+for (int i = 0; i < 16; i++) state.full[i] = AOS.Bernoulli(0.5);
+""",
+    "go.sd": """project: shelves
+parameter: int by
+
+available_parameters_code:
+__possibleParameters.push_back(std::make_tuple(-1));
+__possibleParameters.push_back(std::make_tuple(1));
+
+dynamic_model:
+state__.at = std::clamp(state.at + by, 0, 15);
+__moduleResponse = nothing;
+""",
+    "go.am": BOXES["open.am"]
+    .replace("project: boxes", "project: shelves")
+    .replace("/open", "/go")
+    .replace("box", "by"),
+    "look.sd": """project: shelves
+parameter: int shelf
+
+available_parameters_code:
+for (int i = 0; i < 16; i++) __possibleParameters.push_back(std::make_tuple(i));
+
+dynamic_model:
+__reward = -0.1;
+__moduleResponse = state.full[shelf] == AOS.Bernoulli(0.8) ? found : nothing;
+""",
+    "look.am": BOXES["open.am"]
+    .replace("project: boxes", "project: shelves")
+    .replace("/open", "/look")
+    .replace("box", "shelf"),
+    "take.sd": """project: shelves
+
+dynamic_model:
+__reward = state.full[state.at] ? 10 : -10;
+__moduleResponse = state.full[state.at] ? found : nothing;
+state__.full[state.at] = false;
+""",
+    "take.am": """project: shelves
+
+response: found
+response_rule: code == 'found'
+response: nothing
+response_rule: True
+
+module_activation: skill
+path: /take
+
+local_variable: code
+type: string
+from_ros_service_response: true
+code:
+code = __input.code
+""",
+}
+"""A robot before 16 shelves: a million states. Looks at all shelves lead to the same states."""
+
 
 async def _why(documents: dict[str, str], cache_dir: Path) -> str:
     built = await built_text(documents, cache_dir)
     async with engine_of(built) as engine:
         return (await engine.plan(simulations=500, seed=3, planner="pomcp")).why
+
+
+async def test_values_of_a_million_states_are_computed(
+    cache_dir: Path,
+) -> None:
+    why = await _why(SHELVES, cache_dir)
+    assert f"without observations all {16 * 2**16} can be" in why
 
 
 async def test_values_are_learned_where_tables_of_few_variables_hold_them(cache_dir: Path) -> None:

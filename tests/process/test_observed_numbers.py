@@ -393,7 +393,7 @@ async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_ce
         assert (await endings_of_doors(engine, planner)).count(Ending.GOAL) >= 27
 
 
-async def test_numbers_of_too_many_combinations_leave_the_search_to_pomcp(cache_dir: Path) -> None:
+async def test_numbers_of_too_many_combinations_are_searched_in_beliefs(cache_dir: Path) -> None:
     files = documents(
         "__moduleResponse = read;\n"
         "for (int i = 0; i < 9; i++) __observed.beams[i] = AOS.SampleNormal(state.level, 1.5);\n",
@@ -401,5 +401,5 @@ async def test_numbers_of_too_many_combinations_leave_the_search_to_pomcp(cache_
     )
     async with engine_of(await built_text(files, cache_dir)) as engine:
         plan = await engine.plan(seed=1, simulations=200, planner="auto")
-        assert plan.planner == "pomcp"
+        assert plan.planner == "belief-tree"
         assert "SARSOP cannot be used: 9 numbers are observed at once" in plan.why

@@ -8,7 +8,13 @@ from pathlib import Path
 import pytest
 from scripted_models import bundle_project, mapping_text, text_project
 
-from aos_solver.emission.lower_relevance import irrelevant_variables, sensing_draws
+from aos_protocol.documents import Project
+from aos_solver.emission.lower_relevance import (
+    certain_rewards,
+    irrelevant_variables,
+    sensing_draws,
+    skills_alike,
+)
 
 HOME = """project: test
 horizon: 3
@@ -157,3 +163,75 @@ def test_a_draw_shapes_only_observations_where_nothing_else_can_depend_on_it(
     act: str, expected: list[bool]
 ) -> None:
     assert shaping(act) == expected
+
+
+@pytest.mark.parametrize(
+    ("act", "are_alike"),
+    [
+        ("__moduleResponse = state.row[at] > 1 ? done : NULL; __reward = -1;", True),
+        ("__moduleResponse = AOS.Bernoulli(at == 1 ? 0.9 : 0.5);", True),
+        ("state__.count = at; __reward = -state.level;", True),
+        ("__reward = at == 1 ? -2 : -1;", False),
+        ("state__.level += at;", False),
+        ("int place = at; if (place > 1) state__.level++;", False),
+        ("state__.row[at] = 7; state__.level = state.row[0];", False),
+        ("for (int i = 0; i < at; i++) __reward--;", False),
+        ("if (at == 1) return; __reward = -1;", False),
+        ("int* place = &at; state__.level += *place;", False),
+    ],
+)
+def test_groundings_are_alike_where_parameters_shape_only_what_is_observed(act: str, are_alike: bool) -> None:
+    assert looking(act) == ({"act"} if are_alike else set())
+
+
+def test_groundings_differ_where_the_precondition_or_the_world_asks_for_them() -> None:
+    look = "__moduleResponse = state.row[at] > 1 ? done : NULL;"
+    assert looking(look, extrinsic="state_.level += 1;") == {"act"}
+    assert looking(look, extrinsic="if (act != NULL) state_.level += act.at;") == set()
+    assert looking(look, precondition="__meetPrecondition = at < 1;") == set()
+    assert looking(look, precondition="__meetPrecondition = state.level < 1;") == {"act"}
+
+
+@pytest.mark.parametrize(
+    ("act", "is_certain"),
+    [
+        ("__moduleResponse = AOS.Bernoulli(0.9); __reward = -state.level;", True),
+        ("state__.count = AOS.Bernoulli(0.9); __reward = -1;", True),
+        ("__reward = AOS.Bernoulli(0.9) ? -1 : -2;", False),
+        ("__reward = AOS.SampleNormal(-1, 0.5);", False),
+        ("state__.level = AOS.Bernoulli(0.9);", False),
+        ("bool hit = AOS.Bernoulli(0.9); __moduleResponse = hit; if (hit) __reward = -1;", False),
+    ],
+)
+def test_a_reward_is_certain_where_draws_shape_only_what_is_observed(act: str, is_certain: bool) -> None:
+    assert certain(acting(act)) == ({"act"} if is_certain else set())
+
+
+def test_no_reward_is_certain_where_the_world_draws() -> None:
+    assert certain(acting("__reward = -1;", extrinsic="state_.level += 1;")) == {"act"}
+    assert certain(acting("__reward = -1;", extrinsic="state_.level += AOS.Bernoulli(0.5);")) == set()
+
+
+def certain(project: Project) -> frozenset[str]:
+    return certain_rewards(project, sensing_draws(project))
+
+
+def looking(act: str, extrinsic: str = "", precondition: str = "") -> frozenset[str]:
+    """The skills of which all grounded actions do the same, among `act`."""
+    return skills_alike(acting(act, extrinsic, precondition))
+
+
+def acting(act: str, extrinsic: str = "", precondition: str = "") -> Project:
+    """Documents of the skill `act`, which has a parameter `at`."""
+    parameter = (
+        "parameter: int at\navailable_parameters_code:\n__possibleParameters.push_back(std::make_tuple(0));\n"
+    )
+    return text_project(
+        {
+            "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
+            "act.sd": f"project: test\n{parameter}"
+            + (f"precondition:\n{precondition}\nviolate_penalty: -5\n" if precondition else "")
+            + f"dynamic_model:\n{act}\n",
+            "act.am": mapping_text("done"),
+        }
+    )

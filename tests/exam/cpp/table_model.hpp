@@ -91,6 +91,8 @@ struct TableModel {
   static bool reports_numbers() { return false; }
   static int skill_of(int) { return 0; }
   static int number_count(int) { return 0; }
+  static bool has_alike_groundings(int) { return false; }
+  static bool has_certain_rewards(int) { return false; }
   static int response_count(int) { return static_cast<int>(responses_.size()); }
   static const char* response_name(int, int response) { return responses_[static_cast<std::size_t>(response)].c_str(); }
   static aos::Ending ending(const State& state) { return state.ending; }

@@ -214,6 +214,7 @@ __reward = -5;
 struct aos_skill_observe_arm_outstretched : aos::SkillDefaults {
   enum Response : int { outstretched = 1, not_outstretched };
   static constexpr std::array<const char*, 2> response_names{"outstretched", "not_outstretched"};
+  static constexpr bool has_certain_rewards = true;
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
@@ -224,7 +225,7 @@ struct aos_skill_observe_arm_outstretched : aos::SkillDefaults {
 #line 4 "observe_arm_outstretched.sd"
 __moduleResponse = state.arm_outstretched ? outstretched : not_outstretched;
 __reward = -1;
-#line 228 "model.cpp"
+#line 229 "model.cpp"
   }
 };
 
@@ -232,6 +233,7 @@ __reward = -1;
 struct aos_skill_observe_holding : aos::SkillDefaults {
   enum Response : int { holding = 1, not_holding };
   static constexpr std::array<const char*, 2> response_names{"holding", "not_holding"};
+  static constexpr bool has_certain_rewards = true;
 
   static void next_state(const State& state, const State& state_, State& state__,
                          bool __meetPrecondition, const int __moduleExecutionTime, auto& aos_effect,
@@ -243,7 +245,7 @@ struct aos_skill_observe_holding : aos::SkillDefaults {
 // In 2 of 11 runs the fingers report nothing although they hold the can; never the other way round.
 __moduleResponse = state.holding_can && AOS.sensing().Bernoulli(0.818) ? holding : not_holding;
 __reward = -1;
-#line 247 "model.cpp"
+#line 249 "model.cpp"
   }
 };
 
@@ -259,7 +261,7 @@ struct aos_skill_pick : aos::SkillDefaults {
 #line 4 "pick.sd"
 bool can_in_reach = state.easy_can_at == state.robot_at || state.hard_can_at == state.robot_at;
 __meetPrecondition = can_in_reach && !state.holding_can;
-#line 263 "model.cpp"
+#line 265 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -289,7 +291,7 @@ state__.arm_outstretched = ending == GraspedArmOut;
 // The skill notices an arm that stays out, and neither a missed nor a dropped can.
 __moduleResponse = ending == GraspedArmOut ? pick_failed : pick_succeeded;
 __reward = -2;
-#line 293 "model.cpp"
+#line 295 "model.cpp"
   }
 };
 
@@ -297,6 +299,7 @@ __reward = -2;
 struct aos_skill_serve : aos::SkillDefaults {
   enum Response : int { delivered = 1, not_delivered };
   static constexpr std::array<const char*, 2> response_names{"delivered", "not_delivered"};
+  static constexpr bool has_certain_rewards = true;
   static constexpr double violation_penalty = -12.0;
 
   static void precondition(const State& state, bool& __meetPrecondition, const Parameters& aos_parameters,
@@ -304,7 +307,7 @@ struct aos_skill_serve : aos::SkillDefaults {
     aos::blame::at(25);
 #line 4 "serve.sd"
 __meetPrecondition = state.holding_can && !state.arm_outstretched && state.robot_at == Corridor;
-#line 308 "model.cpp"
+#line 311 "model.cpp"
   }
 
   static void next_state(const State& state, const State& state_, State& state__,
@@ -320,7 +323,7 @@ state__.drink_served = __meetPrecondition && !state__.person_injured;
 // All 21 runs reported a delivery, whether or not there was a can in the hand.
 __moduleResponse = AOS.sensing().Bernoulli(1.0) ? delivered : not_delivered;
 __reward = state__.person_injured ? -20 : -8;
-#line 324 "model.cpp"
+#line 327 "model.cpp"
   }
 };
 
@@ -329,7 +332,7 @@ struct Environment : aos::EnvironmentDefaults {
     aos::blame::at(15);
 #line 64 "armadillo.ef"
 state.robot_at = state.hard_table.place;
-#line 333 "model.cpp"
+#line 336 "model.cpp"
   }
 
   static void aos_special_state_1(const State& state, double& __reward, bool& __isGoalState,
@@ -340,7 +343,7 @@ if (state.drink_served) {
     __reward = 30;
     __isGoalState = true;
 }
-#line 344 "model.cpp"
+#line 347 "model.cpp"
   }
 
   static void aos_special_state_2(const State& state, double& __reward, bool& __isGoalState,
@@ -351,7 +354,7 @@ if (state.person_injured) {
     __reward = -10;
     __isFailureState = true;
 }
-#line 355 "model.cpp"
+#line 358 "model.cpp"
   }
 
   static void aos_special_state_3(const State& state, double& __reward, bool& __isGoalState,
@@ -362,7 +365,7 @@ if (state.person_injured) {
 if (state.easy_can_at == Unknown && state.hard_can_at == Unknown) {
     __isFailureState = true;
 }
-#line 366 "model.cpp"
+#line 369 "model.cpp"
   }
 
   static constexpr bool has_special_states = true;

@@ -71,7 +71,7 @@ _PARAMETER = re.compile(r"(\w+)=(\w+)")
 
 ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
-"""Of a search with a budget in simulations. A budget in time leaves ANSWER_DEADLINE_S beyond it."""
+"""Of a search, beyond its budget in time. The first decision computes values before it searches."""
 LISTING_DEADLINE_S = 600.0
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000
@@ -174,7 +174,6 @@ class Engine:
         With the planner `auto` the model's size decides, and the plan says why. POMCP can use
         several threads.
         """
-        deadline_s = PLANNING_DEADLINE_S if time_s is None else time_s + ANSWER_DEADLINE_S
         command = command_line(
             "plan",
             barred,
@@ -185,7 +184,7 @@ class Engine:
             planner=planner,
             threads=threads,
         )
-        return await self._ask(command, Plan, deadline_s=deadline_s)
+        return await self._ask(command, Plan, deadline_s=PLANNING_DEADLINE_S + (time_s or 0))
 
     async def ponder(self, index: int, *, seed: int, time_s: float, threads: int = 1) -> None:
         """Begins to search below an action that is carried out now, so that the next plan starts with that.

@@ -6,6 +6,7 @@ A pure function of the project. Mistakes of the documents come back as diagnosti
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 
 import msgspec
 
@@ -31,7 +32,12 @@ from aos_solver.emission.lower_code import (
 )
 from aos_solver.emission.lower_copies import copies_of
 from aos_solver.emission.lower_names import check_names
-from aos_solver.emission.lower_relevance import irrelevant_variables, sensing_draws
+from aos_solver.emission.lower_relevance import (
+    certain_rewards,
+    irrelevant_variables,
+    sensing_draws,
+    skills_alike,
+)
 from aos_solver.emission.lower_state import (
     capacities_of,
     lower_compounds,
@@ -60,10 +66,12 @@ def lower(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
     return None if findings.has_errors else program, findings.diagnostics
 
 
-def _draws_of_a_kind(project: Project) -> dict[Snippet, dict[int, str]]:
+def _draws_of_a_kind(
+    project: Project, sensing: Mapping[Snippet, frozenset[int]]
+) -> dict[Snippet, dict[int, str]]:
     """The words that draws are told apart by: see `Draws` in random.hpp."""
     kinds: dict[Snippet, dict[int, str]] = {}
-    for kind, draws in (("sensing", sensing_draws(project)), ("averaged", averaged_draws(project))):
+    for kind, draws in (("sensing", sensing), ("averaged", averaged_draws(project))):
         for snippet, starts in draws.items():
             kinds.setdefault(snippet, {}).update(dict.fromkeys(starts, kind))
     return kinds
@@ -80,7 +88,10 @@ class _Lowering:
         self._types = Types(
             environment.enums, environment.compounds, member_names(project), capacities_of(project), findings
         )
-        self._pieces = Pieces(findings, _draws_of_a_kind(project))
+        self._alike = skills_alike(project)
+        sensing = sensing_draws(project)
+        self._certain_rewards = certain_rewards(project, sensing)
+        self._pieces = Pieces(findings, _draws_of_a_kind(project, sensing))
         self._code = SectionLowering(
             self._types,
             self._pieces,
@@ -200,6 +211,8 @@ class _Lowering:
             responses=tuple(dict.fromkeys(rule.response for rule in mapping.rules)),
             has_text_response=bool(mapping.response_variable) or _uses_text_response(model.dynamic_model),
             violation_penalty=model.violation_penalty,
+            has_alike_groundings=model.name in self._alike,
+            has_certain_rewards=model.name in self._certain_rewards,
             possible_parameters=code.section(LOOKING, model.possible_parameters) if parameters else None,
             precondition=code.section(LOOKING, model.precondition),
             execution_time=code.section(LOOKING, model.execution_time),

@@ -20,7 +20,8 @@ _OF_NAMESPACES = frozenset({"model"})
 """What no type can be called, and everything else can."""
 _OF_EMITTED_SKILLS = frozenset({
     "Locals", "Observed", "Parameters", "Response", "execution_time", "given_observation",
-    "has_text_response", "locals", "make_groundings", "next_state", "number_count",
+    "has_alike_groundings", "has_certain_rewards", "has_text_response", "locals", "make_groundings",
+    "next_state", "number_count",
     "possible_parameters", "precondition", "read_locals", "response_names", "rollout_policy",
     "violation_penalty",
 })  # fmt: skip

@@ -5,9 +5,10 @@ the state what the robot has learnt, for their rollout policies, and what people
 these variables earns and shows the same with the same probabilities, so planners need not tell states apart
 by them.
 
-Some draws shape only what is observed, such as the noise of a sensor.
+Some draws shape only what is observed, such as the noise of a sensor. So do the parameters of some skills,
+such as which place a camera looks at. The reward of a skill without other draws is certain.
 
-Both are cones of influence: they follow from the text of the code that a step runs, and where the text leaves
+All are cones of influence: they follow from the text of the code that a step runs, and where the text leaves
 a doubt a variable or a draw matters.
 """
 
@@ -21,7 +22,7 @@ from aos_runtime.document_code import snippets_of
 from aos_runtime.observed import is_draw
 from aos_runtime.snippets import read_cpp, read_cpp_expression
 
-__all__ = ["irrelevant_variables", "sensing_draws"]
+__all__ = ["certain_rewards", "irrelevant_variables", "sensing_draws", "skills_alike"]
 
 _OBSERVATION = frozenset({"__moduleResponse", "__moduleResponseStr", "__observed"})
 
@@ -45,18 +46,13 @@ def sensing_draws(project: Project) -> Mapping[Snippet, frozenset[int]]:
     Whatever such a draw gives, the step leads to the same state as far as its variables matter, with the same
     reward, and every loop runs as often. So successors can be listed where observations are too many to list.
     """
-    variables = frozenset(variable.name for variable in project.environment.variables)
-    reading = _Influence(project.environment, observations_matter=False)
-    reading.use_variables(variables - irrelevant_variables(project))
-    dynamic_models = [skill.model.dynamic_model for skill in project.skills]
-    sections = []
-    for code in _sections(project):
-        section = reading.read(code)
-        if any(code is model for model in dynamic_models):
-            sections.append((section, code))
+    reading, sections = _read_without_observations(project)
     influential = reading.influential()
+    dynamic_models = [skill.model.dynamic_model for skill in project.skills]
     found: dict[Snippet, frozenset[int]] = {}
     for section, code in sections:
+        if not any(code is model for model in dynamic_models):
+            continue
         for snippet, cpp in snippets_of(code):
             calls = sorted(call.function.start for call in cpp.calls if is_draw(call))
             draws = flows_of(cpp).draws
@@ -66,6 +62,73 @@ def sensing_draws(project: Project) -> Mapping[Snippet, frozenset[int]]:
                 }
                 found[snippet] = found.get(snippet, frozenset(shaping)) & shaping
     return found
+
+
+def certain_rewards(project: Project, sensing: Mapping[Snippet, frozenset[int]]) -> frozenset[str]:
+    """The skills whose reward follows from state and parameters: all their draws are `sensing_draws`."""
+    environment = project.environment
+    around = (environment.extrinsic_changes, *(special.code for special in environment.special_states))
+    if _is_opaque(project) or any(_draws_of(code) for code in around):
+        return frozenset()
+    certain = set()
+    for skill in project.skills:
+        parts = (skill.model.precondition, skill.model.execution_time, skill.model.dynamic_model)
+        draws = [draw for code in parts for draw in _draws_of(code)]
+        if all(start in sensing.get(snippet, ()) for snippet, start in draws):
+            certain.add(skill.name)
+    return frozenset(certain)
+
+
+def skills_alike(project: Project) -> frozenset[str]:
+    """The skills whose parameters shape only what is observed.
+
+    From a state, all grounded actions of such a skill lead to the same states with the same rewards.
+    """
+    environment = project.environment
+    asked_for = {
+        mention.path[0] for _, cpp in snippets_of(environment.extrinsic_changes) for mention in cpp.mentions
+    }
+    if _is_opaque(project):
+        return frozenset()
+    reading, sections = _read_without_observations(project)
+    influential = reading.influential()
+    alike = set()
+    for skill in project.skills:
+        parts = (skill.model.precondition, skill.model.execution_time, skill.model.dynamic_model)
+        names = [
+            (section, Name(parameter.name))
+            for section, code in sections
+            for parameter in skill.model.parameters
+            if any(code is part for part in parts)
+        ]
+        if names and skill.name not in asked_for and influential.isdisjoint(names):
+            alike.add(skill.name)
+    return frozenset(alike)
+
+
+def _read_without_observations(
+    project: Project,
+) -> tuple[_Influence, list[tuple[int, tuple[Assignment, ...]]]]:
+    """What influences rewards, endings, loops and variables that matter; the sections with their numbers."""
+    variables = frozenset(variable.name for variable in project.environment.variables)
+    reading = _Influence(project.environment, observations_matter=False)
+    reading.use_variables(variables - irrelevant_variables(project))
+    return reading, [(reading.read(code), code) for code in _sections(project)]
+
+
+def _is_opaque(project: Project) -> bool:
+    """Whether some code hides what flows where."""
+    return any(flows_of(cpp).is_opaque for code in _sections(project) for _, cpp in snippets_of(code))
+
+
+def _draws_of(code: tuple[Assignment, ...]) -> list[tuple[Snippet, int]]:
+    """The draws of a section, each by its snippet and where its call starts."""
+    return [
+        (snippet, call.function.start)
+        for snippet, cpp in snippets_of(code)
+        for call in cpp.calls
+        if is_draw(call)
+    ]
 
 
 def _sections(project: Project) -> Iterator[tuple[Assignment, ...]]:

@@ -232,6 +232,8 @@ class Skill(msgspec.Struct, frozen=True):
     `document` is the file that describes it. `reported` are the local variables whose values a real
     observation gives to the state variables of their names, `locals` those and what `given_observation` uses.
     `observed` are the numbers that it reports.
+    `has_alike_groundings`: its parameters shape only what is observed.
+    `has_certain_rewards`: its draws shape only what is observed.
     `keeps_state` and `keeps_state_`: a step needs these copies of the state (see `lower_copies`).
     """
 
@@ -250,6 +252,8 @@ class Skill(msgspec.Struct, frozen=True):
     locals: tuple[Local, ...] = ()
     reported: tuple[str, ...] = ()
     observed: tuple[Observed, ...] = ()
+    has_alike_groundings: bool = False
+    has_certain_rewards: bool = False
     keeps_state: bool = True
     keeps_state_: bool = True
 

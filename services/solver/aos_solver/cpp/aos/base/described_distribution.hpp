@@ -4,9 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <vector>
+
+#include "aos/base/normal.hpp"
+#include "aos/base/random.hpp"
 
 namespace aos {
 
@@ -31,6 +36,31 @@ struct DescribedDistribution {
     const auto value_of = [&](std::size_t place) { return numbers[0] + static_cast<double>(place - 1); };
     for (std::size_t i = 1; i < numbers.size() && value_of(i) < value; ++i) sum += numbers[i];
     return std::min(sum, 1.0);
+  }
+
+  // The logarithm of the density; of a discrete distribution, of the probability.
+  double log_density(double value) const {
+    constexpr double never = -std::numeric_limits<double>::infinity();
+    switch (kind) {
+      case Kind::normal: return normal_log_density(value, numbers[0], numbers[1]);
+      case Kind::uniform:
+        return value >= numbers[0] && value <= numbers[1] ? -std::log(numbers[1] - numbers[0]) : never;
+      default: break;
+    }
+    const double place = value - numbers[0];
+    const bool is_known = place >= 0 && place + 1 < static_cast<double>(numbers.size());
+    return is_known ? std::log(numbers[static_cast<std::size_t>(place) + 1]) : never;
+  }
+
+  // The value below which a draw lies with a probability, which is at least 0 and below 1.
+  double quantile(double probability) const {
+    switch (kind) {
+      case Kind::normal: return numbers[0] + numbers[1] * normal_quantile(probability + 0x1p-54);
+      case Kind::uniform: return numbers[0] + (numbers[1] - numbers[0]) * probability;
+      default: break;
+    }
+    const int count = static_cast<int>(numbers.size()) - 1;
+    return numbers[0] + place_in(numbers.data() + 1, count, probability);
   }
 
   // Appends values that part the draws into pieces. A piece is half a deviation of a normal distribution, an

@@ -12,8 +12,10 @@ class DirectedDraws : public Draws<DirectedDraws> {
  public:
   // A certain flag makes no draw, so that it adds no choice to the path.
   bool flag(double probability) {
-    if (probability <= 0) return false;
-    if (probability >= 1) return true;
+    if (probability <= 0 || probability >= 1) {
+      is_sensing_ = false;
+      return probability >= 1;
+    }
     const double weights[] = {1 - probability, probability};
     return choose(weights, 2, 1.0) == 1;
   }
@@ -26,7 +28,7 @@ class DirectedDraws : public Draws<DirectedDraws> {
   // The source of draws that shape only what is observed.
   SensingDraws<DirectedDraws> sensing() { return SensingDraws<DirectedDraws>{*this}; }
   bool skips_sensing() {
-    meets_sensing_ = true;
+    meets_sensing_ = is_sensing_ = true;
     return skips_sensing_;
   }
   void skip_sensing(bool skips) { skips_sensing_ = skips; }
@@ -54,11 +56,14 @@ class DirectedDraws : public Draws<DirectedDraws> {
   }
   // The weight that the sink gives the step since `begin_numbers`; 1 without a sink.
   double weight_of_numbers() const { return sink_ == nullptr ? 1 : sink_->weight(); }
+  // Whether the draw that is made now shapes only what is observed. Asked once of each draw.
+  bool takes_sensing() { return std::exchange(is_sensing_, false); }
 
  private:
   NumberSink* sink_ = nullptr;
   bool skips_sensing_ = false;
   bool meets_sensing_ = false;
+  bool is_sensing_ = false;
 };
 
 }  // namespace aos

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include "aos/base/described_distribution.hpp"
 #include "aos/base/distributions.hpp"
+#include "aos/base/normal.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -43,10 +43,7 @@ double Distribution::draw(Sampler& random) const {
 double Distribution::log_density(double value) const {
   constexpr double impossible = -std::numeric_limits<double>::infinity();
   check();
-  if (kind_ == Kind::normal) {
-    const double distance = (value - first_) / second_;
-    return -0.5 * distance * distance - std::log(second_) - 0.5 * std::log(2 * std::numbers::pi);
-  }
+  if (kind_ == Kind::normal) return normal_log_density(value, first_, second_);
   if (kind_ == Kind::uniform) {
     const bool is_inside = std::min(first_, second_) <= value && value <= std::max(first_, second_);
     return is_inside ? -std::log(std::abs(second_ - first_)) : impossible;

@@ -1,8 +1,9 @@
-// The quantile function of the normal distribution, which makes a uniform draw a normal one.
+// The normal distribution: its density, and its quantile function, which makes a uniform draw a normal one.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace aos {
 
@@ -17,6 +18,12 @@ double polynomial(const double (&coefficients)[Count], double x) {
 }
 
 }  // namespace detail
+
+// The logarithm of the density.
+inline double normal_log_density(double value, double mean, double deviation) {
+  const double distance = (value - mean) / deviation;
+  return -0.5 * distance * distance - std::log(deviation) - 0.5 * std::log(2 * std::numbers::pi);
+}
 
 // The quantile of a probability between 0 and 1, to about 16 digits (Wichura, 1988: algorithm AS 241).
 inline double normal_quantile(double probability) {

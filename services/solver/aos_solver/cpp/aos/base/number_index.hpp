@@ -9,7 +9,7 @@
 namespace aos {
 
 // Open addressing, at most half full. The caller's `is_it(number)` tells whether this number's thing is the one sought;
-// the index asks it only about numbers with the same hash. The lower bits of a hash must be well mixed.
+// the index asks it only about numbers with the same lower 32 bits of the hash. These bits must be well mixed.
 class NumberIndex {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -25,7 +25,7 @@ class NumberIndex {
     if (2 * size_ >= entries_.size()) grow();
     Entry& entry = entries_[slot_of(hash, is_it)];
     if (entry.number == none) {
-      entry = {hash, number};
+      entry = {static_cast<std::uint32_t>(hash), number};
       ++size_;
     }
     return entry.number;
@@ -41,12 +41,13 @@ class NumberIndex {
 
  private:
   struct Entry {
-    std::uint64_t hash = 0;
+    std::uint32_t hash = 0;
     std::uint32_t number = none;
   };
 
   template <class IsIt>
-  std::size_t slot_of(std::uint64_t hash, IsIt&& is_it) const {
+  std::size_t slot_of(std::uint64_t whole_hash, IsIt&& is_it) const {
+    const auto hash = static_cast<std::uint32_t>(whole_hash);
     std::size_t slot = hash & (entries_.size() - 1);
     while (entries_[slot].number != none && (entries_[slot].hash != hash || !is_it(entries_[slot].number))) {
       slot = (slot + 1) & (entries_.size() - 1);

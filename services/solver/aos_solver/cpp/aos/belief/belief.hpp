@@ -33,6 +33,7 @@ inline constexpr std::size_t max_weighted_states = 100'000;
 inline constexpr std::size_t max_weighted_bytes = std::size_t{64} << 20;
 inline constexpr int max_initial_paths = 1'000'000;
 inline constexpr std::size_t max_enumerated_paths = 4'000'000;  // of one update of an exact belief
+inline constexpr std::size_t max_predicted_paths = 200'000;  // beyond these a prediction is drawn
 inline constexpr double negligible_weight = 1e-12;
 
 // What a belief becomes after an observation that it held impossible.
@@ -101,7 +102,7 @@ class Belief {
     const auto add = [&](Observation observation, double weight) { odds[observation] += weight; };
     try {
       if (is_drawn()) throw NotEnumerable{"the states were drawn"};
-      enumerate_outcomes<Model>(particles_, action, ignored_numbers, max_enumerated_paths,
+      enumerate_outcomes<Model>(particles_, action, ignored_numbers, max_predicted_paths,
                                 [&](const State&, const State&, Observation seen, double weight) { add(seen, weight); });
     } catch (const NotEnumerable&) {
       odds.clear();

@@ -29,6 +29,7 @@
 
 #include "aos/base/random.hpp"
 #include "aos/base/replay.hpp"
+#include "aos/base/text_order.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/transition.hpp"
 
@@ -89,7 +90,7 @@ class GuidedStep {
 
  private:
   // How the text of a response, as far as it is written, compares with the observed one: it is its beginning,
-  // or it is before or after it in the order of characters, or there is no text.
+  // or it is before or after it (text_order.hpp), or there is no text.
   enum class Order { agreeing = 0, before = 1, unknown = 2, after = 3 };
 
   // Notes what the first random draw can be, and how the response's text compares before that draw.
@@ -107,7 +108,7 @@ class GuidedStep {
     }
     Order order() const { return order_; }
     Order order_of(std::string_view text) const {
-      const int order = text.compare(observed_.substr(0, text.size()));
+      const double order = order_of_texts(text, observed_);
       return order < 0 ? Order::before : order > 0 ? Order::after : Order::agreeing;
     }
     void before_draw(std::size_t number, const double* weights, int count, double total) override {

@@ -1,7 +1,8 @@
 // The particle filter of beliefs that cannot be enumerated.
 //
 // Each particle makes trials in proportion to its weight, and at least one. If many steps agree with the
-// observation, a trial draws the whole step (the bootstrap filter: Gordon, Salmond and Smith, 1993).
+// observation, or if the last draw has too many outcomes to guide any, a trial draws the whole step (the
+// bootstrap filter: Gordon, Salmond and Smith, 1993).
 // Otherwise a trial is guided towards the observation and weighted (guided_step.hpp). Equal states are
 // merged, and light particles are thinned out (gathering.hpp). Particles are moved (moves.hpp) if too few
 // agree, if they are worth too few samples, or if they descend from too few origins.
@@ -34,7 +35,7 @@ inline constexpr std::size_t few_states = 500;
 inline constexpr std::size_t max_guesses = 500;         // about
 inline constexpr std::size_t max_guessing_runs = 500'000;
 inline constexpr std::size_t price_count = 50;          // trials that tell how many runs one takes
-inline constexpr double max_guided_runs = 150'000;      // of an update that covers few particles
+inline constexpr double max_guided_runs = 150'000;      // of an update that covers few particles, or guides nothing
 inline constexpr double max_covering_runs = 2'000'000;  // of one that covers many
 inline constexpr double dear_trial = 50;                // in runs; cheap trials can be many
 inline constexpr double nearly_all = 1 - 1e-8;          // of the weight, which is covered
@@ -173,16 +174,20 @@ class ParticleFilter {
     Look look;
     std::vector<std::size_t> first_guided;
     std::size_t agreed = 0;
+    bool has_guided = false;
     draw_evenly<Model>(before.particles, pilot_count, random_, [&](const State& drawn) {
       State next = drawn;
       replay_.start(none_, random_, nullptr, &look);
       agreed += Model::step(next, step.action, replay_).observation == step.observation && replay_.weight() > 0 ? 1 : 0;
       first_guided.push_back(look.first_guided());
+      has_guided = has_guided || first_guided.back() < replay_.draws();
     });
     std::nth_element(first_guided.begin(), first_guided.begin() + pilot_count / 2, first_guided.end());
     const double share = static_cast<double>(agreed) / pilot_count;
     const std::size_t by_chance = first_guided[pilot_count / 2];
-    if (by_chance > 0 && share >= rare_observation) return {false, 0, by_weight(before, wanted(before) / share)};
+    if (by_chance > 0 && (share >= rare_observation || !has_guided)) {
+      return {false, 0, by_weight(before, std::min(wanted(before) / std::max(share, 1.0 / pilot_count), max_guided_runs))};
+    }
     return {true, by_chance, by_promise(before, step, by_chance)};
   }
 

@@ -50,7 +50,7 @@ void write_code_rate(JsonWriter& json, const Command& command) {
   typename Model::State initial{};
   write_rate<Model>(json, command.number<double>("seconds"), random, [&] {
     Model::initial(initial, random);
-    return ComputedState<Model>{initial, nullptr, nullptr};
+    return ComputedState<Model>{initial, nullptr};
   });
 }
 

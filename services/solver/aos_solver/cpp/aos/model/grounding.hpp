@@ -39,6 +39,8 @@ struct SkillFacts {
   int response_count;
   bool has_text_response;
   int number_count;  // how many names `__observed` has
+  bool has_alike_groundings;
+  bool has_certain_rewards;
   void (*write_parameters)(const void* parameters, JsonWriter& json);
   void (*read_locals)(std::string_view values);
 };
@@ -51,6 +53,8 @@ constexpr SkillFacts facts_of(const char* name) {
       .response_count = static_cast<int>(Skill::response_names.size()),
       .has_text_response = Skill::has_text_response,
       .number_count = Skill::number_count,
+      .has_alike_groundings = Skill::has_alike_groundings,
+      .has_certain_rewards = Skill::has_certain_rewards,
       .write_parameters =
           [](const void* parameters, JsonWriter& json) {
             write_json(json, *static_cast<const typename Skill::Parameters*>(parameters));

@@ -50,6 +50,10 @@ struct SkillDefaults {
   static constexpr double violation_penalty = 0;
   static constexpr bool has_text_response = false;
   static constexpr int number_count = 0;
+  // Whether the parameters shape only what is observed (lower_relevance.py).
+  static constexpr bool has_alike_groundings = false;
+  // Whether the draws shape only what is observed.
+  static constexpr bool has_certain_rewards = false;
   // Whether a step reads `state` (or `state_`) after it has changed a later copy of the state.
   static constexpr bool keeps_state = false;
   static constexpr bool keeps_state_ = false;

@@ -26,11 +26,13 @@
 #include "aos/model/step.hpp"
 #include "aos/model/values.hpp"
 #include "aos/planning/cell_tables.hpp"
+#include "aos/planning/random_walk.hpp"
+#include "aos/planning/state_values.hpp"
 
 namespace aos {
 
 template <class Model>
-class LearnedValues {
+class LearnedValues final : public StateValues<Model> {
  public:
   using State = typename Model::State;
 
@@ -49,7 +51,7 @@ class LearnedValues {
   }
 
   // The value of a state; 0 without decisions to go. Otherwise it does not depend on `left`.
-  double value(const State& state, int left) const {
+  double value(const State& state, int left) const override {
     if (left <= 0) return 0;
     thread_local std::vector<std::uint16_t> row;
     row.resize(variables_.size());
@@ -104,32 +106,15 @@ class LearnedValues {
       State state = belief.sample(random);
       const int stop = random.below(horizon_);
       const int at_random = has_values && walks % 2 == 1 ? random.below(stop + 1) : stop;
-      int action = 0;
-      int repeats = 0;
+      walk_.start();
       for (int i = 0; i < stop && Model::ending(state) == Ending::running; ++i) {
-        if (i >= at_random) {
-          action = best_action(state, horizon_ - i, random);
-        } else if (repeats-- <= 0 || !is_possible(state, action, random)) {
-          // Actions repeat: walks that turn at every step stay where they are (Dabney, Ostrovski and Barreto, 2021).
-          action = any_action(state, random);
-          repeats = (1 << random.below(4)) - 1;
-        }
+        const int action = i >= at_random ? best_action(state, horizon_ - i, random) : walk_.next(state, random);
         Model::step(state, action, random);
       }
       if (Model::ending(state) == Ending::running) examples_.push_back(state);
     }
   }
 
-  bool is_possible(const State& state, int action, Sampler& random) {
-    odds_.resize(action_count());
-    Model::rollout_odds(state, odds_.data(), random);
-    return odds_[static_cast<std::size_t>(action)] > 0;
-  }
-  int any_action(const State& state, Sampler& random) {
-    odds_.resize(action_count());
-    Model::rollout_odds(state, odds_.data(), random);
-    return random.choose(odds_.data(), Model::action_count(), 1);
-  }
   int best_action(const State& state, int left, Sampler& random) const {
     const Sampler luck{random.bits()};
     return best_by([&](int action) { return action_value(state, action, left, luck); }, random);
@@ -287,7 +272,7 @@ class LearnedValues {
   CellTables tables_;
   double lowest_ = 0;
   double highest_ = 0;
-  std::vector<double> odds_;
+  RandomWalk<Model> walk_;
   // While learning:
   std::vector<State> examples_;
   std::vector<std::uint16_t> rows_;    // of the examples, then of all successors

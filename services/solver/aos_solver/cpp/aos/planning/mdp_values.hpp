@@ -15,6 +15,7 @@
 
 #include "aos/belief/belief.hpp"
 #include "aos/planning/state_space.hpp"
+#include "aos/planning/state_values.hpp"
 
 namespace aos {
 
@@ -22,7 +23,7 @@ inline constexpr std::size_t max_layered_values = 8'000'000;
 inline constexpr double settled_share = 1e-4;  // of the largest value
 
 template <class Model>
-class MdpValues {
+class MdpValues final : public StateValues<Model> {
  public:
   using State = typename Model::State;
 
@@ -52,6 +53,7 @@ class MdpValues {
     return outcomes.size() == 1 && outcomes[0].probability > 1 - 1e-6 ? outcomes[0].next : no_state;
   }
 
+  double value(const State& state, int left) const override { return value(number_of(state), left); }
   // The value with `horizon` decisions to go.
   double value(std::uint32_t number, int horizon) const {
     return number == no_state ? highest_ : layer(horizon)[number];
@@ -62,6 +64,13 @@ class MdpValues {
     if (number == no_state) return 0;
     const double worth = value_of(rows().row(number, static_cast<std::size_t>(action)), layer(horizon - 1));
     return std::min(worth - layer(horizon)[number], 0.0);
+  }
+
+  // The value of an action with `horizon` decisions to go, where the state after it is seen.
+  double action_value(std::uint32_t number, std::size_t action, int horizon) const {
+    const std::size_t row = rows().row(number, action);
+    const bool is_last = static_cast<std::size_t>(horizon) + 1 >= layers_.size();
+    return is_last ? action_values_[row] : value_of(row, layer(horizon - 1));
   }
 
   // Adds the value of each action with many decisions to go, times a weight.

@@ -14,22 +14,24 @@
 #include "aos/base/rounded_text.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
-#include "aos/planning/mdp_values.hpp"
+#include "aos/planning/belief_tree.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot.hpp"
 #include "aos/planning/exact_search.hpp"
+#include "aos/planning/exploration.hpp"
+#include "aos/planning/mdp_values.hpp"
 #include "aos/planning/point_based.hpp"
 #include "aos/planning/pomcp.hpp"
 #include "aos/planning/state_space.hpp"
 
 namespace aos {
 
-enum class PlannerKind { pomcp, despot, sarsop, automatic, exact };
-inline constexpr const char* planner_names[] = {"pomcp", "despot", "sarsop", "auto", "exact"};
+enum class PlannerKind { pomcp, despot, sarsop, automatic, exact, belief_tree };
+inline constexpr const char* planner_names[] = {"pomcp", "despot", "sarsop", "auto", "exact", "belief-tree"};
 
 // The planner of this name, if there is one that can be asked for.
 inline std::optional<PlannerKind> planner_kind(std::string_view name) {
-  const auto* const last = std::end(planner_names) - 1;
+  const auto* const last = planner_names + static_cast<std::size_t>(PlannerKind::exact);
   const auto* const found = std::find(planner_names, last, name);
   return found == last ? std::nullopt : std::optional{static_cast<PlannerKind>(found - planner_names)};
 }
@@ -48,6 +50,7 @@ class Planner {
     switch (used_) {
       case PlannerKind::exact: return exact_.simulations();
       case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred);
+      case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred);
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = point_based_.search(budget);
         why_ += "; " + bounds_text(horizon);
@@ -55,7 +58,7 @@ class Planner {
       }
       default: {
         const std::uint64_t simulations = pomcp_.search(belief, budget, horizon, random, barred);
-        if (pomcp_.has_estimates()) why_ += "; what states are worth is learned from simulations";
+        if (const std::string source = pomcp_.value_source(); !source.empty()) why_ += "; " + source;
         return simulations;
       }
     }
@@ -70,6 +73,7 @@ class Planner {
       case PlannerKind::exact: return exact_.estimates();
       case PlannerKind::despot: return despot_->estimates(belief);
       case PlannerKind::sarsop: return point_based_.estimates();
+      case PlannerKind::belief_tree: return belief_tree_.estimates(belief);
       default: return pomcp_.estimates(belief);
     }
   }
@@ -79,20 +83,21 @@ class Planner {
     const auto is_barred = [&](const ActionEstimate& estimate) {
       return barred.contains(static_cast<std::size_t>(&estimate - estimates.data()));
     };
-    std::uint32_t most = 0;
+    ActionEstimate most;  // the most visited one
     for (const ActionEstimate& estimate : estimates) {
-      if (!is_barred(estimate)) most = std::max(most, estimate.n);
+      if (!is_barred(estimate) && estimate.n > most.n) most = estimate;
     }
     return preferred_action(estimates, horizon_, [&](const ActionEstimate& estimate) {
       if (is_barred(estimate)) return false;
-      return used_ == PlannerKind::pomcp && !pomcp_.has_prior() ? is_well_visited(estimate.n, most) : estimate.n > 0;
+      if (used_ == PlannerKind::belief_tree) return is_well_visited(estimate.n, most.n);
+      if (used_ != PlannerKind::pomcp || pomcp_.has_prior() || estimate.n == 0) return estimate.n > 0;
+      return is_well_visited(estimate.n, most.n) || (pomcp_.rolls_out() && is_certain(estimate, most));
     });
   }
 
   // Searches below the action that is being carried out, if the last planner can use that.
   template <class IsOver>
-  void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
-                   IsOver&& is_over) {
+  void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, IsOver&& is_over) {
     if (used_ == PlannerKind::pomcp) pomcp_.ponder(action, belief, budget, horizon, random, is_over);
     if (used_ == PlannerKind::sarsop) point_based_.ponder(action, budget, is_over);
   }
@@ -114,6 +119,7 @@ class Planner {
   void start_over() {
     forget();
     exact_.start_over();
+    belief_tree_.start_over();
     point_based_.start_over();
   }
 
@@ -141,13 +147,22 @@ class Planner {
     }
     if (space_.leaves_out_observations()) {
       why_ += ", but not what is observed: " + space_.observations_obstacle();
-      return PlannerKind::pomcp;
+      return belief_tree_or_pomcp(belief, horizon);
     }
     if (const std::string obstacle = point_based_.prepare(belief, horizon); !obstacle.empty()) {
       why_ += "; SARSOP cannot be used: " + obstacle;
-      return space_.lists_observations() ? PlannerKind::despot : PlannerKind::pomcp;
+      return space_.lists_observations() ? PlannerKind::despot : belief_tree_or_pomcp(belief, horizon);
     }
     return PlannerKind::sarsop;
+  }
+
+  PlannerKind belief_tree_or_pomcp(const Belief<Model>& belief, int horizon) {
+    if (const std::string obstacle = belief_tree_.prepare(belief, horizon); !obstacle.empty()) {
+      why_ += "; their probabilities cannot be estimated: " + obstacle;
+      return PlannerKind::pomcp;
+    }
+    why_ += "; their probabilities are estimated";
+    return PlannerKind::belief_tree;
   }
 
   std::string point_based_obstacle(const Belief<Model>& belief, int horizon) {
@@ -175,6 +190,7 @@ class Planner {
   Pomcp<Model> pomcp_{space_, values_};
   ExactSearch<Model> exact_{space_};
   PointBased<Model> point_based_{space_};
+  BeliefTree<Model> belief_tree_{space_, values_};
   std::unique_ptr<Despot<Model>> despot_;
   PlannerKind used_ = PlannerKind::pomcp;
   int horizon_ = 1;       // of the last search

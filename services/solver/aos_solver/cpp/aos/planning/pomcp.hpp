@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "aos/base/clock.hpp"
@@ -22,6 +23,7 @@
 #include "aos/planning/simulated_state.hpp"
 #include "aos/planning/step_table.hpp"
 #include "aos/planning/tree_search.hpp"
+#include "aos/planning/wide_values.hpp"
 
 namespace aos {
 
@@ -74,8 +76,14 @@ class Pomcp {
   }
   // Whether values are drawn towards a prior.
   bool has_prior() const { return !prior_.empty(); }
-  // Whether the values of states were learned from simulations.
-  bool has_estimates() const { return has_estimates_; }
+  // Whether rollouts value new histories. No value is then too high because few simulations went on below it.
+  bool rolls_out() const { return source_ == ValueSource::none; }
+  // Where the values of states come from in the last search, for a plan's `why`; empty if the state space lists them.
+  std::string value_source() const {
+    if (source_ == ValueSource::learned) return "what states are worth is learned from simulations";
+    if (source_ != ValueSource::wide) return "";
+    return "without observations all " + std::to_string(wide_values_.states()) + " can be, and their values are computed";
+  }
 
   // How many simulations went through the root.
   std::uint64_t known_simulations() const {
@@ -93,30 +101,43 @@ class Pomcp {
   }
 
  private:
+  enum class ValueSource { none, listed, wide, learned };
+
   template <class IsOver>
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred, int first, IsOver&& is_over) {
-    const bool has_values = values_.prepare(belief, horizon);
-    const MdpValues<Model>* const values = has_values ? &values_ : nullptr;
-    const bool may_estimate = !has_values && !Model::has_rollout_policy;
-    const LearnedValues<Model>* const estimates =
-        may_estimate && estimates_.prepare(belief, horizon, random) ? &estimates_ : nullptr;
+    const StateValues<Model>* const values = known_values(belief, horizon, random);
     const auto start = PlanningClock::now();
-    const auto worth = [&](const State& state) { return ComputedState<Model>{state, values, estimates}.value(horizon); };
-    mdp_value_ = has_values || estimates != nullptr ? mean_value(belief, worth) : 0;
+    const auto worth = [&](const State& state) { return values->value(state, horizon); };
+    mdp_value_ = values != nullptr ? mean_value(belief, worth) : 0;
     threads_.prepare(budget.threads);
     prior_.clear();
     if (belief.probability_of(Ending::running) <= 0) return 0;
-    has_estimates_ = estimates != nullptr;
-    if (has_estimates_) prior_ = learned_prior(estimates_, belief, horizon, random);
-    if (has_values && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
+    if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
+    if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
     for (const auto& tree : threads_.trees()) tree->begin(horizon, prior_, barred);
-    if (has_values && steps_.prepare(space_, belief)) {
+    if (source_ == ValueSource::listed && steps_.prepare(space_, belief)) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
       return threads_.simulate(start_state, budget, start, random, first, is_over);
     }
-    const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), values, estimates}; };
+    const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), values}; };
     return threads_.simulate(start_state, budget, start, random, first, is_over);
+  }
+
+  // What states are worth, as well as it can be known; null if nothing is known of it.
+  const StateValues<Model>* known_values(const Belief<Model>& belief, int horizon, Sampler& random) {
+    source_ = ValueSource::none;
+    if (values_.prepare(belief, horizon)) {
+      source_ = ValueSource::listed;
+      return &values_;
+    }
+    if (wide_values_.prepare(belief, horizon)) {
+      source_ = ValueSource::wide;
+      return &wide_values_;
+    }
+    if (Model::has_rollout_policy || !estimates_.prepare(belief, horizon, random)) return nullptr;
+    source_ = ValueSource::learned;
+    return &estimates_;
   }
 
   // The mean value of the running part of a belief.
@@ -136,9 +157,10 @@ class Pomcp {
   const StateSpace<Model>& space_;
   MdpValues<Model>& values_;
   StepTable<Model> steps_;
+  WideValues<Model> wide_values_;
   LearnedValues<Model> estimates_;
+  ValueSource source_ = ValueSource::none;  // of the last search
   std::vector<double> prior_;  // of the last search
-  bool has_estimates_ = false;
   double mdp_value_ = 0;
 };
 

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "aos/base/random.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/expected_rewards.hpp"
 #include "aos/planning/mdp_values.hpp"
-#include "aos/planning/learned_values.hpp"
+#include "aos/planning/state_values.hpp"
 #include "aos/planning/step_table.hpp"
 
 namespace aos {
@@ -17,32 +19,33 @@ class ComputedState {
  public:
   using State = typename Model::State;
 
-  // `values` are MDP values by value iteration, `estimates` are learned ones. Either may be null.
-  ComputedState(const State& state, const MdpValues<Model>* values, const LearnedValues<Model>* estimates)
-      : state_(state), values_(values), estimates_(estimates) {}
+  // `values` is null if nothing is known of what states are worth.
+  ComputedState(const State& state, const StateValues<Model>* values) : state_(state), values_(values) {}
 
   Step step(int action, Sampler& random) { return Model::step(state_, action, random); }
+  // The expected reward of an action, where steps draw it and its outcomes are few.
+  std::optional<double> expected_reward(int action, ExpectedRewards<Model>& rewards) const {
+    return rewards.of(state_, action);
+  }
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
-  // The fully observable value with `left` decisions to go; 0 if values are not known.
-  double value(int left) const {
-    if (values_ != nullptr) return values_->value(values_->number_of(state_), left);
-    return estimates_ != nullptr ? estimates_->value(state_, left) : 0;
+  // The value with `left` decisions to go; 0 if values are not known.
+  double value(int left) const { return values_ != nullptr ? values_->value(state_, left) : 0; }
+  // See StateValues.
+  bool advantages(double* worths, Sampler& random) const {
+    return values_ != nullptr && values_->advantages(state_, worths, random);
   }
   // The first return of a new history, beyond the value.
-  double leaf(int left, Sampler& random) const { return is_valued() ? 0 : Model::rollout(state_, left, random); }
+  double leaf(int left, Sampler& random) const { return values_ != nullptr ? 0 : Model::rollout(state_, left, random); }
   // Writes each action's probability to begin a rollout to `odds`. Returns false if new histories have no rollout.
   bool rollout_odds(double* odds, Sampler& random) const {
-    if (is_valued()) return false;
+    if (values_ != nullptr) return false;
     Model::rollout_odds(state_, odds, random);
     return true;
   }
 
  private:
-  bool is_valued() const { return values_ != nullptr || estimates_ != nullptr; }
-
   State state_;
-  const MdpValues<Model>* values_;
-  const LearnedValues<Model>* estimates_;
+  const StateValues<Model>* values_;
 };
 
 template <class Model>
@@ -57,10 +60,12 @@ class ListedState {
     number_ = outcome.next;
     return outcome.step;
   }
+  std::optional<double> expected_reward(int, ExpectedRewards<Model>&) const { return {}; }
   bool has_ended() const { return number_ == StepTable<Model>::ended; }
   double value(int left) const { return values_.value(number_, left); }
   double leaf(int, Sampler&) const { return 0; }
   bool rollout_odds(double*, Sampler&) const { return false; }
+  bool advantages(double*, Sampler&) const { return false; }
 
  private:
   const StepTable<Model>& steps_;

@@ -85,7 +85,7 @@ class StateSpace {
   Numbering numbering() const { return {restarts_, size()}; }
   std::size_t size() const { return numbers_.size(); }
   std::size_t actions() const { return rows_.actions; }
-  const State& operator[](std::uint32_t number) const { return numbers_[number]; }
+  State operator[](std::uint32_t number) const { return numbers_[number]; }
   // The number of a state; `no_state` if it has ended or cannot be reached.
   std::uint32_t find(const State& state) const {
     return Model::ending(state) == Ending::running ? numbers_.find(state) : no_state;
@@ -170,7 +170,7 @@ class StateSpace {
 
   std::uint32_t add(const State& state) {
     const std::uint32_t number = numbers_.add(state);
-    if (numbers_.size() > limits_.states || numbers_.size() * Model::state_bytes() > limits_.bytes) {
+    if (numbers_.size() > limits_.states || numbers_.bytes() > limits_.bytes) {
       throw NotEnumerable{"there are too many states to list"};
     }
     return number;

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "aos/model/step.hpp"
 #include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
+#include "aos/planning/expected_rewards.hpp"
 #include "aos/planning/exploration.hpp"
 #include "aos/planning/observation_cells.hpp"
 #include "aos/planning/root_record.hpp"
@@ -96,6 +98,7 @@ class TreeSearch {
     tree_.clear();
     cells_.clear();
     spread_ = {};
+    knows_advantages_ = false;
   }
 
  private:
@@ -119,7 +122,10 @@ class TreeSearch {
     double change = 0;  // of n * v of the history that the last action led to
     ObservationCells::Drawn drawn{random};
     while (true) {
-      const Step step = step_of(state, static_cast<int>(a), random, drawn);
+      const std::optional<double> expected =
+          visits_.size() < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
+      Step step = step_of(state, static_cast<int>(a), random, drawn);
+      if (expected) step.reward = *expected;
       if (visits_.empty()) record_.add_reward(a, step.reward);
       const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
@@ -198,14 +204,14 @@ class TreeSearch {
     return parent.n * parent.v - before;
   }
 
-  // Without a prior, the bounds decide only after each action with a usual share was tried; at the root,
-  // after every action.
+  // At the root the bounds decide only after every action was tried. Below it, they decide at once where something
+  // is known of the actions, else after each action with a usual share.
   bool comes_first(const ActionNode& action, bool is_root) const {
-    return action.n == 0 && prior_.empty() && (action.share >= usual_share || is_root);
+    return action.n == 0 && prior_.empty() && (is_root || (action.share >= usual_share && !knows_advantages_));
   }
-  // An action that was never tried has the value of its history, less what the prior says.
+  // An action that was never tried has the value of its history, less what the prior or the first state says.
   double value_of(const ActionNode& action, std::uint32_t a, const HistoryNode& history) const {
-    return action.n > 0 ? action.q : history.v - (prior_.empty() ? 0 : prior_[a]);
+    return action.n > 0 ? action.q : history.v + action.q - (prior_.empty() ? 0 : prior_[a]);
   }
 
   // Every eighth simulation begins with the next of the root's actions in turn, so that all their values can be read.
@@ -237,18 +243,27 @@ class TreeSearch {
   bool give_actions(std::uint32_t number, const SimulatedState& state, Sampler& random) {
     const bool is_new = tree_.history(number).first_action == no_node;
     if (!tree_.give_actions(number)) return false;
+    if (!is_new) return true;
     odds_.resize(action_count());
-    if (is_new && state.rollout_odds(odds_.data(), random)) share_exploration(tree_.actions(tree_.history(number)), odds_);
+    ActionNode* const actions = tree_.actions(tree_.history(number));
+    if (state.rollout_odds(odds_.data(), random)) {
+      share_exploration(actions, odds_);
+    } else if (prior_.empty() && number != 0 && state.advantages(odds_.data(), random)) {
+      knows_advantages_ = true;
+      for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q = odds_[a];
+    }
     return true;
   }
 
   SearchTree tree_;
   SearchTree spare_;
+  bool knows_advantages_ = false;  // of actions below the root
   bool reports_numbers_ = Model::reports_numbers();
   ObservationCells cells_;
   int horizon_ = 0;
   BarredActions barred_;
   std::vector<double> prior_;
+  ExpectedRewards<Model> rewards_;
   RootRecord record_;
   RootSpread spread_;
   std::vector<Visit> visits_;  // of the simulation that runs

@@ -1,0 +1,24 @@
+// What states are worth to a search: the common base of values that are computed and of values that are learned.
+#pragma once
+
+#include "aos/base/random.hpp"
+
+namespace aos {
+
+template <class Model>
+class StateValues {
+ public:
+  // The fully observable (MDP) value of a state with `left` decisions to go, or an estimate of it.
+  virtual double value(const typename Model::State& state, int left) const = 0;
+
+  // Writes to `worths` what each action is worth beyond the state's value, with many decisions to go. Returns false where
+  // a search does better without it.
+  virtual bool advantages(const typename Model::State& /*state*/, double* /*worths*/, Sampler& /*random*/) const {
+    return false;
+  }
+
+ protected:
+  ~StateValues() = default;
+};
+
+}  // namespace aos
