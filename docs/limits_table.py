@@ -87,6 +87,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
     ),
     "Planning": (
         Row("states that searches number", "planning/state_space.hpp:states", "", "POMCP without them"),
+        Row("states whose values POMCP computes", "planning/wide_values.hpp:states", "", "learned values"),
         Row("outcomes of these states", "planning/state_space.hpp:outcomes", "", "POMCP without them"),
         Row("states of an exact belief", "belief/belief.hpp:max_weighted_states", "", "particles"),
         Row("particles of a sampled belief", "belief/history.hpp:particle_count", "", "drawn anew"),

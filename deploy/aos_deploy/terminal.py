@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from rich.console import Console
 from rich.progress import (
@@ -10,11 +12,12 @@ from rich.progress import (
     MofNCompleteColumn,
     Progress,
     ProgressColumn,
+    SpinnerColumn,
     TextColumn,
     TimeElapsedColumn,
 )
 
-__all__ = ["console", "progress"]
+__all__ = ["console", "progress", "waiting"]
 
 
 def console(*, stderr: bool = False) -> Console:
@@ -27,3 +30,11 @@ def progress(*columns: ProgressColumn) -> Progress:
     usual = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     shown = console(stderr=True)
     return Progress(*(columns or usual), console=shown, transient=True, disable=not shown.is_terminal)
+
+
+@contextmanager
+def waiting(what: str) -> Iterator[None]:
+    """Shows what is waited for, and for how long, where the work has no steps to count."""
+    with progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()) as shown:
+        shown.add_task(what, total=None)
+        yield

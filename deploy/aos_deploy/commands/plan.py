@@ -14,7 +14,7 @@ import typer
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.constraints import constraint_of_option
 from aos_deploy.printing import print_json
-from aos_deploy.terminal import progress
+from aos_deploy.terminal import progress, waiting
 from aos_deploy.views.lines import risk_text
 from aos_deploy.views.tables import print_runs, print_values
 from aos_protocol.errors import PlanningError
@@ -99,6 +99,10 @@ def plan(
         search = _by_policy(search, policy)
 
     async def decide(engine: Engine) -> Decision:
+        with waiting("deciding"):
+            return await decision_of(engine)
+
+    async def decision_of(engine: Engine) -> Decision:
         if exact:
             values = (await engine.exact(horizon)).actions
             return _decision([ActionValue(value.action, value.q, 0, 0.0) for value in values], 0)
