@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 from mapping_documents import project_in, skill_of
 from processes import HANG_S
+from starting import until_present
 
 from aos_middleware.settings import Settings
 from aos_protocol.documents import Project
@@ -163,12 +164,9 @@ class System:
         )
         path = self.run_dir / "middleware.json"
         path.write_bytes(msgspec.json.encode(values))
-        self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=PIPE)
-        self._reading = asyncio.create_task(self._read_log(self.child))
-        async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.live("middleware")) as present:
-            async for _, is_alive in present:
-                if is_alive:
-                    return
+        async with until_present(self.bus, self.keys.live("middleware")):
+            self.child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)], stderr=PIPE)
+            self._reading = asyncio.create_task(self._read_log(self.child))
 
     async def stop(self) -> None:
         if self.child is not None and self._reading is not None:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import msgspec
 import pytest_asyncio
-from processes import HANG_S
+from starting import until_present
 from typer.testing import CliRunner, Result
 
 from aos_deploy.cli import aos_app
@@ -29,13 +29,10 @@ async def aos(tmp_path: Path, endpoint: str, bus: Bus, keys: Keys) -> AsyncItera
     settings = Settings(robot="test", service="registry", endpoint=endpoint, run_dir=str(tmp_path))
     path = tmp_path / "registry.json"
     path.write_bytes(msgspec.json.encode(settings))
-    async with asyncio.timeout(HANG_S), bus.presence(keys.live("registry")) as presence:
+    async with until_present(bus, keys.live("registry")):
         child = await Child.start(
             [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
         )
-        async for _, is_alive in presence:
-            if is_alive:
-                break
     app = aos_app()
 
     async def run(*arguments: str) -> Result:

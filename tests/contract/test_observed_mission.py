@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 import sys
 from collections.abc import AsyncIterator
@@ -15,6 +14,7 @@ import pytest_asyncio
 from models import built_text, engine_of
 from processes import HANG_S
 from scripted_models import text_project
+from starting import until_present
 
 from aos_middleware.settings import Settings
 from aos_protocol.documents import Project
@@ -195,12 +195,8 @@ async def start_middleware(bus: Bus, keys: Keys, endpoint: str, run_dir: Path) -
     )
     path = run_dir / "middleware.json"
     path.write_bytes(msgspec.json.encode(settings))
-    child = await Child.start([sys.executable, "-m", "aos_middleware", str(path)])
-    async with asyncio.timeout(HANG_S), bus.presence(keys.live("middleware")) as present:
-        async for _, is_alive in present:
-            if is_alive:
-                break
-    return child
+    async with until_present(bus, keys.live("middleware")):
+        return await Child.start([sys.executable, "-m", "aos_middleware", str(path)])
 
 
 @pytest_asyncio.fixture

@@ -13,6 +13,7 @@ import msgspec
 import pytest
 import pytest_asyncio
 from processes import HANG_S
+from starting import until_present
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DocumentError
@@ -48,13 +49,10 @@ async def running_registry(run_dir: Path, endpoint: str, bus: Bus, keys: Keys) -
         robot="test", service="registry", endpoint=endpoint, run_dir=str(run_dir), quiet_s=0.1
     )
     path = written_settings(settings)
-    async with asyncio.timeout(HANG_S), bus.presence(keys.live("registry")) as presence:
+    async with until_present(bus, keys.live("registry")):
         child = await Child.start(
             [sys.executable, "-m", "aos_registry", str(path)], env={"AOS_LOG": "CRITICAL"}
         )
-        async for _, is_alive in presence:
-            if is_alive:
-                break
     try:
         yield child
     finally:

@@ -12,6 +12,7 @@ import msgspec
 import pytest
 import pytest_asyncio
 from processes import HANG_S
+from starting import until_present
 
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
@@ -56,11 +57,8 @@ class Robot:
 
     async def start(self) -> None:
         """Starts the process; returns when it answers."""
-        await self.launch()
-        async with asyncio.timeout(HANG_S), self.bus.presence(self.keys.live("pybullet")) as present:
-            async for _, is_alive in present:
-                if is_alive:
-                    return
+        async with until_present(self.bus, self.keys.live("pybullet")):
+            await self.launch()
 
     async def call(
         self,
