@@ -13,6 +13,12 @@ namespace aos {
 
 // If the documents give a state heuristic, a rollout ends with it before each step with this probability.
 inline constexpr double heuristic_ending = 0.75;
+// So many of the rollouts at random repeat their actions. Where the way to a reward is long, a rollout that turns at
+// every step stays where it is; where a repeated action harms, the other rollouts tell.
+inline constexpr double share_of_repeating = 0.5;
+
+// How often a walk at random takes its next action: some take it long (Dabney, Ostrovski and Barreto, 2021).
+inline int drawn_repeats(Sampler& random) { return 1 << random.below(4); }
 
 namespace detail {
 
@@ -91,6 +97,9 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
   typename Model::State state = start;
   double sum = 0;
   double discount = 1;
+  const bool repeats = !Model::has_rollout_policy && draws.flag(share_of_repeating);
+  int action = 0;
+  int times = 0;  // that the action is taken again
   for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
     if constexpr (Model::has_state_heuristic) {
       if (draws.flag(heuristic_ending)) {
@@ -98,7 +107,10 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
         break;
       }
     }
-    const int action = detail::rollout_action<Model>(state, sums, count, draws);
+    if (times-- <= 0 || !Model::meets_precondition(state, action, model_draws)) {
+      action = detail::rollout_action<Model>(state, sums, count, draws);
+      times = repeats ? drawn_repeats(draws) - 1 : 0;
+    }
     const Step step = Model::step(state, action, model_draws);
     sum += discount * step.reward;
     discount *= Model::discount;

@@ -1,11 +1,11 @@
-// The actions of a random walk. They repeat: walks that turn at every step stay where they are (Dabney, Ostrovski
-// and Barreto, 2021).
+// The actions of a random walk. They repeat, as those of some rollouts do (rollout.hpp).
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "aos/base/random.hpp"
+#include "aos/model/rollout.hpp"
 
 namespace aos {
 
@@ -23,7 +23,7 @@ class RandomWalk {
     Model::rollout_odds(state, odds_.data(), random);
     if (repeats_-- > 0 && odds_[static_cast<std::size_t>(action_)] > 0) return action_;
     action_ = random.choose(odds_.data(), Model::action_count(), 1);
-    repeats_ = (1 << random.below(4)) - 1;
+    repeats_ = drawn_repeats(random) - 1;
     return action_;
   }
 
