@@ -100,6 +100,23 @@ TEST("A limit that is met leaves nothing listed, and is told") {
   EXPECT(!work.obstacle().empty());
 }
 
+TEST("A later try is for half as many states in the belief, and lists fewer states than the first one") {
+  Problem problem = units::corridor(30'000, 0.9);
+  for (std::uint32_t cell = 0; cell < 30'000; ++cell) units::row(problem, cell, 1) = {{1.0, cell, 0, 0.0}};  // no way back
+  const auto tries_from = [&](Space& space, std::vector<exam::Start> starts) {
+    problem.starts = std::move(starts);
+    return space.reach(initial_belief(problem));
+  };
+  Space first;
+  EXPECT(tries_from(first, {{5'000, 1.0}}));
+  Space space{aos::SpaceLimits{.states = 29'000}};
+  EXPECT(!tries_from(space, {{0, 0.25}, {1, 0.25}, {2, 0.25}, {3, 0.25}}));
+  EXPECT(!tries_from(space, {{12'000, 0.5}, {12'001, 0.25}, {12'002, 0.25}}));
+  EXPECT(!tries_from(space, {{5'000, 0.5}, {5'001, 0.5}}));
+  EXPECT(tries_from(space, {{15'000, 1.0}}));
+  EXPECT_EQUAL(space.size(), 15'000u);
+}
+
 TEST("What so many decisions can lead to is listed without the states behind it") {
   const Problem problem = units::corridor(50, 0.9);
   const Belief belief = initial_belief(problem);

@@ -118,6 +118,7 @@ class Planner {
   // Begins another mission.
   void start_over() {
     forget();
+    space_.start_over();
     exact_.start_over();
     belief_tree_.start_over();
     point_based_.start_over();

@@ -33,6 +33,8 @@ struct SpaceLimits {
   std::size_t outcomes = 12'000'000;
   std::size_t work = 30'000'000;  // of one call, in draws and copies of 64 bytes: one to two seconds
 };
+// Of later tries, which hold up a mission: together with what planners prepare then they take 0.1 to 0.3 seconds.
+inline constexpr SpaceLimits later_limits{.states = 16'000, .outcomes = 500'000, .work = 1'500'000};
 
 // Tells which number stands for which state: in two equal numberings, the numbers are the same.
 struct Numbering {
@@ -79,6 +81,9 @@ class StateSpace {
     add_states_of(belief);
     for (; decisions > 0 && !is_closed(); --decisions) list_rows_before(numbers_.size());
   }
+
+  // Begins another mission: its tries come when those of the first one came.
+  void start_over() { given_up_with_ = first_given_up_with_; }
 
   const std::string& obstacle() const { return obstacle_; }
   // Code that keeps numbers of states compares numberings before it uses these again.
@@ -134,13 +139,14 @@ class StateSpace {
   void restart() {
     blame::at(0);
     const std::uint64_t restarts = restarts_ + 1;
+    const std::size_t first_given_up_with = first_given_up_with_;
     *this = StateSpace{limits_};
     restarts_ = restarts;
+    first_given_up_with_ = first_given_up_with;
   }
-  // A belief of far fewer states may lead to few enough.
+  // A belief of half as many states may lead to few enough.
   bool is_worth_another_try(const Belief<Model>& belief) const {
-    constexpr std::size_t far_fewer = 8;
-    return far_fewer * belief.particles().size() <= given_up_with_;
+    return 2 * belief.particles().size() <= given_up_with_;
   }
   void leave_out_observations(std::string why) {
     restart();
@@ -152,6 +158,10 @@ class StateSpace {
     restart();
     obstacle_ = std::move(why);
     given_up_with_ = belief.particles().size();
+    if (first_given_up_with_ == 0) first_given_up_with_ = given_up_with_;
+    limits_.states = std::min(limits_.states, later_limits.states);
+    limits_.outcomes = std::min(limits_.outcomes, later_limits.outcomes);
+    limits_.work = std::min(limits_.work, later_limits.work);
   }
 
   // Adds the states of a belief. If a sampled belief has most of its states only once, there are more.
@@ -263,7 +273,8 @@ class StateSpace {
   bool skips_sensing_ = false;
   std::string observations_obstacle_;
   std::string obstacle_;
-  std::size_t given_up_with_ = 0;  // how many states the belief had
+  std::size_t given_up_with_ = 0;        // how many states the belief had
+  std::size_t first_given_up_with_ = 0;  // in the first try
 
   Enumerator draws_;
   std::unordered_map<SensingKey, std::uint32_t, NumbersHash> sensings_;
