@@ -211,7 +211,7 @@ class Suite:
 
 
 def without_policies(project: Project) -> Project:
-    """The same documents with uniform play-outs; the project itself if it has no rollout policies."""
+    """The same documents with random play-outs; the project itself if it has no rollout policies."""
     if not any(skill.model.rollout_policy for skill in project.skills):
         return project
     replace = msgspec.structs.replace

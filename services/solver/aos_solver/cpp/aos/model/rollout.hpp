@@ -1,4 +1,4 @@
-// Rollouts: the value of a state under the documents' rollout policy, by simulation.
+// Rollouts: the value of a state under the documents' rollout policy, or else under random actions, by simulation.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace aos {
 
 // If the documents give a state heuristic, a rollout ends with it before each step with this probability.
 inline constexpr double heuristic_ending = 0.75;
-// So many of the rollouts at random repeat their actions. Where the way to a reward is long, a rollout that turns at
-// every step stays where it is; where a repeated action harms, the other rollouts tell.
+// The share of the random rollouts that repeat their actions. Where the way to a reward is long, a rollout that turns at
+// every step stays where it is. Where a repeated action harms, the other rollouts tell what a state is worth.
 inline constexpr double share_of_repeating = 0.5;
 
-// How often a walk at random takes its next action: some take it long (Dabney, Ostrovski and Barreto, 2021).
+// How many times a random walk takes its next action (Dabney, Ostrovski and Barreto, 2021).
 inline int drawn_repeats(Sampler& random) { return 1 << random.below(4); }
 
 namespace detail {
@@ -99,7 +99,7 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
   double discount = 1;
   const bool repeats = !Model::has_rollout_policy && draws.flag(share_of_repeating);
   int action = 0;
-  int times = 0;  // that the action is taken again
+  int times = 0;  // how often the action is still to be repeated
   for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
     if constexpr (Model::has_state_heuristic) {
       if (draws.flag(heuristic_ending)) {
