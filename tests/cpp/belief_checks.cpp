@@ -238,6 +238,33 @@ void what_is_not_turned_yet_stays_open() {
   expect(distance < 0.06, "the next card is open, on average, but for " + std::to_string(distance));
 }
 
+// Of 35 cards 30 are turned. Then five more are turned at once, all of them face up. One state is left then, so that no
+// move can make up for samples that were lost.
+struct Hand : Cards {
+  template <class Random>
+  static void initial(State& state, Random& random) {
+    Cards::initial(state, random);
+    state.cards &= (std::uint64_t{1} << 35) - 1;
+  }
+  template <class Random>
+  static Step step(State& state, int, Random&) {
+    if (state.turned < 30) return {0, static_cast<Observation>(state.cards >> state.turned++ & 1)};
+    return {0, state.cards >> 30 == 31 ? 1 : 0};
+  }
+};
+
+void a_rare_observation_after_a_long_history_leaves_many_samples() {
+  Sampler random{5};
+  ParticleFilter<Hand> filter{random};
+  Cloud<Hand> cloud = filter.initial();
+  for (int step = 0; step <= 30; ++step) {
+    const HistoryStep seen{.action = 0, .observation = 1, .is_observed = true};
+    cloud = filter.after(std::move(cloud), seen, ignored_numbers).cloud;
+  }
+  expect(cloud.particles.size() == 1, "one state is left");
+  expect(cloud.effective() >= 100, "a rare observation leaves " + std::to_string(cloud.effective()) + " samples");
+}
+
 }  // namespace
 
 int main() {
@@ -248,5 +275,6 @@ int main() {
   texts_of_eight_continuous_draws_are_weighed_without_bias();
   a_text_that_is_assigned_anew_is_weighed_without_bias();
   what_is_not_turned_yet_stays_open();
+  a_rare_observation_after_a_long_history_leaves_many_samples();
   return mistakes == 0 ? 0 : 1;
 }

@@ -31,11 +31,10 @@
 
 namespace aos {
 
-inline constexpr std::size_t max_moving_steps = 600'000;  // of one update
+inline constexpr std::size_t max_moving_steps = 600'000;  // of one call with an effort of 1
 inline constexpr std::size_t min_copies = 500;
 inline constexpr std::size_t max_copies = 5000;
-inline constexpr std::size_t proposals_that_tell = 500;
-inline constexpr std::size_t min_accepted = 1;          // of these; with fewer, there is little to gain
+inline constexpr std::size_t telling_share = 10;         // if no proposal is accepted in a tenth of the steps, moves end
 
 template <class Model>
 class Moves {
@@ -45,17 +44,17 @@ class Moves {
   Moves(const History<Model>& history, Sampler& random) : history_(history), random_(random) {}
 
   // Copies of a cloud's particles after moves, or the cloud as it is if no move succeeds. A longer history
-  // has fewer copies, so that each copy has enough moves.
-  Cloud<Model> moved(const Cloud<Model>& cloud) {
-    const std::size_t copies = std::clamp(max_moving_steps / (20 * (1 + cloud.history.steps().size())), min_copies, max_copies);
+  // has fewer copies, so that each copy has enough moves. A greater effort has more copies and more moves.
+  Cloud<Model> moved(const Cloud<Model>& cloud, std::size_t effort = 1) {
+    const std::size_t max_steps = effort * max_moving_steps;
+    const std::size_t copies = std::clamp(max_steps / (20 * (1 + cloud.history.steps().size())), min_copies, max_copies);
     copy(cloud, copies);
-    std::size_t proposed = 0;
     std::size_t accepted = 0;
-    while (steps_ < max_moving_steps) {
+    while (steps_ < max_steps) {
       for (Copy& copy : copies_) {
         accepted += (random_.flag(free_draws_.share()) ? refresh(copy) : move(copy)) ? 1 : 0;
-        if (++proposed == proposals_that_tell && accepted < min_accepted) return cloud;
-        if (steps_ >= max_moving_steps) break;
+        if (accepted == 0 && steps_ >= max_steps / telling_share) return cloud;
+        if (steps_ >= max_steps) break;
       }
     }
     return accepted > 0 ? gathered(cloud, copies_.size()) : cloud;

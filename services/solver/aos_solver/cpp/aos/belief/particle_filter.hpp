@@ -41,7 +41,9 @@ inline constexpr double dear_trial = 50;                // in runs; cheap trials
 inline constexpr double nearly_all = 1 - 1e-8;          // of the weight, which is covered
 inline constexpr double few_effective = 0.2 * particle_count;
 inline constexpr double few_origins = 250;
-inline constexpr double too_few_effective = 150;
+inline constexpr double too_few_effective = 250;
+inline constexpr double surprise = 0.75;                // an observation that leaves less of the effective samples
+inline constexpr std::size_t rescue_effort = 4;         // of moves before an observation
 inline constexpr int max_rescues = 2;
 inline constexpr int max_rescues_of_none = 3;           // if no particle is left
 
@@ -93,10 +95,13 @@ class ParticleFilter {
     if (before.history.steps().size() >= max_history) before = begun(before.particles, false);
     Updated updated = propagated(before, step);
     const bool is_worth_moving = !before.history.steps().empty() || before.history.begins_with_the_documents();
+    // The samples that agree with a rare observation are few. More of them agree if there were more before it. Moves after
+    // it may not help: it may leave states that no move connects. An observation that tells little needs no such rescue.
+    const double enough = std::min(too_few_effective, surprise * before.effective());
     for (int rescue = 0; step.is_observed && is_worth_moving; ++rescue) {
-      if (updated.cloud.effective() >= too_few_effective) break;
+      if (updated.cloud.effective() >= enough) break;
       if (rescue >= (updated.cloud.particles.empty() ? max_rescues_of_none : max_rescues)) break;
-      before = Moves<Model>{before.history, random_}.moved(before);
+      before = Moves<Model>{before.history, random_}.moved(before, rescue_effort);
       Updated again = propagated(before, step);
       if (again.cloud.effective() >= updated.cloud.effective()) updated = std::move(again);
     }
@@ -163,10 +168,11 @@ class ParticleFilter {
     if (!is_few && (cloud.history.has_all_origins() || cloud.effective_origins() >= few_origins)) return;
     if (!cloud.history.is_time_to_move()) return;
     Cloud<Model> moved = Moves<Model>{cloud.history, random_}.moved(cloud);
-    const bool have_helped = is_few ? moved.effective() > 1.1 * cloud.effective()
-                                    : moved.effective_origins() > 1.1 * cloud.effective_origins();
-    if (have_helped) cloud = std::move(moved);
-    cloud.history.note_moves(have_helped);
+    const double gain = is_few ? moved.effective() / cloud.effective()
+                               : moved.effective_origins() / cloud.effective_origins();
+    // Moved particles are mixed better than they were, also where they are worth as many samples.
+    if (gain >= 1) cloud = std::move(moved);
+    cloud.history.note_moves(gain > 1.1);
   }
 
   Plan plan_of(const Cloud<Model>& before, const HistoryStep& step) {
