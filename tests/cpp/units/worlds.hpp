@@ -66,4 +66,16 @@ inline Problem corridor(std::uint32_t cells, double discount) {
   return problem;
 }
 
+// A corridor whose last action leads on. The `exits` actions before it end the mission and earn nothing.
+inline Problem corridor_with_exits(std::uint32_t cells, std::size_t exits) {
+  Problem problem = world(cells + 2, exits + 1, 1);
+  for (std::uint32_t cell = 0; cell < cells; ++cell) {
+    for (std::size_t exit = 0; exit < exits; ++exit) row(problem, cell, exit) = {{1.0, cells + 1, 0, 0.0}};
+    row(problem, cell, exits) = {{1.0, cell + 1, 0, cell + 1 == cells ? 10.0 : 0.0}};
+  }
+  problem.endings[cells] = 1;
+  problem.endings[cells + 1] = 1;
+  return problem;
+}
+
 }  // namespace units

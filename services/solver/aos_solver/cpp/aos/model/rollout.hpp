@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "aos/base/build_kind.hpp"
@@ -15,6 +16,9 @@ namespace aos {
 inline constexpr double heuristic_ending = 0.75;
 // The share of the random rollouts that repeat their actions. Where the way to a reward is long, a rollout that turns at
 // every step stays where it is. Where a repeated action harms, the other rollouts tell what a state is worth.
+//
+// Rollouts that repeat also put off an end that earns nothing, such as an exit or an accident, by drawing another action
+// (anti-decisive moves: Teytaud and Teytaud, 2010). Where an exit is open at every step, few other rollouts get far.
 inline constexpr double share_of_repeating = 0.5;
 
 // How many times a random walk takes its next action (Dabney, Ostrovski and Barreto, 2021).
@@ -100,6 +104,19 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
   const bool repeats = !Model::has_rollout_policy && draws.flag(share_of_repeating);
   int action = 0;
   int times = 0;  // how often the action is still to be repeated
+  const auto draw_action = [&] {
+    action = detail::rollout_action<Model>(state, sums, count, draws);
+    times = repeats ? drawn_repeats(draws) - 1 : 0;
+  };
+  const auto take_action = [&]() -> Step {
+    if (!repeats) return Model::step(state, action, model_draws);
+    typename Model::State before = state;
+    const Step step = Model::step(state, action, model_draws);
+    if (step.reward > 0 || Model::ending(state) == Ending::running) return step;
+    state = std::move(before);
+    draw_action();
+    return Model::step(state, action, model_draws);
+  };
   for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
     if constexpr (Model::has_state_heuristic) {
       if (draws.flag(heuristic_ending)) {
@@ -107,11 +124,8 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
         break;
       }
     }
-    if (times-- <= 0 || !Model::meets_precondition(state, action, model_draws)) {
-      action = detail::rollout_action<Model>(state, sums, count, draws);
-      times = repeats ? drawn_repeats(draws) - 1 : 0;
-    }
-    const Step step = Model::step(state, action, model_draws);
+    if (times-- <= 0 || !Model::meets_precondition(state, action, model_draws)) draw_action();
+    const Step step = take_action();
     sum += discount * step.reward;
     discount *= Model::discount;
   }

@@ -2,22 +2,26 @@
 // tables over few variables (cell_tables.hpp), learned from simulations by fitted value iteration. They are no bounds.
 //
 // Examples are states of walks that begin in the belief. The first walks are random; half of the later ones
-// follow the values. Each action is simulated once from each example, all of them under the same luck. A
-// sweep values each example by its best action. One half of the examples chooses that action and the other
-// one values it, since the best of many estimates is too high.
+// follow the values. A walk puts off its end where another action leads on: a danger, or an exit that is open
+// everywhere, would keep all examples near the start. Each action is simulated once from each example, all of them
+// under the same luck. A sweep values each example by its best action. One half of the examples chooses that action
+// and the other one values it, since the best of many estimates is too high.
 //
 // The values are tested before they are used, by a policy that observes the state and follows the values. It has to
 // earn at least half of what they promise beyond the return of random play: values fail by counting the same income
-// twice, and then nothing like it is earned. The policy also has to earn more than one that follows a few rollouts
-// after each action (Bertsekas and Castanon, 1999): otherwise a search is better off with rollouts.
+// twice, and then nothing like it is earned. Values that fail are learned once more from more examples. The policy also
+// has to earn more than one that follows a few rollouts after each action (Bertsekas and Castanon, 1999): otherwise a
+// search is better off with rollouts.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -43,7 +47,11 @@ class LearnedValues final : public StateValues<Model> {
     if (Model::action_count() == 0 || belief.probability_of(Ending::running) <= 0) return false;
     has_tried_ = true;
     horizon_ = horizon;
-    learn(belief, random);
+    const bool are_learned = std::any_of(std::begin(efforts), std::end(efforts), [&](const Effort& effort) {
+      learn(belief, effort, random);
+      return keeps_its_promise(belief, random);
+    });
+    is_usable_ = are_learned && beats_rollouts(belief, random);
     examples_ = {};
     rows_ = {};
     successors_ = {};
@@ -59,6 +67,13 @@ class LearnedValues final : public StateValues<Model> {
     return std::clamp(tables_.value(row.data()), lowest_, highest_);
   }
 
+  // By one step of each action, all under the same luck.
+  void advantages(const State& state, double* worths, Sampler& random) const override {
+    const double now = value(state, horizon_);
+    const Sampler luck{random.bits()};
+    for (int a = 0; a < Model::action_count(); ++a) worths[a] = action_value(state, a, horizon_, luck) - now;
+  }
+
   // The value of an action with `left` decisions to go, under given luck.
   double action_value(State state, int action, int left, Sampler luck) const {
     const Step step = Model::step(state, action, luck);
@@ -67,10 +82,14 @@ class LearnedValues final : public StateValues<Model> {
   }
 
  private:
-  static constexpr std::size_t max_successors = 100'000;  // simulated in a round
+  struct Effort {
+    std::size_t successors;  // simulated in a round
+    int rounds;
+  };
+  static constexpr Effort efforts[] = {{100'000, 2}, {200'000, 3}};
   static constexpr std::size_t max_example_bytes = std::size_t{32} << 20;  // of the states of a round
   static constexpr std::size_t max_cells = 20'000'000;    // of all rows
-  static constexpr int rounds = 2;
+  static constexpr int attempts_to_go_on = 8;  // of a walk, at each step
   static constexpr int sweeps = 30;
   static constexpr int max_compared = 24;  // actions; a policy takes the best of these
   static constexpr int tests = 64;
@@ -85,22 +104,30 @@ class LearnedValues final : public StateValues<Model> {
 
   static std::size_t action_count() { return static_cast<std::size_t>(Model::action_count()); }
 
-  void learn(const Belief<Model>& belief, Sampler& random) {
-    for (int round = 0; round < rounds; ++round) {
-      walk(belief, random, round > 0);
+  void forget() {
+    examples_.clear();
+    variables_.clear();
+    used_.clear();
+    tables_ = CellTables{};
+    lowest_ = highest_ = 0;
+  }
+
+  void learn(const Belief<Model>& belief, const Effort& effort, Sampler& random) {
+    forget();
+    for (int round = 0; round < effort.rounds; ++round) {
+      walk(belief, effort.successors, random, round > 0);
       if (examples_.empty() || (round == 0 && !find_variables())) return;
       simulate_all_actions(random);
       for (int sweep = 0; sweep < std::min(sweeps, horizon_); ++sweep) improve();
       used_ = tables_.used_variables();
     }
-    is_usable_ = keeps_its_promise(belief, random) && beats_rollouts(belief, random);
   }
 
   // --- examples --------------------------------------------------------------------------------------
 
   // Takes one example from each walk, since states of the same walk have too much in common.
-  void walk(const Belief<Model>& belief, Sampler& random, bool has_values) {
-    const std::size_t more = std::min(max_successors / action_count(), max_example_bytes / Model::state_bytes());
+  void walk(const Belief<Model>& belief, std::size_t successors, Sampler& random, bool has_values) {
+    const std::size_t more = std::min(successors / action_count(), max_example_bytes / Model::state_bytes());
     const std::size_t wanted = examples_.size() + std::max<std::size_t>(more, 100);
     for (std::size_t walks = 0; examples_.size() < wanted && walks < 4 * wanted; ++walks) {
       State state = belief.sample(random);
@@ -109,9 +136,23 @@ class LearnedValues final : public StateValues<Model> {
       walk_.start();
       for (int i = 0; i < stop && Model::ending(state) == Ending::running; ++i) {
         const int action = i >= at_random ? best_action(state, horizon_ - i, random) : walk_.next(state, random);
-        Model::step(state, action, random);
+        step_on(state, action, random);
       }
       if (Model::ending(state) == Ending::running) examples_.push_back(state);
+    }
+  }
+
+  // Takes the action, or another one where the walk would end.
+  void step_on(State& state, int action, Sampler& random) {
+    for (int attempt = 1;; ++attempt) {
+      State next = state;
+      Model::step(next, action, random);
+      if (Model::ending(next) == Ending::running || attempt == attempts_to_go_on) {
+        state = std::move(next);
+        return;
+      }
+      walk_.start();
+      action = walk_.next(state, random);
     }
   }
 

@@ -59,6 +59,13 @@ class MdpValues final : public StateValues<Model> {
     return number == no_state ? highest_ : layer(horizon)[number];
   }
 
+  void advantages(const State& state, double* worths, Sampler& /*random*/) const override { advantages(number_of(state), worths); }
+  void advantages(std::uint32_t number, double* worths) const {
+    for (std::size_t action = 0; action < actions(); ++action) {
+      worths[action] = advantage(number, static_cast<int>(action), horizon_);
+    }
+  }
+
   // The fully observable value of an action less that of the best action; never above 0.
   double advantage(std::uint32_t number, int action, int horizon) const {
     if (number == no_state) return 0;

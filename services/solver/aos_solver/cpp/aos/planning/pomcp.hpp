@@ -115,7 +115,7 @@ class Pomcp {
     if (belief.probability_of(Ending::running) <= 0) return 0;
     if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
     if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
-    for (const auto& tree : threads_.trees()) tree->begin(horizon, prior_, barred);
+    for (const auto& tree : threads_.trees()) tree->begin(horizon, prior_, source_ == ValueSource::wide, barred);
     if (source_ == ValueSource::listed && steps_.prepare(space_, belief)) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
       return threads_.simulate(start_state, budget, start, random, first, is_over);

@@ -30,10 +30,8 @@ class ComputedState {
   bool has_ended() const { return Model::ending(state_) != Ending::running; }
   // The value with `left` decisions to go; 0 if values are not known.
   double value(int left) const { return values_ != nullptr ? values_->value(state_, left) : 0; }
-  // See StateValues.
-  bool advantages(double* worths, Sampler& random) const {
-    return values_ != nullptr && values_->advantages(state_, worths, random);
-  }
+  // See StateValues. Values have to be known.
+  void advantages(double* worths, Sampler& random) const { values_->advantages(state_, worths, random); }
   // The first return of a new history, beyond the value.
   double leaf(int left, Sampler& random) const { return values_ != nullptr ? 0 : Model::rollout(state_, left, random); }
   // Writes each action's probability to begin a rollout to `odds`. Returns false if new histories have no rollout.
@@ -65,7 +63,7 @@ class ListedState {
   double value(int left) const { return values_.value(number_, left); }
   double leaf(int, Sampler&) const { return 0; }
   bool rollout_odds(double*, Sampler&) const { return false; }
-  bool advantages(double*, Sampler&) const { return false; }
+  void advantages(double* worths, Sampler&) const { values_.advantages(number_, worths); }
 
  private:
   const StepTable<Model>& steps_;

@@ -11,11 +11,8 @@ class StateValues {
   // The fully observable (MDP) value of a state with `left` decisions to go, or an estimate of it.
   virtual double value(const typename Model::State& state, int left) const = 0;
 
-  // Writes to `worths` what each action is worth beyond the state's value, with many decisions to go. Returns false where
-  // a search does better without it.
-  virtual bool advantages(const typename Model::State& /*state*/, double* /*worths*/, Sampler& /*random*/) const {
-    return false;
-  }
+  // Writes to `worths` what each action is worth beyond the state's value, with many decisions to go.
+  virtual void advantages(const typename Model::State& state, double* worths, Sampler& random) const = 0;
 
  protected:
   ~StateValues() = default;

@@ -29,6 +29,7 @@
 namespace aos {
 
 inline constexpr std::uint64_t turns = 8;
+inline constexpr std::uint32_t asked_states = 8;  // of a history; they tell what its actions are worth
 
 template <class Model>
 class TreeSearch {
@@ -40,11 +41,13 @@ class TreeSearch {
   }
 
   // Begins a decision. `prior` is how much less each action is worth than the best one; empty if nothing is
-  // known before the search. The `barred` actions are not tried at the root.
-  void begin(int horizon, const std::vector<double>& prior, const BarredActions& barred) {
+  // known before the search. With `first_state_tells`, the first state of a history tells what its actions are worth.
+  // The `barred` actions are not tried at the root.
+  void begin(int horizon, const std::vector<double>& prior, bool first_state_tells, const BarredActions& barred) {
     horizon_ = horizon;
     barred_ = barred;
     prior_ = prior;
+    first_state_tells_ = first_state_tells;
     record_ = RootRecord{action_count()};
   }
 
@@ -98,7 +101,6 @@ class TreeSearch {
     tree_.clear();
     cells_.clear();
     spread_ = {};
-    knows_advantages_ = false;
   }
 
  private:
@@ -139,6 +141,7 @@ class TreeSearch {
       const bool is_new = child == no_node;
       if (is_new) child = tree_.add_child(action, seen);
       if (is_new || stays_leaf(child) || !give_actions(child, state, random)) {
+        if (child != no_node && !prior_.empty()) ask(child, state, random);
         later = state.leaf(left, random);
         change = child == no_node ? later : add_return(tree_.history(child), later);
         break;
@@ -207,11 +210,13 @@ class TreeSearch {
   // At the root the bounds decide only after every action was tried. Below it, they decide at once where something
   // is known of the actions, else after each action with a usual share.
   bool comes_first(const ActionNode& action, bool is_root) const {
-    return action.n == 0 && prior_.empty() && (is_root || (action.share >= usual_share && !knows_advantages_));
+    return action.n == 0 && prior_.empty() && (is_root || (action.share >= usual_share && !first_state_tells_));
   }
-  // An action that was never tried has the value of its history, less what the prior or the first state says.
+  // An action that was never tried has the value of its history, less what the prior or the history's states say.
   double value_of(const ActionNode& action, std::uint32_t a, const HistoryNode& history) const {
-    return action.n > 0 ? action.q : history.v + action.q - (prior_.empty() ? 0 : prior_[a]);
+    if (action.n > 0) return action.q;
+    const bool has_prior = !prior_.empty() && history.parent == no_node;
+    return history.v + (has_prior ? -prior_[a] : action.q);
   }
 
   // Every eighth simulation begins with the next of the root's actions in turn, so that all their values can be read.
@@ -233,9 +238,23 @@ class TreeSearch {
   // With a prior, a history stays a leaf until it has as many visits as there are actions. Fully observable
   // values are too high, and less so the deeper the tree. With few visits below each of many actions, the
   // values would tell apart how deep these visits went, and not the actions.
-  bool stays_leaf(std::uint32_t number) const {
+  bool stays_leaf(std::uint32_t number) const { return !prior_.empty() && tree_.history(number).n < visits_of_leaf(); }
+  static std::uint32_t visits_of_leaf() { return std::max(action_count(), asked_states); }
+
+  // With a prior, the states of a leaf's last visits tell what its actions are worth (QMDP). The prior itself is that of
+  // the root, and knows nothing of what was observed since.
+  template <class SimulatedState>
+  void ask(std::uint32_t number, const SimulatedState& state, Sampler& random) {
     const HistoryNode& history = tree_.history(number);
-    return !prior_.empty() && history.first_action == no_node && history.n < action_count();
+    if (history.n + asked_states < visits_of_leaf() || !tree_.give_actions(number)) return;
+    odds_.resize(action_count());
+    state.advantages(odds_.data(), random);
+    ActionNode* const actions = tree_.actions(tree_.history(number));
+    for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q += odds_[a] / asked_states;
+    if (history.n + 1 < visits_of_leaf()) return;
+    const auto has_less = [](const ActionNode& left, const ActionNode& right) { return left.q < right.q; };
+    const double best = std::max_element(actions, actions + action_count(), has_less)->q;
+    for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q -= best;
   }
 
   // Gives a history its actions. Returns false if there is no room for them.
@@ -248,8 +267,8 @@ class TreeSearch {
     ActionNode* const actions = tree_.actions(tree_.history(number));
     if (state.rollout_odds(odds_.data(), random)) {
       share_exploration(actions, odds_);
-    } else if (prior_.empty() && number != 0 && state.advantages(odds_.data(), random)) {
-      knows_advantages_ = true;
+    } else if (first_state_tells_ && number != 0) {
+      state.advantages(odds_.data(), random);
       for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q = odds_[a];
     }
     return true;
@@ -257,7 +276,7 @@ class TreeSearch {
 
   SearchTree tree_;
   SearchTree spare_;
-  bool knows_advantages_ = false;  // of actions below the root
+  bool first_state_tells_ = false;
   bool reports_numbers_ = Model::reports_numbers();
   ObservationCells cells_;
   int horizon_ = 0;

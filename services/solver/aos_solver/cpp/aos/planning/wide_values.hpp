@@ -75,7 +75,7 @@ class WideValues final : public StateValues<Model> {
   std::size_t states() const { return values_.size(); }
 
   // By one step of each action, all under the same luck.
-  bool advantages(const State& state, double* worths, Sampler& random) const override {
+  void advantages(const State& state, double* worths, Sampler& random) const override {
     const double now = value(state, 1);
     const Sampler luck{random.bits()};
     int stepped = 0;
@@ -91,7 +91,6 @@ class WideValues final : public StateValues<Model> {
       const bool goes_on = Model::ending(next) == Ending::running;
       worths[action] = step.reward + (goes_on ? Model::discount * value(next, 1) : 0) - now;
     }
-    return true;
   }
 
   // Does not depend on `left` above 0. A state that was not listed has the highest value.
