@@ -23,6 +23,7 @@ int main() {
     json.begin_object().member("test", test.sentence).key("failures").begin_array();
     for (const std::string& text : units::failures()) json.value(text);
     std::puts(json.end_array().end_object().text().c_str());
+    std::fflush(stdout);  // a crash of the next test shall not take this line along
     has_failed = has_failed || !units::failures().empty();
   }
   return has_failed ? 1 : 0;
