@@ -8,26 +8,23 @@ namespace {
 
 using units::TableModel;
 
-TEST("Rollouts at random reach the end of a corridor, which takes twelve equal actions") {
-  const units::Problem problem = units::corridor(12, 1);
+double mean_return(const units::Problem& problem, int horizon) {
+  constexpr int rollouts = 2000;
   TableModel::take(problem);
   TableModel::State start{};
   aos::Sampler random{1};
   TableModel::initial(start, random);
   double sum = 0;
-  for (int i = 0; i < 2000; ++i) sum += TableModel::rollout(start, 24, random);
-  EXPECT(sum / 2000 > 1.5);
+  for (int i = 0; i < rollouts; ++i) sum += TableModel::rollout(start, horizon, random);
+  return sum / rollouts;
+}
+
+TEST("Rollouts at random reach the end of a corridor, which takes twelve equal actions") {
+  EXPECT(mean_return(units::corridor(12, 1), 24) > 1.5);
 }
 
 TEST("Rollouts at random get past an exit that is open everywhere and earns nothing") {
-  const units::Problem problem = units::corridor_with_exits(20, 1);
-  TableModel::take(problem);
-  TableModel::State start{};
-  aos::Sampler random{2};
-  TableModel::initial(start, random);
-  double sum = 0;
-  for (int i = 0; i < 2000; ++i) sum += TableModel::rollout(start, 40, random);
-  EXPECT(sum / 2000 > 0.5);
+  EXPECT(mean_return(units::corridor_with_exits(20, 1), 40) > 0.5);
 }
 
 }  // namespace
