@@ -5,6 +5,7 @@
   python -m tests.exam regret --needles --models 20
   python -m tests.exam solve --models 200
   python -m tests.exam documents --models 40 --texts 2000
+  python -m tests.exam failures --models 200
   python -m tests.exam show corridor/17
 
 A problem is named by its family and its seed, FAMILY/SEED, or FAMILY+/SEED where it is large, and is always
@@ -12,7 +13,8 @@ the same under its name. `bounds` counts false claims; each is printed with its 
 the problem is written there. `regret` tells per family what planners lose against the optimum, in percent of
 the range between random actions and the optimum. `documents` compiles bundles in which a value goes from one
 variable to the next by idioms of C++; in `--texts` more it only looks for variables that are wrongly left
-out. Exit code 1: a claim was false, or a target was missed.
+out. `failures` breaks a skill of a robot that uses it: it always fails, is always lost, or says what the
+model excludes. Exit code 1: a claim was false, or a target was missed.
 """
 
 from __future__ import annotations
@@ -22,7 +24,8 @@ import asyncio
 import sys
 from pathlib import Path
 
-from .commands import examine_documents, examine_engine, examine_solver
+from .commands import CACHE, examine_documents, examine_engine, examine_solver
+from .failures import examine_failures
 from .families import FAMILIES
 from .generation import named_problem
 from .pomdp_file import pomdp_text
@@ -68,6 +71,11 @@ def main() -> int:
     command.add_argument("--simulations", type=int, default=2000, metavar="N")
     command.add_argument("--dump", type=Path, metavar="DIR", help="where false bundles are written")
     command.add_argument("--texts", type=int, default=0, metavar="N", help="so many more, not compiled")
+    command = commands.add_parser("failures", help="robots with a broken skill")
+    command.add_argument("--models", type=int, default=60, metavar="N")
+    command.add_argument("--seed", type=int, default=1, help="of the first job")
+    command.add_argument("--simulations", type=int, default=1000, metavar="N")
+    command.add_argument("--json", action="store_true", help="a line for each mission, and then the summary")
     show = commands.add_parser("show", help="print a problem as .pomdp")
     show.add_argument("problem")
     arguments = parser.parse_args()
@@ -76,6 +84,8 @@ def main() -> int:
         return 0
     if arguments.command == "documents":
         return asyncio.run(examine_documents(arguments))
+    if arguments.command == "failures":
+        return asyncio.run(examine_failures(arguments, CACHE))
     if arguments.command == "solve":
         return asyncio.run(examine_solver(arguments))
     return examine_engine(arguments)

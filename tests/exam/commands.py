@@ -21,7 +21,7 @@ from .pomdp_file import pomdp_text
 from .problem import Problem
 from .summary import WORST_TARGET, Bounds, Regrets
 
-__all__ = ["examine_documents", "examine_engine", "examine_solver"]
+__all__ = ["CACHE", "examine_documents", "examine_engine", "examine_solver"]
 
 CACHE = Path.home() / ".cache" / "aos-exam"
 
