@@ -23,8 +23,10 @@ ROS_KINDS = {
 }
 """What the adapter is given of itself, and what that is."""
 
-_FIELD = re.compile(r"\b__input\.([A-Za-z_]\w*)")
-_EXAMPLES: dict[str, Any] = {"bool": True, "int": 0, "float": 0.0, "double": 0.0, "string": "", "str": ""}
+_FIELD = re.compile(r"\b__input(?:\.|, \")([A-Za-z_]\w*)")
+_EXAMPLES: dict[str, Any] = {
+    "bool": True, "int": 0, "float": 0.0, "double": 0.0, "string": "", "str": "", "float[]": [],
+}  # fmt: skip
 
 
 def adapter_files(kind: str, project: Project, bundle: str) -> dict[str, str]:
@@ -129,8 +131,10 @@ def _function(path: str, mapping: AbstractionMapping) -> str:
 def _result(mapping: AbstractionMapping) -> dict[str, Any]:
     """Fields that the mapping reads from a result, with an example of their type."""
     result: dict[str, Any] = {}
+    if mapping.is_derived and (mapping.rules or mapping.response_variable):
+        result["response"] = mapping.rules[0].response if mapping.rules else ""
     for variable in mapping.local_variables:
         if variable.source is LocalSource.SERVICE_RESPONSE and variable.code is not None:
             for field in _FIELD.findall(variable.code.code):
-                result[field] = _EXAMPLES.get(variable.type, True)
+                result.setdefault(field, _EXAMPLES.get(variable.type, True))
     return result

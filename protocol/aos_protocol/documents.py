@@ -307,6 +307,7 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     """An abstraction mapping (AM): from parameters to the call, and from what happened to the observation.
 
     With `response_variable` the observation is the text of that local variable and the rules do not count.
+    One that `is_derived` is written nowhere: AOS made it from the skill document, where its places are.
     """
 
     project: str
@@ -317,10 +318,11 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     response_variable: str = ""
     local_variables: tuple[LocalVariable, ...] = ()
     response_variable_span: Span | None = None
+    is_derived: bool = False
 
 
 class Skill(msgspec.Struct, frozen=True):
-    """A skill's two documents; the registry lets no skill pass with only one."""
+    """A skill's two documents; the registry derives the mapping of a skill that has none written."""
 
     model: SkillModel
     mapping: AbstractionMapping

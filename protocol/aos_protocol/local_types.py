@@ -11,7 +11,13 @@ import msgspec
 
 from aos_protocol.documents import AbstractionMapping, Environment, StateVariable
 
-__all__ = ["LocalType", "local_type", "local_type_text", "reported_variables"]
+__all__ = ["RESERVED_LOCAL_NAMES", "LocalType", "local_type", "local_type_text", "reported_variables"]
+
+RESERVED_LOCAL_NAMES = frozenset({
+    "CONSTANTS", "RESPONSE", "TOPICS", "__input", "__skill_error", "__skill_status", "local_variables",
+    "low_level_type", "observe", "parameters", "request", "stand_in",
+})  # fmt: skip
+"""What no local variable can be called: the names of the generated module and of what it is given."""
 
 _ELEMENTS = ("bool", "int", "float", "double", "string")
 

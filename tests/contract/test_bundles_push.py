@@ -97,6 +97,24 @@ async def test_a_skill_and_a_project_are_removed_and_the_history_keeps_them(aos:
     assert "revision 4" in (await aos("bundle", "list")).output
 
 
+async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(
+    aos: Aos, bundles: Path, tmp_path: Path
+) -> None:
+    await aos("bundle", "push", str(bundles / "armadillo-finer"))
+    skill = tmp_path / "ask"
+    skill.mkdir()
+    (skill / "ask.sd").write_text("project: armadillo\ndynamic_model:\n__moduleResponse = told;\n")
+    assert "added ask" in (await aos("bundle", "push", str(skill))).output
+    assert "activation: skill /ask()" in (await aos("bundle", "show")).output
+    mapping = (
+        "project: armadillo\nresponse: told\nresponse_rule: True\nmodule_activation: skill\npath: /say\n"
+    )
+    (skill / "ask.am").write_text(mapping)
+    assert "changed ask" in (await aos("bundle", "push", str(skill))).output
+    assert "activation: skill /say()" in (await aos("bundle", "show")).output
+    assert "removed ask" in (await aos("bundle", "rm", "armadillo", "ask")).output
+
+
 async def test_what_is_not_there_is_not_removed(aos: Aos, bundles: Path) -> None:
     await aos("bundle", "push", str(bundles / "armadillo-finer"))
     assert "Did you mean `pick`?" in str((await aos("bundle", "rm", "armadillo", "pik")).exception)

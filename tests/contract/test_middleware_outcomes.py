@@ -11,8 +11,12 @@ import pytest
 from mapping_documents import skill_of
 from middleware_system import SENSE, System, answering, hang, succeed
 
+from aos_protocol.documents import Skill, SkillModel
 from aos_protocol.errors import SkillError
+from aos_protocol.findings import Findings
 from aos_protocol.messages import ActivationId, SkillCall
+from aos_registry.derived_mapping import derived_mapping
+from aos_registry.reading import read_documents
 
 
 async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(system: System) -> None:
@@ -26,6 +30,34 @@ async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(syst
     assert (outcome.status, outcome.response, outcome.fault) == ("observed", "arrived", None)
     assert outcome.local_variables["success"] == "true"
     assert 0 < outcome.started_ns <= outcome.ended_ns
+
+
+async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system: System) -> None:
+    sees = b"project: armadillo\nparameter: tLocation place\ndynamic_model:\n__moduleResponse = seen;\n"
+    model = read_documents({"see.sd": sees}, Findings())["see.sd"].content
+    assert isinstance(model, SkillModel)
+    project = system.registry.current.project
+    skill = Skill(model, derived_mapping(model, project.environment))
+    system.registry.announce(msgspec.structs.replace(project, skills=(skill,)))
+    await system.state(system.registry.current.revision)
+    results = iter([{"response": "seen"}, {"success": True}, {"response": "sen"}])
+
+    async def answer(_: SkillCall) -> dict[str, Any]:
+        return next(results)
+
+    await system.adapter.serve("/see", answer)
+    await system.state_when(lambda state: "see" not in state.unavailable)
+    parameters = {"place": {"place": "Corridor", "x": 4.0, "y": 0.0, "yaw": 0.5}}
+    outcomes = [await system.activate("see", step, parameters=parameters) for step in (1, 2, 3)]
+    assert system.adapter.calls[0].fields == parameters
+    assert [(each.status, each.response) for each in outcomes] == [
+        ("observed", "seen"), ("failed", ""), ("failed", ""),
+    ]  # fmt: skip
+    told = [each.fault for each in outcomes]
+    assert told[1] is not None
+    assert told[2] is not None
+    assert told[1].message.endswith("the result of /see has no `response`: it has `success`")
+    assert (told[2].code, told[2].hint) == ("AOS402", "Did you mean `seen`?")
 
 
 async def test_only_messages_of_the_activation_count_and_all_of_them(system: System) -> None:

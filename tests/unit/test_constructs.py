@@ -144,6 +144,7 @@ MISUSES = {
         "go.json", "if (end == eWell)", "AOS.«SetNul(state__.door.pose); if (end == eWell)", "AOS110"
     ),
     "response rules": Rule("go.json", "? eDone : eLost", "? eDone : «eGone", "AOS116"),
+    "no mapping": Rule("go glue.json", '"Name": "go"', '"Name": "«goo"', "AOS114"),
     "local variables": Rule("go glue.json", '"oDoor.pose"', '"«oDoor.where"', "AOS110"),
 }
 

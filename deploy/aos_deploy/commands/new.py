@@ -58,6 +58,10 @@ def project(
 def skill(
     name: Annotated[str, typer.Argument(help="The skill's name, in small letters")],
     bundle: Annotated[Path, typer.Option("--in", help="The bundle's directory")] = Path(),
+    with_mapping: Annotated[
+        bool,
+        typer.Option("--mapping/--no-mapping", help="Whether NAME.am is written; without it AOS derives one"),
+    ] = True,
 ) -> None:
     """Write a skill's two documents into a bundle.
 
@@ -70,7 +74,11 @@ def skill(
         hint = "Name a bundle with --in, or start one: aos new project NAME"
         raise DocumentError(f"there are no documents in {bundle}", code="AOS120", hint=hint)
     texts = _filled("skill", project=owner, skill=name)
-    texts = {file.replace("skill.", f"{name}."): text for file, text in texts.items()}
+    texts = {
+        file.replace("skill.", f"{name}."): text
+        for file, text in texts.items()
+        if with_mapping or not file.endswith(".am")
+    }
     is_json = all(file.endswith(".json") for file in documents)
     _write(bundle, _in_dialect(texts, Dialect.JSON if is_json else Dialect.SDL))
     typer.echo(f"Check it: aos lint {bundle}")

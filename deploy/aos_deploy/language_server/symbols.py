@@ -121,14 +121,16 @@ def read_bundle(folder: Path, open_texts: Mapping[str, str]) -> Bundle:
     is_whole = not findings.has_errors and not any(
         fault.kind is not FaultKind.SYNTAX for _, block in blocks for fault in read_block(block).faults
     )
-    unique = dict.fromkeys(sorted(found, key=lambda each: (each.span, not each.is_declaration)))
+    unique: dict[tuple[Symbol, Span], Occurrence] = {}
+    for each in sorted(found, key=lambda each: (each.span, not each.is_declaration)):
+        unique.setdefault((each.symbol, each.span), each)
     environment = assembly.environment
     reported: set[str] = set()
     if environment is not None:
         for mapping in assembly.mappings.values():
             reported |= {*reported_variables(mapping, environment)}
     names = {*scope.variables, *scope.enum_values, *scope.enums, *scope.compounds}
-    return Bundle(tuple(unique), is_whole, frozenset(reported), frozenset(names))
+    return Bundle(tuple(unique.values()), is_whole, frozenset(reported), frozenset(names))
 
 
 def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
@@ -266,6 +268,11 @@ class _BlockNames:
 
 def _mappings(assembly: Assembly, scope: Scope) -> Iterator[Occurrence]:
     for mapping in assembly.mappings.values():
+        if mapping.is_derived:
+            # It stands nowhere. What gives a response first is where its name is looked for.
+            for rule in mapping.rules:
+                yield Occurrence(Symbol(SymbolKind.RESPONSE, rule.response, mapping.name), rule.span, True)
+            continue
         for rule in mapping.rules:
             yield Occurrence(Symbol(SymbolKind.RESPONSE, rule.response, mapping.name), rule.span, True)
             for assignment in rule.assignments:

@@ -17,6 +17,7 @@ import msgspec
 from aos_middleware.evaluator import Evaluator, MappingFault
 from aos_middleware.low_level import LowLevelValues, assigned_variables
 from aos_middleware.motion_gate import GONE_S, MotionGate
+from aos_middleware.no_response import no_response
 from aos_middleware.observed_numbers import observed_numbers
 from aos_middleware.served_paths import ServedPaths, no_adapter
 from aos_protocol.documents import AbstractionMapping, LocalSource
@@ -156,7 +157,7 @@ class _Activation:
             return _Observation(result.response, numbers=result.numbers)
         observed = await self._evaluator.finish(result.fields)
         if observed.response is None:
-            raise self._no_response(observed.local_variables)
+            raise no_response(self._mapping, result.fields, observed.local_variables)
         return _Observation(
             observed.response,
             observed.local_variables,
@@ -319,18 +320,6 @@ class _Activation:
         except TimeoutError:
             for key, number in sent.items():
                 _log.info("%s: message %d did not come, seen %d", key, number, self._seen.get(key, 0))
-
-    def _no_response(self, local_variables: dict[str, str]) -> MappingFault:
-        mapping = self._mapping
-        values = ", ".join(f"{name}={text}" for name, text in local_variables.items())
-        if mapping.response_variable:
-            message = f"the response is the text of {mapping.response_variable}, which has no value"
-            hint = "See that its code assigns it, whatever the skill's result is"
-        else:
-            message = f"no response rule of {mapping.name} holds ({values or 'no local variables'})"
-            hint = "End the rules with one whose condition is True"
-        span = mapping.rules[0].span if mapping.rules else mapping.span
-        return MappingFault(message, span, code="AOS402", hint=hint, local_variables=local_variables)
 
 
 def _timed_out(path: str, limit_s: float) -> SkillError:

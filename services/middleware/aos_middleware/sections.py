@@ -23,26 +23,13 @@ from aos_protocol.documents import (
     LowLevelDocument,
     Snippet,
 )
+from aos_protocol.local_types import RESERVED_LOCAL_NAMES
 
 __all__ = ["Function", "ImportPart", "Sections", "Table"]
 
 _PRIMITIVES = frozenset({"bool", "int", "float", "double", "string", "str"})
 _OF_SKILL = ("__skill_status", "__skill_error")
 """What rules can say of a skill that has failed."""
-
-_RESERVED = frozenset(
-    {
-        *_OF_SKILL,
-        "__input",
-        "parameters",
-        "local_variables",
-        "request",
-        "observe",
-        "low_level_type",
-        "stand_in",
-    }
-    | {"TOPICS", "RESPONSE", "CONSTANTS"}
-)
 
 
 class Function(msgspec.Struct, frozen=True):
@@ -314,7 +301,7 @@ class Sections:
             self._mistake("AOS121", f"{text!r} is not an import", each.span)
             return None
         for name in brought:
-            if name in _RESERVED or name in self._function_names():
+            if name in RESERVED_LOCAL_NAMES or name in self._function_names():
                 self._mistake("AOS126", f"the import of {name} hides a generated function", each.span)
         return [name for name in brought if name != "*"]
 
@@ -372,4 +359,4 @@ def _stand_in(name: str, module: str) -> str:
 
 
 def _is_usable(name: str) -> bool:
-    return name.isidentifier() and not keyword.iskeyword(name) and name not in _RESERVED
+    return name.isidentifier() and not keyword.iskeyword(name) and name not in RESERVED_LOCAL_NAMES

@@ -1,4 +1,7 @@
-"""Documents put together to a project: one environment, each skill with its model and its mapping."""
+"""Documents put together to a project: one environment, each skill with its model and its mapping.
+
+A skill whose mapping is written nowhere gets a derived one.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,8 @@ from aos_protocol.documents import (
     SkillModel,
 )
 from aos_protocol.findings import Findings
+from aos_protocol.spelling import nearest
+from aos_registry.derived_mapping import derived_mapping
 from aos_registry.documents.document import Document, DocumentKind
 
 __all__ = ["Assembly", "assemble"]
@@ -30,7 +35,7 @@ class Assembly(msgspec.Struct):
     low_level: LowLevelDocument | None = None
 
     def project(self) -> Project | None:
-        """The project; None where the environment or a skill's other half is missing."""
+        """The project; None where the environment or a mapping's skill is missing."""
         if self.environment is None or not self.models or self.models.keys() != self.mappings.keys():
             return None
         skills = tuple(Skill(self.models[name], self.mappings[name]) for name in sorted(self.models))
@@ -57,6 +62,9 @@ def assemble(
                 assembly.models[document.name] = model
             case AbstractionMapping() as mapping if document.name:
                 assembly.mappings[document.name] = mapping
+    written = {name for kind, name in unique if kind is DocumentKind.MAPPING}
+    for name in assembly.models.keys() - written:
+        assembly.mappings[name] = derived_mapping(assembly.models[name], assembly.environment)
     if not has_unread_files:
         _check_complete(unique, findings, Span(bundle))
     return assembly
@@ -97,13 +105,16 @@ def _check_complete(
         hint = "Add an .ef file, or a JSON document of type Environment"
         findings.error("AOS115", "there is no environment document", bundle, hint)
     skills, mappings = by_kind[DocumentKind.SKILL], by_kind[DocumentKind.MAPPING]
-    for name in sorted(skills - mappings):
-        span = unique[DocumentKind.SKILL, name].span
-        hint = f"Add {name}.am, or a JSON document of type Glue"
-        findings.error("AOS114", f"the skill {name} has no abstraction mapping", span, hint)
     for name in sorted(mappings - skills):
         span = unique[DocumentKind.MAPPING, name].span
-        hint = f"Add {name}.sd, or a JSON document of type PLP"
+        # A skill whose mapping is missed is the likeliest one to be meant.
+        meant = nearest(name, sorted(skills - mappings)) or nearest(name, sorted(skills))
+        hint = f"Did you mean `{meant}`?" if meant else f"Add {name}.sd, or a JSON document of type PLP"
         findings.error("AOS114", f"the abstraction mapping {name} has no skill document", span, hint)
+        if meant in skills - mappings:
+            # Either of the two names may be the wrong one.
+            span = unique[DocumentKind.SKILL, meant].span
+            message = f"the skill {meant} has no abstraction mapping, and the mapping {name} no skill"
+            findings.error("AOS114", message, span, f"Did you mean `{name}`?")
     if not skills and not mappings:
-        findings.error("AOS105", "there are no skills", bundle, "Add .sd and .am files")
+        findings.error("AOS105", "there are no skills", bundle, "Add .sd files")

@@ -110,6 +110,8 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
     limit = f", at most {activation.max_duration_s:g} s" if activation.max_duration_s else ""
     call = f"activation: {activation.kind} {activation.path}({fields}){service}{limit}"
     yield _placed(call, activation.span)
+    if mapping.is_derived:
+        yield "derived: no abstraction mapping is written"
     yield from _imports(activation.imports)
     for rule in mapping.rules:
         condition = rule.condition.code if rule.condition else "True"

@@ -60,7 +60,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
         is_sound = len(findings) == before
         if assembly.environment is not None:
             check_reported_variables(mapping, assembly.environment, findings)
-        if is_whole and is_sound:
+        if is_whole and is_sound and not mapping.is_derived:
             check_unused_locals(mapping, _reported_to_model(mapping, name, assembly), findings)
     if assembly.low_level is not None:
         check_low_level(assembly.low_level, findings)

@@ -10,6 +10,7 @@ from aos_protocol.spelling import quoted
 from aos_registry.check.blocks import DYNAMIC, Block, assignment_blocks
 from aos_registry.check.model_code import read_block
 from aos_registry.check.scope import STATE_COPIES, Scope
+from aos_registry.derived_mapping import sets_response
 from aos_runtime.cpp_keywords import SPECIAL_NAMES
 from aos_runtime.snippets import Access, Cpp, DeclarationKind, Mention
 
@@ -36,9 +37,17 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
             report("AOS126", message, span, "Choose another name for one of them")
         if name in given or name in known:
             continue
+        if mapping.is_derived:
+            names = sorted(known | set(given))
+            findings.unknown(name, names, f"unknown name `{name}`", span, "It stands in a condition")
+            continue
         message = f"the abstraction mapping of {model.name} has no response `{name}`"
         otherwise = f"It has {quoted(given)}" if given else "Add a response with its rule to the mapping"
         findings.unknown(name, given, message, span, otherwise, code="AOS116")
+    if mapping.is_derived and not given and (place := sets_response(model)) is not None:
+        message = f"the responses of {model.name} cannot be told from its code"
+        hint = f"Assign names to __moduleResponse, or write an abstraction mapping: {model.name}.am"
+        findings.error("AOS114", message, place, hint)
     _check_text_response(model, mapping, read, findings)
     mentioned = {mention.path[0] for _, cpp in read for mention in cpp.mentions if len(mention.path) == 1}
     for rule in mapping.rules:

@@ -1,0 +1,180 @@
+"""A skill without an abstraction mapping has one: its path, its fields, and `response` of the result."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from mapping_runs import fields, loaded, observed
+
+from aos_deploy.adapter_templates import adapter_files
+from aos_deploy.language_server.symbols import read_bundle
+from aos_middleware.emit import emit_mapping
+from aos_middleware.no_response import no_response
+from aos_middleware.worker import LoadedMapping
+from aos_protocol.documents import AbstractionMapping, Project
+from aos_registry.convert import Dialect, convert, without_origins
+from aos_registry.load import LoadedBundle, load_files
+from aos_registry.outline import outline
+
+ENVIRONMENT = """project: barn
+horizon: 4
+define_type: Side
+enum_members: Left, Right
+state_variable: Side at
+action_parameter: Side left
+code:
+state.left = Left;
+initial_belief:
+state.at = AOS.Bernoulli(0.5) ? Left : Right;
+reward_code:
+if (state.at == Left) __reward = 1;
+"""
+LOOK = """project: barn
+parameter: Side side
+dynamic_model:
+bool sees = AOS.Bernoulli(0.8) == (state.at == side);
+__moduleResponse = sees ? seen : unseen;
+"""
+LOOK_JSON = {
+    "GlobalVariableModuleParameters": [{"Name": "side", "Type": "Side"}],
+    "DynamicModel": {
+        "NextStateAssignments": [{"AssignmentCode": LOOK.split("dynamic_model:\n")[1].splitlines()}]
+    },
+}
+
+
+def loaded_files(look: str = LOOK, **more: str) -> LoadedBundle:
+    texts = {"barn.ef": ENVIRONMENT, "look.sd": look} | {name.replace("_", "."): more[name] for name in more}
+    return load_files({name: text.encode() for name, text in texts.items()})
+
+
+def project_of(look: str = LOOK) -> Project:
+    bundle = loaded_files(look)
+    assert bundle.project is not None, bundle.diagnostics
+    assert [each for each in bundle.diagnostics if each.code != "AOS139"] == []
+    return bundle.project
+
+
+def mapping_of(look: str) -> AbstractionMapping:
+    return project_of(look).skills[0].mapping
+
+
+def running(look: str = LOOK) -> LoadedMapping:
+    return loaded(emit_mapping(project_of(look).skills[0]))
+
+
+def responses(model: str) -> list[str]:
+    return [rule.response for rule in mapping_of(f"project: barn\ndynamic_model:\n{model}\n").rules]
+
+
+def test_the_call_has_the_skills_name_and_its_parameters_and_the_result_the_response() -> None:
+    assert mapping_of(LOOK).activation.path == "/look"
+    mapping = running()
+    assert fields(mapping, {"side": "Left"}) == {"side": "Left"}
+    for response in ("seen", "unseen"):
+        assert observed(mapping, {"side": "Left"}, [], {"response": response}).response == response
+    for result in ({"response": "sen"}, {"success": True}, {}):
+        assert observed(mapping, {"side": "Left"}, [], result).response is None
+
+
+@pytest.mark.parametrize(("head", "kind"), [("PlpMain", "PLP"), ("GsdlMain", "GSDL")])
+def test_the_json_dialects_derive_the_same(head: str, kind: str) -> None:
+    document = {head: {"Project": "barn", "Name": "look", "Type": kind}, **LOOK_JSON}
+    bundle = load_files({"barn.ef": ENVIRONMENT.encode(), "look.json": json.dumps(document).encode()})
+    assert bundle.project is not None, bundle.diagnostics
+    assert without_origins(bundle.project.skills) == without_origins(project_of().skills)
+
+
+def test_responses_are_the_names_that_can_become_the_response() -> None:
+    assert responses("__moduleResponse = done;") == ["done"]
+    assert responses("__moduleResponse = state.at == Left ? (state__.at == Left ? a : b) : c;") == [
+        "a",
+        "b",
+        "c",
+    ]
+    assert responses("auto told = missed;\nif (state.at == Left) told = hit;\n__moduleResponse = told;") == [
+        "missed", "hit",
+    ]  # fmt: skip
+    assert responses("if (state.at == Left) __moduleResponse = here; else __moduleResponse = gone;") == [
+        "here", "gone",
+    ]  # fmt: skip
+
+
+def test_a_skill_that_reports_nothing_needs_no_response() -> None:
+    mapping = running("project: barn\ndynamic_model:\nstate__.at = Left;\n")
+    assert observed(mapping, {}, [], {}).response == "DefaultObservation"
+
+
+def test_a_text_response_and_reported_numbers_come_from_the_result_too() -> None:
+    mapping = running('project: barn\ndynamic_model:\n__moduleResponseStr = state.at == Left ? "l" : "r";\n')
+    assert observed(mapping, {}, [], {"response": "l"}).response == "l"
+    model = "__moduleResponse = told;\n__observed.bearing = AOS.SampleNormal(state.at, 1.0);"
+    mapping = running(f"project: barn\ndynamic_model:\n{model}\n")
+    found = observed(mapping, {}, [], {"response": "told", "bearing": 0.25})
+    assert (found.response, found.local_variables["bearing"]) == ("told", "0.25")
+
+
+@pytest.mark.parametrize("name", ["response", "request", "from_", "parameters"])
+def test_a_parameter_may_have_a_name_that_the_mapping_needs(name: str) -> None:
+    mapping = running(LOOK.replace("side", name))
+    assert fields(mapping, {name: "Left"}) == {name: "Left"}
+    assert observed(mapping, {name: "Left"}, [], {"response": "seen"}).response == "seen"
+
+
+def test_a_result_that_brings_no_response_is_told_with_its_reason() -> None:
+    mapping = mapping_of(LOOK)
+    missing = no_response(mapping, {"success": True}, {})
+    assert "the result of /look has no `response`: it has `success`" in missing.message
+    assert "one of `seen`, `unseen`" in missing.hint
+    unknown = no_response(mapping, {"response": "sen"}, {})
+    assert (unknown.code, unknown.hint) == ("AOS402", "Did you mean `seen`?")
+    assert "'sen', which look does not know" in unknown.message
+    assert str(unknown.diagnostics[0].span) == "look.sd:5:27"
+
+
+def test_a_mapping_that_has_no_skill_is_told_with_the_name_that_was_meant() -> None:
+    mapping = "project: barn\nmodule_activation: skill\npath: /look\n"
+    bundle = loaded_files(lok_am=mapping)
+    errors = [(each.code, each.span.file, each.hint) for each in bundle.diagnostics if each.is_error]
+    assert errors == [
+        ("AOS114", "lok.am", "Did you mean `look`?"), ("AOS114", "look.sd", "Did you mean `lok`?"),
+    ]  # fmt: skip
+
+
+def test_a_mapping_that_cannot_be_read_is_not_replaced() -> None:
+    bundle = loaded_files(look_am="project: barn\npath: /look\n")
+    assert {each.span.file for each in bundle.diagnostics if each.is_error} == {"look.am"}
+
+
+@pytest.mark.parametrize(
+    ("model", "code", "place"),
+    [
+        ("bool sees = true;\n__moduleResponse = seees ? seen : unseen;", "AOS110", "look.sd:4:20"),
+        ("__moduleResponse = state.at;", "AOS114", "look.sd:3:1"),
+    ],
+)
+def test_what_no_response_can_be_read_from_is_an_error(model: str, code: str, place: str) -> None:
+    bundle = loaded_files(f"project: barn\ndynamic_model:\n{model}\n")
+    assert [(each.code, str(each.span)) for each in bundle.diagnostics if each.is_error] == [(code, place)]
+
+
+def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path) -> None:
+    project = project_of()
+    shown = outline(project)
+    assert "activation: skill /look(side=side)" in shown
+    assert "derived: no abstraction mapping is written" in shown
+    files = {"barn.ef": ENVIRONMENT.encode(), "look.sd": LOOK.encode()}
+    texts, findings = convert(files, Dialect.JSON)
+    assert (set(texts), findings) == ({"environment.ef.json", "look.sd.json"}, ())
+    made = adapter_files("python", project, "barn")
+    assert "async def look(call: Call, side: Any)" in made["barn_robot.py"]
+    assert "return {'response': 'seen'}" in made["barn_robot.py"]
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+    bundle = read_bundle(tmp_path, {})
+    response = bundle.at("look.sd", 5, 27)
+    assert response is not None
+    assert response.is_declaration
+    assert str(response.span) == "look.sd:5:27"
