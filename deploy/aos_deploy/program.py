@@ -24,9 +24,9 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     `settings` are what it is told beyond robot, endpoint and run directory. It is ready when its liveliness
     token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL. Once it was ready it
     is started again up to `restarts` times when it ends by itself. With a `command` it is a program of the
-    user's own: it gets its settings in the environment, and is ready when it serves its paths. The word
-    `python` stands for the Python that this runs in. With a `host` it runs there, in a `folder` of that host.
-    Others may go on without an adapter.
+    user's own: it gets its settings in the environment, is ready when it serves one of the `paths` that are
+    bound to it, and may be started again before that, too. The word `python` stands for the Python that this
+    runs in. With a `host` it runs there, in a `folder` of that host. Others may go on without an adapter.
     """
 
     name: str
@@ -38,6 +38,7 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     command: tuple[str, ...] = ()
     folder: str | None = None
     host: str = ""
+    paths: tuple[str, ...] = ()
     is_adapter: bool = False
 
     def argv(self, settings: Path) -> list[str]:
@@ -96,6 +97,7 @@ def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:
         command=tuple(plan.options["command"]) if plan.is_command else (),
         folder=_folder(deployment, plan) if plan.is_command else None,
         host=options.get("host", "") if plan.is_command else "",
+        paths=tuple(plan.bind),
         is_adapter=True,
     )
 

@@ -1,8 +1,9 @@
 """Starts the services of a system, notices when one ends, and stops them all.
 
-All processes start at once, because a Python interpreter takes longer to start than a service to get ready;
-each waits for the bus by itself. Readiness, a liveliness token on the bus, is then awaited in the order of
-the programs. They are stopped in the reverse order, the router last.
+Our own processes start at once, because a Python interpreter takes longer to start than a service to get
+ready; each waits for the bus by itself. Commands of the user's own start when the router listens, so that
+they need not wait for it. Readiness is then awaited in the order of the programs: the liveliness token of a
+service, the first path that a command serves. They are stopped in the reverse order, the router last.
 
 A service that ends before it is told to ends the supervision with the fault it left, unless its program says
 that it may be started again. `_watch` is the only place that sees a service end.
@@ -20,17 +21,18 @@ from aos_deploy.program import Program, settings_of
 from aos_deploy.remote import check_ssh, remote_command, why_it_failed
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import AosError, DeployError, error_from_code
-from aos_protocol.keys import Keys
+from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Bus
 from aos_runtime.children import PIPE, Child, guarded
 from aos_runtime.clock import Clock
-from aos_runtime.lifecycle import ServiceSettings
+from aos_runtime.guard import NOT_STARTED
+from aos_runtime.lifecycle import ROUTER_S, ServiceSettings
 from aos_runtime.subscription import merged
 
 __all__ = ["ROUTER", "Supervisor", "supervised"]
 
-ROUTER = Program(name="router", module="aos_runtime.router", start_s=10.0)
+ROUTER = Program(name="router", module="aos_runtime.router", start_s=ROUTER_S)
 
 _CANCEL_TIMEOUT_S = 2.5
 _RESTART_S = 0.2
@@ -38,15 +40,14 @@ _RESTART_S = 0.2
 
 
 class _Running:
-    """A program's process; `starts` counts how often it was started."""
+    """A program's process. `starts` counts how often it was started, `ready` is set once it was ready."""
 
     def __init__(self, program: Program, child: Child) -> None:
         self.program = program
         self.child = child
         self.starts = 1
         self.ready = asyncio.Event()
-        if program.command:
-            self.ready.set()  # It is awaited by the paths that it serves.
+        self.is_ready = False
 
 
 @asynccontextmanager
@@ -112,21 +113,25 @@ class Supervisor:
         DeployError AOS802 if a process cannot be started. Nobody else may listen at the endpoint.
         """
         for program in (ROUTER, *self._programs):
-            await self._spawn(program)
+            if not program.command:
+                await self._spawn(program)
         self.bus = self._bus = await Bus.open(
             self._base.endpoint, sender="aos-up", connect_timeout_s=ROUTER.start_s
         )
-        self._running[ROUTER.name].ready.set()
-        self._changed(ROUTER.name, "ready")
+        self._is_ready(self._running[ROUTER.name])
         self._presence = self._tasks.create_task(self._follow_presence(self.bus))
+        for program in self._programs:
+            if program.command:
+                await self._spawn(program)
 
     async def until_ready(self, *names: str) -> None:
         """Returns when these services are ready, or all if none is named.
 
-        DeployError AOS802 if one takes longer than it may, counted from the start.
+        Commands are not awaited here: which of their paths are needed, the documents say. DeployError AOS802
+        if a service takes longer than it may, counted from the start.
         """
         for program in self._programs:
-            if names and program.name not in names:
+            if program.command or (names and program.name not in names):
                 continue
             running = self._running[program.name]
             elapsed_s = self._clock.monotonic_s() - self._started_s
@@ -190,11 +195,28 @@ class Supervisor:
                 serving = keys.serving_of(key)
                 if serving is not None:
                     (self._serving.add if is_alive else self._serving.discard)(serving.path)
-                    continue
-                running = self._running.get(keys.service_of(key))
-                if running is not None and is_alive:
-                    running.ready.set()
-                    self._changed(running.program.name, "ready")
+                    running = self._command_behind(serving)
+                else:
+                    running = self._running.get(keys.service_of(key))
+                if running is not None and is_alive and not running.is_ready:
+                    self._is_ready(running)
+
+    def _command_behind(self, serving: Serving) -> _Running | None:
+        """The command that serves a path, by its name in the token or by what is bound to it."""
+        commands = (each for each in self._running.values() if each.program.command)
+        return next(
+            (
+                each
+                for each in commands
+                if each.program.name == serving.adapter or serving.path in each.program.paths
+            ),
+            None,
+        )
+
+    def _is_ready(self, running: _Running) -> None:
+        running.is_ready = True
+        running.ready.set()
+        self._changed(running.program.name, "ready")
 
     async def _watch(self, running: _Running) -> None:
         """Raises when the process ends though nobody stopped it, and may not be started again."""
@@ -203,8 +225,10 @@ class Supervisor:
             status = await running.child.wait()
             if self._is_stopping:
                 return
+            running.is_ready = False
             self._changed(program.name, "ended", _status_text(status))
-            if not running.ready.is_set() or running.starts > program.restarts:
+            may_start_again = running.ready.is_set() or (program.command and status != NOT_STARTED)
+            if not may_start_again or running.starts > program.restarts:
                 if running.ready.is_set() and self._has_other_adapters(running):
                     # What it served is unavailable; the mission goes on with the rest.
                     self._changed(program.name, "given up", self._end_of(running, status).message)

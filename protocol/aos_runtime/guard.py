@@ -30,10 +30,11 @@ if TYPE_CHECKING:
 else:
     import _signal as signal  # `signal` makes enums of the numbers, for a third of the guard's start
 
-__all__ = ["main"]
+__all__ = ["NOT_STARTED", "main"]
 
 _STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-_NOT_STARTED = 127
+NOT_STARTED = 127
+"""The status of a guard whose command cannot be started."""
 _GRACE_S = 0.5
 
 _NICENESS = "--niceness"
@@ -186,7 +187,7 @@ def _end_like(status: int) -> NoReturn:
 
 def _fail(text: str) -> NoReturn:
     os.write(2, f"guard: {text}\n".encode())
-    os._exit(_NOT_STARTED)
+    os._exit(NOT_STARTED)
 
 
 if __name__ == "__main__":

@@ -29,8 +29,11 @@ from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.parent import die_with_parent
 from aos_runtime.service_settings import ServiceSettings, fault_path
 
-__all__ = ["Service", "ServiceSettings", "root_cause", "run_process", "run_service"]
+__all__ = ["ROUTER_S", "Service", "ServiceSettings", "root_cause", "run_process", "run_service"]
 
+
+ROUTER_S = 10.0
+"""How long the router may take to listen. Services start at the same time, and wait for it as long."""
 
 S = TypeVar("S", bound=ServiceSettings)
 
@@ -71,7 +74,13 @@ def run_service(
 
     async def run(settings: S) -> None:
         clock = SystemClock()
-        bus = await Bus.open(settings.endpoint, sender=settings.service, clock=clock, lease_s=lease_s)
+        bus = await Bus.open(
+            settings.endpoint,
+            sender=settings.service,
+            connect_timeout_s=ROUTER_S,
+            clock=clock,
+            lease_s=lease_s,
+        )
         async with bus:
             await serve(Service(settings, bus, clock))
 

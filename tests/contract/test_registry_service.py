@@ -75,6 +75,15 @@ async def push(bus: Bus, keys: Keys, files: dict[str, bytes]) -> BundleReport:
     return await bus.ask(keys.push_bundle, PushBundle(files, "test"), BundleReport, timeout_s=HANG_S)
 
 
+def drop(registry: Path, name: str, files: dict[str, bytes]) -> None:
+    """Puts a folder into the watched folder, at once."""
+    folder = registry / name
+    folder.mkdir()
+    for file, data in files.items():
+        (folder / file).write_bytes(data)
+    folder.rename(registry / "drop" / name)
+
+
 async def current(bus: Bus, keys: Keys, project: str = "armadillo") -> ProjectRevision:
     return await bus.ask(keys.project, ProjectQuery(project), ProjectRevision, timeout_s=HANG_S)
 
@@ -217,6 +226,44 @@ async def test_a_dropped_archive_is_taken_in(registry: Path, bus: Bus, keys: Key
         async for _, report in reports:
             assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo.zip")
             break
+
+
+async def test_a_drop_that_lacks_the_project_waits_until_it_is_pushed(
+    registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    observe = {name: finer.pop(name) for name in list(finer) if name.startswith("observe_holding")}
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
+        told = aiter(reports)
+        drop(registry, "sensing", observe)
+        refused = (await anext(told))[1]
+        assert (refused.is_accepted, refused.is_waiting, refused.source) == (False, True, "sensing")
+        assert "AOS115" in {each.code for each in refused.diagnostics}
+        await push(bus, keys, finer)
+        pushed, taken = [(await anext(told))[1] for _ in range(2)]
+        assert (pushed.source, pushed.revision) == ("test", 1)
+        assert (taken.source, taken.revision, taken.added) == ("sensing", 2, ("observe_holding",))
+    assert len((await current(bus, keys)).project.skills) == 5
+
+
+async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
+    registry: Path, bus: Bus, other: Bus, keys: Keys, finer: dict[str, bytes]
+) -> None:
+    pick = {name: finer.pop(name) for name in list(finer) if name.startswith("pick")}
+    async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
+        told = aiter(reports)
+        drop(registry, "half", {"pick.sd": pick["pick.sd"]})
+        assert (await anext(told))[1].is_waiting  # for an environment
+        await push(bus, keys, finer)
+        second = (await anext(told))[1], (await anext(told))[1]
+        assert [(each.source, each.is_waiting) for each in second] == [("test", False), ("half", True)]
+        assert {each.code for each in second[1].diagnostics if each.is_error} == {"AOS114"}  # its mapping
+        await bus.ask(
+            keys.remove_bundle, RemoveDocuments("armadillo", "serve"), BundleReport, timeout_s=HANG_S
+        )
+        await push(bus, keys, pick)
+        rest = [(await anext(told))[1] for _ in range(3)]
+        assert [each.removed for each in rest] == [("serve",), (), ()]
+        assert [(each.source, each.is_accepted) for each in rest[1:]] == [("test", True), ("half", True)]
 
 
 async def test_every_push_and_removal_is_told_on_the_bus(

@@ -8,7 +8,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
-from processes import descendants, has_listener, is_running, kill, until_ended
+from processes import HANG_S, descendants, has_listener, is_running, kill, until_ended
 
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, ServiceChanged
@@ -28,6 +28,18 @@ def small(name: str, mood: str = "good", *, start_s: float = 20.0, stop_s: float
     return Program(name=name, module="small_service", settings={"mood": mood}, start_s=start_s, stop_s=stop_s)
 
 
+def command(*words: str, restarts: int = 0) -> Program:
+    """An adapter `robot` that is a program of the user's own."""
+    return Program(
+        name="robot",
+        command=words,
+        folder=str(TESTS),
+        paths=("/sense",),
+        restarts=restarts,
+        is_adapter=True,
+    )
+
+
 class System:
     """A supervised system of small services in its own run directory."""
 
@@ -37,6 +49,7 @@ class System:
             self.endpoint = endpoint
         self.events: list[ServiceChanged] = []
         self.pids: list[int] = []
+        self._news = asyncio.Event()
 
     @property
     def port(self) -> int:
@@ -69,9 +82,16 @@ class System:
         """The services that came into a state, in this order."""
         return [event.service for event in self.events if event.state == state]
 
+    async def until(self, service: str, state: str, times: int = 1) -> None:
+        """Returns when a service has come into a state so many times."""
+        while sum((each.service, each.state) == (service, state) for each in self.events) < times:
+            self._news.clear()
+            await self._news.wait()
+
     def _note(self, event: Event) -> None:
         assert isinstance(event, ServiceChanged)
         self.events.append(event)
+        self._news.set()
 
 
 @pytest.fixture
@@ -188,3 +208,44 @@ async def test_a_killed_system_leaves_no_grandchildren(system: System) -> None:
             pids.extend([pid, *descendants(pid)])
         supervisor.kill()
     await until_ended(pids)
+
+
+@pytest.mark.parametrize("name", [(), ("a_name_of_its_own",)], ids=["told", "own"])
+async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_serves(
+    system: System, name: tuple[str, ...]
+) -> None:
+    async with (
+        asyncio.timeout(HANG_S),
+        system.up(small("registry"), command("python", "small_command.py", *name)),
+    ):
+        await system.until("robot", "ready")
+    changes = [(each.service, each.state) for each in system.events]
+    assert changes.index(("router", "ready")) < changes.index(("robot", "starting"))
+    assert system.order("starting").count("robot") == 1
+
+
+async def test_a_command_that_starts_again_is_ready_again(system: System) -> None:
+    async with (
+        asyncio.timeout(HANG_S),
+        system.up(command("python", "small_command.py", restarts=1)) as supervisor,
+    ):
+        await system.until("robot", "ready")
+        kill(supervisor.pids["robot"])
+        await system.until("robot", "ready", times=2)
+    states = [each.state for each in system.events if each.service == "robot"]
+    assert states[:5] == ["starting", "ready", "ended", "starting", "ready"]
+
+
+async def test_a_command_that_ends_before_it_serves_is_tried_again(system: System) -> None:
+    error = await system.error(command("sh", "-c", "echo no camera; exit 4", restarts=1))
+    assert system.order("ended") == ["robot", "robot", "router"]
+    assert error.code == "AOS802"
+    assert error.message == "robot ended unexpectedly: exit status 4"
+    assert "no camera" in error.hint
+
+
+async def test_a_command_that_cannot_be_started_is_not_tried_again(system: System) -> None:
+    error = await system.error(command("./no_such_program", restarts=3))
+    assert system.order("ended") == ["robot", "router"]
+    assert error.code == "AOS802"
+    assert "cannot start ./no_such_program: No such file or directory" in error.hint

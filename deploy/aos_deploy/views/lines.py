@@ -121,7 +121,8 @@ def endings_text(belief: BeliefSummary) -> str:
 def _report_lines(report: BundleReport) -> list[str]:
     lines = [render(diagnostic) for diagnostic in report.diagnostics]
     if not report.is_accepted:
-        return [*lines, f"bundle {report.source} refused, nothing has changed"]
+        waits = "; it is tried again when the project changes" if report.is_waiting else ""
+        return [*lines, f"bundle {report.source} refused, nothing has changed{waits}"]
     new = [f"{verb} {', '.join(skills)}" for verb, skills in _news(report) if skills]
     revision = f"{report.project} revision {report.revision}"
     return [*lines, f"bundle {report.source}: {revision}, {'; '.join(new) or 'nothing new'}"]

@@ -29,7 +29,10 @@ class PushBundle(Message, frozen=True):
 
 
 class BundleReport(Message, frozen=True):
-    """What became of a bundle. `revision` is the project's revision now; 0 if it was never accepted."""
+    """What became of a bundle. `revision` is the project's revision now; 0 if it was never accepted.
+
+    A dropped bundle that is refused for what it lacks `is_waiting`: it is tried again when a project changes.
+    """
 
     project: str
     is_accepted: bool
@@ -39,6 +42,7 @@ class BundleReport(Message, frozen=True):
     changed: tuple[str, ...] = ()
     source: str = ""
     removed: tuple[str, ...] = ()
+    is_waiting: bool = False
 
 
 class RemoveDocuments(Message, frozen=True):

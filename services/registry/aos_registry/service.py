@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections.abc import Mapping
 from pathlib import Path
 
-from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors, render
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, NobodyAnswersError, StorageError
 from aos_protocol.messages import (
@@ -24,10 +25,9 @@ from aos_protocol.messages import (
 from aos_protocol.messages import Catalogue as CatalogueAnswer
 from aos_protocol.spelling import did_you_mean, quoted
 from aos_registry.catalogue import Catalogue
+from aos_registry.drops import DroppedBundles
 from aos_registry.intake import Intake
-from aos_registry.load import read_bundle_files
 from aos_registry.settings import Settings
-from aos_registry.watch import watch_for_bundles
 from aos_runtime.lifecycle import Service
 
 __all__ = ["serve"]
@@ -56,30 +56,33 @@ class _Registry:
         self._catalogue = catalogue
         self._intake = Intake(catalogue, service.clock, self._check_model)
         self._turn = asyncio.Lock()
+        folder = _made(Path(self._settings.watch or Path(self._settings.run_dir) / "drop"))
+        self._dropped = DroppedBundles(folder, self._settings.quiet_s, self._taken, self._tell_report)
 
     async def run(self) -> None:
         for report in self._intake.recall():
             _log.error("the stored project %s cannot be used any more", report.project)
             _log_diagnostics(report)
-        folder = _made(Path(self._settings.watch or Path(self._settings.run_dir) / "drop"))
         await self._bus.answer(self._keys.push_bundle, PushBundle, self._answer_push)
         await self._bus.answer(self._keys.remove_bundle, RemoveDocuments, self._answer_remove)
         await self._bus.answer(self._keys.bundle_history, RevisionsQuery, self._answer_history)
         await self._bus.answer(self._keys.project, ProjectQuery, self._answer_project)
         await self._bus.answer(self._keys.catalogue, CatalogueQuery, self._answer_catalogue)
         await self._service.ready()
-        await watch_for_bundles(folder, self._take_dropped, quiet_s=self._settings.quiet_s)
+        await self._dropped.follow()
 
     # --- answers ---------------------------------------------------------------------------------------
 
     async def _answer_push(self, bundle: PushBundle, _: str) -> BundleReport:
-        return await self._push(bundle.files, bundle.source)
+        report = await self._taken(bundle.files, bundle.source)
+        self._tell_report(report)
+        return report
 
     async def _answer_remove(self, request: RemoveDocuments, _: str) -> BundleReport:
         async with self._turn:
             report, is_new = await self._intake.remove(request.project, request.skill)
             if is_new:
-                self._bus.tell(self._keys.announced, self._intake.revisions[report.project])
+                self._announce(report.project)
         self._tell_report(report)
         return report
 
@@ -115,38 +118,21 @@ class _Registry:
 
     # --- intake ----------------------------------------------------------------------------------------
 
-    async def _take_dropped(self, path: Path) -> None:
-        """Takes a dropped folder or archive; whatever becomes of it is told on the bus."""
-        try:
-            files, remarks = read_bundle_files(path)
-            if has_errors(remarks):
-                self._tell_report(BundleReport("", False, 0, tuple(remarks), source=path.name))
-            elif files:
-                await self._push(files, path.name)
-        except AosError as error:
-            self._refuse_dropped(path, error.code, error.message, error.hint)
-        except Exception as error:  # No bundle may take the registry down, whatever reading it runs into.
-            _log.exception("the dropped bundle %s could not be taken", path.name)
-            self._refuse_dropped(
-                path, "AOS606", f"it could not be taken: {error!r}", "See the registry's log"
-            )
-
-    def _refuse_dropped(self, path: Path, code: str, message: str, hint: str) -> None:
-        diagnostic = Diagnostic(Severity.ERROR, code, message, Span(path.name), hint)
-        self._tell_report(BundleReport("", False, 0, (diagnostic,), source=path.name))
-
     def _tell_report(self, report: BundleReport) -> None:
         """Whoever follows the registry hears of everything that was pushed, dropped or removed."""
         self._bus.tell(self._keys.bundle_report, report)
         _log_report(report)
 
-    async def _push(self, files: dict[str, bytes], source: str) -> BundleReport:
+    async def _taken(self, files: Mapping[str, bytes], source: str) -> BundleReport:
         async with self._turn:
             report, is_new = await self._intake.push(files, source)
             if is_new:
-                self._bus.tell(self._keys.announced, self._intake.revisions[report.project])
-        self._tell_report(report)
+                self._announce(report.project)
         return report
+
+    def _announce(self, project: str) -> None:
+        self._bus.tell(self._keys.announced, self._intake.revisions[project])
+        self._dropped.project_changed()
 
     async def _check_model(self, project: Project) -> tuple[Diagnostic, ...]:
         """What the solver says to a project; nothing when there is no solver yet.
@@ -180,7 +166,8 @@ def _made(folder: Path) -> Path:
 
 def _log_report(report: BundleReport) -> None:
     if not report.is_accepted:
-        _log.warning("a bundle of project %s is refused (%s)", report.project or "?", report.source)
+        waits = "; it is tried again when a project changes" if report.is_waiting else ""
+        _log.warning("a bundle of project %s is refused (%s)%s", report.project or "?", report.source, waits)
     else:
         removed = [f"{name} removed" for name in report.removed]
         new = ", ".join((*report.added, *report.changed, *removed)) or "nothing new"

@@ -18,13 +18,15 @@ _LONGEST_WAIT_S = 30.0
 logging.getLogger("watchfiles").setLevel(logging.WARNING)
 
 
-async def watch_for_bundles(folder: Path, take: Callable[[Path], Awaitable[None]], *, quiet_s: float) -> None:
+async def watch_for_bundles(
+    folder: Path, take: Callable[[Path], Awaitable[None]], changed: asyncio.Queue[Path], *, quiet_s: float
+) -> None:
     """Calls `take` with each sub-folder and archive in `folder`, one at a time, until it is cancelled.
 
-    First come those that are there, then each that has changed. A bundle is taken once nothing changed for
-    `quiet_s`, so that it is not read while it is being copied, and again after later changes.
+    First come those that are there, then each that has changed, and what else is put into `changed`. A bundle
+    is taken once nothing changed for `quiet_s`, so that it is not read while it is being copied, and again
+    after later changes.
     """
-    changed: asyncio.Queue[Path] = asyncio.Queue()
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(_follow(folder, changed, quiet_s))
         await asyncio.sleep(0)  # `_follow` has run to its first wait: the watch stands before the look.

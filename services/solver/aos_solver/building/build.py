@@ -58,6 +58,10 @@ LINES_PER_CPU_S = 150
 more, and a second more for `LINES_PER_CPU_S` lines. A model of 200 lines takes half a second, of 700 lines up
 to 3 s, the engine 30 s."""
 
+_ENGINE_DEADLINES = 5
+"""The engine has so many times a model's deadline: our own sources are known to end, and only a busy machine
+takes long for them."""
+
 _LIMITS = ("-ftemplate-depth=100",)
 """Models' templates need a third of this depth. Document code that recurses without end is told at once."""
 
@@ -119,10 +123,22 @@ async def build(
     deadline_s = deadline_s or compiler.deadline_s
     work = _Build(emitted, cache, compiler, on_progress, deadline_s, kind, niceness)
     started_s = time.monotonic()
-    entry = await cache.fill(names[kind], work.make)
+    made_here: list[Path] = []
+
+    async def make(staging: Path) -> None:
+        made_here.append(staging)
+        await work.make(staging)
+
+    entry = await cache.fill(
+        names[kind],
+        make,
+        patience_s=_patience_s(compiler, deadline_s),
+        on_wait=lambda: on_progress(f"waiting for {emitted.project}, which another process compiles"),
+    )
     seconds = time.monotonic() - started_s
-    on_progress(f"compiled {emitted.project} in {seconds:.1f} s")
-    return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=False, compile_s=seconds)
+    by_whom = "compiled" if made_here else "another process compiled"
+    on_progress(f"{by_whom} {emitted.project} in {seconds:.1f} s")
+    return BuiltModel(emitted, entry / _EXECUTABLE, is_from_cache=not made_here, compile_s=seconds)
 
 
 async def build_engine(
@@ -149,8 +165,7 @@ async def build_engine(
             for kind in _HURRIED:
                 (staging / kind / _SUPPORT).parent.mkdir(parents=True)
                 commands.append(compiler.precompilation(_SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
-        # Our own sources are known to end: only a busy machine takes long for them.
-        deadline_s = 5 * compiler.deadline_s
+        deadline_s = _ENGINE_DEADLINES * compiler.deadline_s
         started_s = time.monotonic()
         runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
         for output, status in await _together(*runs):
@@ -158,7 +173,17 @@ async def build_engine(
                 raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
         (staging / _SECONDS).write_text(f"{time.monotonic() - started_s:.1f}")
 
-    return await BuildCache(cache_dir).fill(_engine_name(compiler, state_bytes), make)
+    return await BuildCache(cache_dir).fill(
+        _engine_name(compiler, state_bytes),
+        make,
+        patience_s=_ENGINE_DEADLINES * compiler.deadline_s,
+        on_wait=lambda: on_progress("waiting for the engine, which another process compiles"),
+    )
+
+
+def _patience_s(compiler: Compiler, deadline_s: float) -> float:
+    """How long another process is waited for that makes the same model: as long as it may take."""
+    return _ENGINE_DEADLINES * compiler.deadline_s + 2 * deadline_s
 
 
 def _part(compiler: Compiler, part: str, option: str) -> list[str]:

@@ -2,6 +2,8 @@
 
 An entry is a directory that appears at once, by a rename, when everything in it is complete. Its name is the
 digest of all that decides about the result. What nobody has asked for in a month makes room for new entries.
+
+Who makes an entry holds its lock (`build_lock`), and others wait for the entry instead of making it as well.
 """
 
 from __future__ import annotations
@@ -13,6 +15,8 @@ import shutil
 import time
 from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
+
+from aos_solver.building.build_lock import build_lock
 
 __all__ = ["BuildCache", "digest_of"]
 
@@ -43,11 +47,29 @@ class BuildCache:
             os.utime(entry)
         return entry
 
-    async def fill(self, name: str, make: Callable[[Path], Awaitable[None]]) -> Path:
-        """The entry of that name, which `make` fills if it is not there; what `make` raises leaves none."""
+    async def fill(
+        self,
+        name: str,
+        make: Callable[[Path], Awaitable[None]],
+        *,
+        patience_s: float = 0.0,
+        on_wait: Callable[[], None] = lambda: None,
+    ) -> Path:
+        """The entry of that name, which `make` fills if it is not there; what `make` raises leaves none.
+
+        While another process makes it, this one waits for up to `patience_s`, and says so with `on_wait`. If
+        the other one ends without the entry, or takes longer, it is made here.
+        """
         if (found := self.find(name)) is not None:
             return found
         self._remove_old()
+        self.directory.mkdir(parents=True, exist_ok=True)
+        async with build_lock(self.directory / f"{name}.lock", patience_s, on_wait):
+            if (found := self.find(name)) is not None:
+                return found
+            return await self._made(name, make)
+
+    async def _made(self, name: str, make: Callable[[Path], Awaitable[None]]) -> Path:
         entry = self.directory / name
         staging = self.directory / f"{name}.{os.getpid()}.{time.monotonic_ns()}.building"
         staging.mkdir(parents=True)

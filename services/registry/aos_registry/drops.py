@@ -1,0 +1,93 @@
+"""Bundles that were dropped into the watched folder, and those of them that wait for what they lack."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable, Mapping
+from pathlib import Path
+
+import msgspec
+
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
+from aos_protocol.errors import AosError
+from aos_protocol.messages import BundleReport
+from aos_registry.load import read_bundle_files
+from aos_registry.watch import watch_for_bundles
+
+__all__ = ["DroppedBundles"]
+
+LACKING = ("AOS105", "AOS110", "AOS113", "AOS114", "AOS115")
+"""What other documents can mend: something is missing, or a name that nothing defines."""
+
+_log = logging.getLogger("aos.registry")
+
+Take = Callable[[Mapping[str, bytes], str], Awaitable[BundleReport]]
+
+
+class DroppedBundles:
+    """Takes what is dropped into a folder, by `take`. `tell` hears what became of each bundle.
+
+    A bundle that is refused because it lacks something waits, and is taken once more, as it then stands in
+    the folder, after each `project_changed`. Only a new answer is told. An acceptance ends the waiting and a
+    refusal changes no project, so that the bundles that wait cannot keep one another going.
+    """
+
+    def __init__(
+        self, folder: Path, quiet_s: float, take: Take, tell: Callable[[BundleReport], None]
+    ) -> None:
+        self._folder = folder
+        self._quiet_s = quiet_s
+        self._take = take
+        self._tell = tell
+        self._changed: asyncio.Queue[Path] = asyncio.Queue()
+        self._waiting: dict[Path, BundleReport] = {}
+        self._again: set[Path] = set()
+
+    async def follow(self) -> None:
+        """Until it is cancelled."""
+        await watch_for_bundles(self._folder, self._take_path, self._changed, quiet_s=self._quiet_s)
+
+    def project_changed(self) -> None:
+        """There is a new revision of a project: what waits is tried with it."""
+        self._waiting = {path: report for path, report in self._waiting.items() if path.exists()}
+        for path in self._waiting:
+            self._again.add(path)
+            self._changed.put_nowait(path)
+
+    async def _take_path(self, path: Path) -> None:
+        was_waiting = self._waiting.pop(path, None)
+        is_again = path in self._again
+        self._again.discard(path)
+        report = await self._report(path)
+        if report is None:
+            return
+        if not report.is_accepted and {each.code for each in report.diagnostics if each.is_error} & {
+            *LACKING
+        }:
+            report = msgspec.structs.replace(report, is_waiting=True)
+            self._waiting[path] = report
+        if not (is_again and was_waiting is not None and _says_the_same(report, was_waiting)):
+            self._tell(report)
+
+    async def _report(self, path: Path) -> BundleReport | None:
+        """What becomes of a folder or an archive; None of an empty folder."""
+        try:
+            files, remarks = read_bundle_files(path)
+            if has_errors(remarks):
+                return BundleReport("", False, 0, tuple(remarks), source=path.name)
+            return await self._take(files, path.name) if files else None
+        except AosError as error:
+            return _refused(path, error.code, error.message, error.hint)
+        except Exception as error:  # No bundle may take the registry down, whatever reading it runs into.
+            _log.exception("the dropped bundle %s could not be taken", path.name)
+            return _refused(path, "AOS606", f"it could not be taken: {error!r}", "See the registry's log")
+
+
+def _refused(path: Path, code: str, message: str, hint: str) -> BundleReport:
+    diagnostic = Diagnostic(Severity.ERROR, code, message, Span(path.name), hint)
+    return BundleReport("", False, 0, (diagnostic,), source=path.name)
+
+
+def _says_the_same(report: BundleReport, before: BundleReport) -> bool:
+    return not report.is_accepted and report.diagnostics == before.diagnostics

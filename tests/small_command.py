@@ -1,0 +1,29 @@
+"""A program of a user's own, small: it serves the path /sense if the router listens, and answers nothing.
+
+It does not wait for the router: where none listens it ends with status 3.
+"""
+
+import json
+import os
+import socket
+import sys
+import threading
+
+import zenoh
+
+host, port = os.environ["AOS_ENDPOINT"].removeprefix("tcp/").rsplit(":", 1)
+try:
+    socket.create_connection((host, int(port))).close()
+except OSError:
+    sys.exit(3)
+settings = {
+    "mode": "client",
+    "connect": {"endpoints": [os.environ["AOS_ENDPOINT"]]},
+    "scouting": {"multicast": {"enabled": False}},
+    "transport": {"shared_memory": {"enabled": False}},
+}
+with zenoh.open(zenoh.Config.from_json5(json.dumps(settings))) as session:
+    name = sys.argv[1] if len(sys.argv) > 1 else os.environ["AOS_ADAPTER"]
+    key = f"aos/{os.environ['AOS_ROBOT']}/serve/{name}/1/{session.zid()}/sense"
+    token = session.liveliness().declare_token(key)
+    threading.Event().wait()

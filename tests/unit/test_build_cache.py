@@ -1,0 +1,112 @@
+"""Several processes with one cache: one makes an entry, and the others wait for it, but not for ever."""
+
+from __future__ import annotations
+
+import asyncio
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from processes import HANG_S
+
+from aos_solver.building.build_cache import BuildCache
+
+HOLDER = """
+import asyncio, sys
+from pathlib import Path
+from aos_solver.building.build_lock import build_lock
+
+async def hold():
+    async with build_lock(Path(sys.argv[1]), 0.0, lambda: None):
+        print("held", flush=True)
+        sys.stdin.read()
+
+asyncio.run(hold())
+"""
+
+
+@contextmanager
+def another_process_makes(entry: Path) -> Iterator[subprocess.Popen[str]]:
+    """A process that holds the lock of an entry until its input ends."""
+    lock = entry.with_name(f"{entry.name}.lock")
+    command = [sys.executable, "-c", HOLDER, str(lock)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as holder:
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "held\n"
+        yield holder
+        holder.kill()
+
+
+def names(folder: Path) -> list[str]:
+    return [path.name for path in folder.iterdir()]
+
+
+async def make(staging: Path) -> None:
+    (staging / "part").write_text("whole")
+
+
+async def test_one_makes_an_entry_and_the_others_wait_for_it(tmp_path: Path) -> None:
+    makers: list[Path] = []
+    others_wait = asyncio.Event()
+
+    async def make_slowly(staging: Path) -> None:
+        makers.append(staging)
+        await others_wait.wait()
+
+    waiting: list[None] = []
+
+    def on_wait() -> None:
+        waiting.append(None)
+        if len(waiting) == 2:
+            others_wait.set()
+
+    fills = [
+        BuildCache(tmp_path).fill("model-a", make_slowly, patience_s=HANG_S, on_wait=on_wait)
+        for _ in range(3)
+    ]
+    assert await asyncio.gather(*fills) == [tmp_path / "model-a"] * 3
+    assert len(makers) == 1
+    assert names(tmp_path) == ["model-a"]
+
+
+async def test_what_another_process_makes_is_waited_for(tmp_path: Path) -> None:
+    entry = tmp_path / "model-b"
+    with another_process_makes(entry) as holder:
+
+        def finish() -> None:
+            entry.mkdir()
+            holder.communicate()
+
+        assert await BuildCache(tmp_path).fill(entry.name, make, patience_s=HANG_S, on_wait=finish) == entry
+    assert names(entry) == []  # the other one's
+
+
+async def test_what_a_killed_process_did_not_finish_is_made_here(tmp_path: Path) -> None:
+    with another_process_makes(tmp_path / "model-c") as holder:
+        entry = await BuildCache(tmp_path).fill("model-c", make, patience_s=HANG_S, on_wait=holder.kill)
+    assert (entry / "part").read_text() == "whole"
+    assert names(tmp_path) == ["model-c"]
+
+
+async def test_a_process_that_does_not_get_on_is_waited_for_until_a_deadline(tmp_path: Path) -> None:
+    with another_process_makes(tmp_path / "model-d"):
+        entry = await BuildCache(tmp_path).fill("model-d", make, patience_s=0.3)
+    assert (entry / "part").read_text() == "whole"
+
+
+async def test_who_waits_for_a_failure_tries_by_itself(tmp_path: Path) -> None:
+    somebody_waits = asyncio.Event()
+
+    async def fail(_: Path) -> None:
+        await somebody_waits.wait()
+        raise RuntimeError("no")
+
+    failing = asyncio.create_task(BuildCache(tmp_path).fill("model-e", fail))
+    await asyncio.sleep(0)  # It has the lock.
+    entry = await BuildCache(tmp_path).fill("model-e", make, patience_s=HANG_S, on_wait=somebody_waits.set)
+    with pytest.raises(RuntimeError):
+        await failing
+    assert (entry / "part").exists()
