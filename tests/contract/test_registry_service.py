@@ -251,12 +251,14 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
     pick = {name: finer.pop(name) for name in list(finer) if name.startswith("pick")}
     async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
         told = aiter(reports)
-        drop(registry, "half", {"pick.sd": pick["pick.sd"]})
+        drop(registry, "half", {"pick.am": pick["pick.am"]})
         assert (await anext(told))[1].is_waiting  # for an environment
         await push(bus, keys, finer)
         second = (await anext(told))[1], (await anext(told))[1]
         assert [(each.source, each.is_waiting) for each in second] == [("test", False), ("half", True)]
-        assert {each.code for each in second[1].diagnostics if each.is_error} == {"AOS114"}  # its mapping
+        assert {each.code for each in second[1].diagnostics if each.is_error} == {
+            "AOS114"
+        }  # its skill document
         await bus.ask(
             keys.remove_bundle, RemoveDocuments("armadillo", "serve"), BundleReport, timeout_s=HANG_S
         )
