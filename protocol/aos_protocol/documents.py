@@ -84,7 +84,10 @@ class EnumType(msgspec.Struct, frozen=True):
 
 
 class Field(msgspec.Struct, frozen=True):
-    """A field of a compound type. `default` is an expression; `low_level_type` belongs to `anyValue`."""
+    """A field of a compound type. `default` is an expression; `low_level_type` belongs to `anyValue`.
+
+    The type of an array is `T[]`, or `T[E]` with an element for each value of the enum E.
+    """
 
     name: str
     type: str
@@ -106,6 +109,7 @@ class StateVariable(msgspec.Struct, frozen=True):
     """A state variable, or a value that skills may take as a parameter (`is_parameter_value`).
 
     `default_value` is an expression, `default_code` statements over `state.`; at most one is given.
+    An array with an `index_enum` has an element for each of that enum's values.
     `key_types` makes it a map from tuples of enum names or integer ranges to `type`.
     """
 
@@ -119,6 +123,8 @@ class StateVariable(msgspec.Struct, frozen=True):
     key_types: tuple[str, ...] = ()
     low_level_type: str | None = None
     type_span: Span | None = None
+    index_enum: str = ""
+    index_span: Span | None = None
 
 
 # --- code blocks ---------------------------------------------------------------------------------------

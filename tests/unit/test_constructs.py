@@ -36,6 +36,7 @@ MISUSES = {
         "room.json", '"Name": "room", "Type": "tRoom"', '"Name": "room", "Type": "«tRom"', "AOS110"
     ),
     "array": Rule("room.ef", "int steps []", "int steps «[2]", "AOS104"),
+    "array over an enum": Rule("room.ef", "int steps []", "int steps [«tRom]", "AOS110"),
     "vector<...>": Rule("room.ef", "int steps []", "«vector<Roof> steps", "AOS110"),
     "map variable": Rule("room.json", '"IsArray": true,', '"Parameters": ["«(0,3)"],', "AOS106"),
     "anyValue": Rule(

@@ -17,6 +17,7 @@ from aos_registry.assembly import Assembly, assemble
 from aos_registry.check.blocks import DYNAMIC, Block, environment_blocks, skill_blocks
 from aos_registry.check.model_code import read_block
 from aos_registry.check.scope import STATE_COPIES, Scope
+from aos_registry.documents.document import array_type
 from aos_registry.load import read_bundle_files
 from aos_registry.reading import read_documents
 from aos_runtime.cpp_keywords import CPP_KEYWORDS, SPECIAL_NAMES
@@ -158,6 +159,7 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
         for variable in environment.variables:
             yield declared(SymbolKind.VARIABLE, variable.name, variable.span)
             yield from typed(variable.type, variable.type_span if variable.type in types else None)
+            yield from typed(variable.index_enum, variable.index_span)
     for model in assembly.models.values():
         yield declared(SymbolKind.SKILL, model.name, Span(model.span.file, 1, 1))
         for parameter in model.parameters:
@@ -246,7 +248,7 @@ class _BlockNames:
             if part not in types:
                 return
             yield from self._part(Symbol(SymbolKind.FIELD, part, kind), mention, index)
-            kind = types[part]
+            kind, _, _ = array_type(types[part])
 
     def _part(self, symbol: Symbol, mention: Mention, index: int) -> Iterator[Occurrence]:
         """The place of a path's part: the words of the text between its start and its end, in order."""

@@ -146,6 +146,9 @@ def _variable() -> Schema:
         Default=said(expression(), "The value at the start: an expression."),
         DefaultCode=said(CODE, "Statements that set the value at the start."),
         IsArray=TRUTH,
+        IndexedBy=said(
+            TEXT, "Ours: makes the variable an array with an element for each value of this enum."
+        ),
         IsActionParameterValue=said(TRUTH, "A constant that skills may take as a parameter."),
         Parameters=said(list_of(TEXT), "Makes the variable a map: enum names, and ranges (start,stop,step)."),
         IncludeParametersCode=said(

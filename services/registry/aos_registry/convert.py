@@ -24,7 +24,9 @@ _SUFFIXES = {
     DocumentKind.MAPPING: ".am",
     DocumentKind.LOW_LEVEL: ".lf",
 }
-_NOT_COMPARED = frozenset({"span", "type_span", "value_spans", "source_span", "response_variable_span"})
+_NOT_COMPARED = frozenset(
+    {"span", "index_span", "type_span", "value_spans", "source_span", "response_variable_span"}
+)
 
 
 class Dialect(StrEnum):

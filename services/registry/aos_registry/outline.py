@@ -64,7 +64,7 @@ def _environment(environment: Environment) -> Iterator[str]:
 def _variable(variable: StateVariable) -> Iterator[str]:
     kind = "action parameter value" if variable.is_parameter_value else "variable"
     keys = f" by ({', '.join(variable.key_types)})" if variable.key_types else ""
-    array = "[]" if variable.is_array else ""
+    array = f"[{variable.index_enum}]" if variable.is_array else ""
     default = f" = {variable.default_value.code}" if variable.default_value else ""
     yield _placed(f"{kind} {variable.type}{array} {variable.name}{keys}{default}", variable.span)
     yield from _code(variable.default_code)

@@ -9,6 +9,7 @@ from aos_protocol.documents import CompoundType, Environment, SkillModel
 from aos_protocol.findings import Findings
 from aos_protocol.spelling import quoted
 from aos_registry.check.scope import Scope
+from aos_registry.documents.document import array_type
 from aos_runtime.cpp_keywords import CPP_KEYWORDS
 
 __all__ = ["check_environment_names", "check_skill_declarations"]
@@ -26,12 +27,15 @@ def check_environment_names(environment: Environment, scope: Scope, findings: Fi
     for compound in environment.compounds:
         _check_unique([(f.name, f.span) for f in compound.fields], f"a field of {compound.name}", findings)
         for field in compound.fields:
-            _check_type(field.type, field.type_span or field.span, scope, findings)
+            element, _, index_enum = array_type(field.type)
+            _check_type(element, field.type_span or field.span, scope, findings)
             _check_low_level_type(field.low_level_type, field.span, scope, findings)
+            _check_index(index_enum, field.type_span or field.span, scope, findings)
     _check_cycles(environment.compounds, scope, findings)
     for variable in environment.variables:
         _check_type(variable.type, variable.type_span or variable.span, scope, findings)
         _check_low_level_type(variable.low_level_type, variable.span, scope, findings)
+        _check_index(variable.index_enum, variable.index_span or variable.span, scope, findings)
         for key in variable.key_types:
             if not key.startswith("(") and key not in scope.enums:
                 otherwise = "A key is an enum or (start,stop,step)"
@@ -78,6 +82,15 @@ def _check_type(name: str, span: Span, scope: Scope, findings: Findings) -> bool
     otherwise = f"The types are {quoted(scope.type_names)}"
     findings.unknown(unknown, scope.type_names, f"unknown type `{unknown}`", span, otherwise)
     return False
+
+
+def _check_index(enum: str, span: Span, scope: Scope, findings: Findings) -> None:
+    """An array is indexed by an enum of the environment."""
+    if enum and enum not in scope.enums and (enum in scope.type_names or not scope.unknown_type_name(enum)):
+        message = f"`{enum}` is no enum, and cannot be what an array is indexed by"
+        findings.error("AOS110", message, span, f"The enums are {quoted(scope.enums)}" if scope.enums else "")
+    elif enum and enum not in scope.enums:
+        findings.unknown(enum, scope.enums, f"unknown enum `{enum}`", span)
 
 
 def _check_low_level_type(name: str | None, span: Span, scope: Scope, findings: Findings) -> None:

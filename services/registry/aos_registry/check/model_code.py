@@ -10,9 +10,10 @@ import msgspec
 from aos_protocol.diagnostics import Mend, Severity, Span
 from aos_protocol.documents import Assignment, Environment, SkillModel
 from aos_protocol.findings import Findings
-from aos_protocol.spelling import quoted
+from aos_protocol.spelling import nearest, quoted
 from aos_registry.check.blocks import Block, environment_blocks, skill_blocks
 from aos_registry.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
+from aos_registry.check.subscripts import subscripts_of
 from aos_registry.check.weights import check_weights
 from aos_runtime.cpp_keywords import COMPILER_NAMES, SPECIAL_NAMES
 from aos_runtime.document_code import absent_skills
@@ -298,10 +299,13 @@ class _BlockCheck:
 
     def _check_fields(self, mention: Mention, kind: ValueType, *, start: int) -> None:
         """Walks an access path through compound types; stops where a type is not of the documents."""
-        is_container = kind.is_container
-        name = kind.name
+        name, is_container, index_enum = kind.name, kind.is_container, kind.index_enum
+        subscripts = subscripts_of(mention, self._cpp.code)
         for part in mention.path[start:]:
+            subscript = next(subscripts, None) if part == "[]" else None
             if part == "[]" and is_container:
+                if index_enum in self._scope.enums and subscript is not None:
+                    self._check_index(subscript, index_enum)
                 is_container = False
                 continue
             if is_container or part == "[]":
@@ -319,7 +323,21 @@ class _BlockCheck:
                 message = f"the type {name} has no field `{part}`"
                 self._unknown(part, fields, message, span, _listing("It has", fields))
                 return
-            name = fields[part]
+            inner = ValueType.of(fields[part])
+            name, is_container, index_enum = inner.name, inner.is_container, inner.index_enum
+
+    def _check_index(self, subscript: Extent, enum: str) -> None:
+        """An array over an enum is indexed by its values, or by numbers."""
+        name = self._cpp.code[subscript.start : subscript.end]
+        values, owner = self._scope.enums[enum].values, self._scope.enum_values.get(name)
+        if name in values or name in self._locals or name in self._declared or name in self._block.names:
+            return
+        if owner is not None:
+            message = f"`{name}` is a {owner}, and this array is indexed by {enum}"
+            hint = _listing(f"The values of {enum} are", values)
+            self._findings.error("AOS110", message, self._span(subscript), hint)
+        elif nearest(name, values):
+            self._unknown(name, values, f"{enum} has no `{name}`", self._span(subscript))
 
     def _unknown(
         self, name: str, known: Iterable[str], message: str, span: Span, otherwise: str = ""

@@ -9,6 +9,7 @@ import msgspec
 
 from aos_protocol.documents import CompoundType, EnumType, SkillModel, StateVariable
 from aos_registry.assembly import Assembly
+from aos_registry.documents.document import array_type
 
 __all__ = ["NUMBERS", "PRIMITIVES", "STATE_COPIES", "Scope", "ValueType", "names_in_type"]
 
@@ -25,10 +26,19 @@ _LIBRARY_TYPES = frozenset({
 
 
 class ValueType(msgspec.Struct, frozen=True):
-    """The type of an expression as far as the documents say: a type's name, and whether it is a container."""
+    """The type of an expression as far as the documents say: a type's name, and whether it is a container.
+
+    `index_enum` is the enum that an array is indexed by.
+    """
 
     name: str
     is_container: bool = False
+    index_enum: str = ""
+
+    @classmethod
+    def of(cls, type_name: str) -> ValueType:
+        """The type of a field or a name."""
+        return cls(*array_type(type_name))
 
 
 class Scope(msgspec.Struct, frozen=True):
@@ -79,7 +89,8 @@ class Scope(msgspec.Struct, frozen=True):
     def state_member(self, name: str) -> ValueType | None:
         """The type of `state.<name>`: a variable, or one of the lists that every compound and enum has."""
         if variable := self.variables.get(name):
-            return ValueType(variable.type, variable.is_array or bool(variable.key_types))
+            is_container = variable.is_array or bool(variable.key_types)
+            return ValueType(variable.type, is_container, variable.index_enum)
         for suffix in ("ObjectsForActions", "Objects"):
             owner = name.removesuffix(suffix)
             if owner != name and (owner in self.compounds or owner in self.enums):

@@ -14,9 +14,10 @@ from aos_protocol.findings import Findings
 from aos_registry.documents.source import Text
 from aos_runtime.cpp_keywords import COMPILER_NAMES, SPECIAL_NAMES
 
-__all__ = ["Document", "DocumentKind", "check_name", "enum_type", "normal_type"]
+__all__ = ["Document", "DocumentKind", "array_type", "check_name", "enum_type", "normal_type"]
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}")
+_ARRAY = re.compile(r"(.*\S)\s*\[\s*([A-Za-z_]\w*|)\s*\]\s*")
 _TYPE_SPELLINGS = {
     "Bool": "bool",
     "boolean": "bool",
@@ -78,6 +79,12 @@ def enum_type(name: Text, values: Iterable[Text], findings: Findings) -> EnumTyp
     values = tuple(value for value in values if check_name(value, "an enum value", findings) or value.text)
     texts, spans = tuple(value.text for value in values), tuple(value.span for value in values)
     return EnumType(name.text, texts, name.span, spans)
+
+
+def array_type(type_name: str) -> tuple[str, bool, str]:
+    """Of `T[E]`, `T[]` or `T`: the element's type, whether it is an array, and the enum that indexes it."""
+    match = _ARRAY.fullmatch(type_name)
+    return (match[1], True, match[2]) if match is not None else (type_name, False, "")
 
 
 def normal_type(name: Text, findings: Findings) -> str:

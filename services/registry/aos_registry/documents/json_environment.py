@@ -20,7 +20,7 @@ from aos_protocol.documents import (
     StateVariable,
 )
 from aos_registry.documents.code import dedented, guarded
-from aos_registry.documents.document import check_name, enum_type, normal_type
+from aos_registry.documents.document import array_type, check_name, enum_type, normal_type
 from aos_registry.documents.json_blocks import read_block
 from aos_registry.documents.json_record import Record
 
@@ -144,6 +144,7 @@ def _variable(record: Record) -> StateVariable | None:
     value, code = record.expression("Default"), record.code("DefaultCode")
     is_array = record.boolean("IsArray")
     is_parameter_value = record.boolean("IsActionParameterValue")
+    index = record.text("IndexedBy")
     keys = record.texts("Parameters")
     code = _where_included(record, code)
     type_name = normal_type(kind, record.findings) if kind else ""
@@ -160,17 +161,22 @@ def _variable(record: Record) -> StateVariable | None:
         if key.text.startswith("(") and not _RANGE.fullmatch(key.text):
             hint = "Write (start,stop,step)"
             record.findings.error("AOS106", f"{key.text!r} is no range", key.span, hint)
+    element, is_array_type, index_enum = array_type(type_name)
+    if index is not None:
+        index_enum = index.text
     return StateVariable(
         name=name.text,
-        type=type_name.removesuffix("[]").rstrip(),
+        type=element,
         span=name.span,
-        is_array=is_array or type_name.endswith("[]"),
+        is_array=is_array or is_array_type or index is not None,
         is_parameter_value=is_parameter_value,
         default_value=value,
         default_code=code,
         key_types=tuple(key.text for key in keys),
         low_level_type=low_level_type,
         type_span=kind.span,
+        index_enum=index_enum,
+        index_span=index.span if index is not None else kind.span if index_enum else None,
     )
 
 

@@ -14,7 +14,7 @@ from aos_registry.documents.source import Text
 __all__ = ["Declaration", "read_declaration", "read_number", "read_truth"]
 
 _DECLARATION = re.compile(
-    r"((?:(?:unsigned|signed|long|short)\s+)*[A-Za-z_][\w:]*(?:\s*<.*>)?(?:\s*\[\s*\])?)(\s+)([^\s\[]+)(\s*)"
+    r"((?:(?:unsigned|signed|long|short)\s+)*[A-Za-z_][\w:]*(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[]+)(\s*)"
 )
 _TRUTHS = {"true": True, "false": False}
 

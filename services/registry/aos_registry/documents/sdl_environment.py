@@ -16,7 +16,7 @@ from aos_protocol.documents import (
 )
 from aos_protocol.findings import Findings
 from aos_registry.documents.code import expression
-from aos_registry.documents.document import check_name, enum_type
+from aos_registry.documents.document import array_type, check_name, enum_type
 from aos_registry.documents.sdl_blocks import read_block
 from aos_registry.documents.sdl_declaration import (
     Declaration,
@@ -33,8 +33,8 @@ __all__ = ["read_environment"]
 _KEY = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)|\w+")
 _KEYS = re.compile(rf"(?:{_KEY.pattern})(?:\s*,\s*(?:{_KEY.pattern}))*")
 _LOW_LEVEL_TYPE = re.compile(r"(?:^|(?<=\s)|(?<=\]))of\s+([A-Za-z_]\w*)(?:\s+|$)")
-_ARRAY_MARK = re.compile(r"\[\s*\]\s*")
-_ARRAY_MARKS = {"[]": True, "true": True, "false": False, "": False}
+_ARRAY_MARK = re.compile(r"\[\s*([A-Za-z_]\w*|)\s*\]\s*")
+_ARRAY_WORDS = {"true": True, "false": False, "": False}
 
 
 def read_environment(sections: Sections, project: str, span: Span, findings: Findings) -> Environment:
@@ -141,7 +141,7 @@ def _field(part: Part, findings: Findings) -> Field | None:
     rest, low_level_type = _low_level_type(declaration)
     kind = declaration.type
     if (mark := _ARRAY_MARK.match(rest.text)) is not None:
-        kind, rest = f"{kind}[]", rest.after(mark.end())
+        kind, rest = f"{kind}[{mark[1]}]", rest.after(mark.end())
     if rest.text.startswith("["):
         hint = f"Write `variable: vector<{kind}> {declaration.name.text}`"
         findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
@@ -176,27 +176,32 @@ def _variable(section: Section, findings: Findings) -> StateVariable | None:
     if declaration is None:
         return None
     rest, low_level_type = _low_level_type(declaration)
-    mark = rest.text.replace(" ", "").lower()
-    if mark not in _ARRAY_MARKS:
-        hint = "After the name stands `[]` for an array, or nothing; values go into `code:`"
+    mark = _ARRAY_MARK.fullmatch(rest.text)
+    if mark is None and rest.text.lower() not in _ARRAY_WORDS:
+        hint = "After the name stands `[]` or `[ENUM]` for an array, or nothing; values go into `code:`"
         findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
     code, value = section.last("code", findings), section.last("default_value", findings)
     default_value = value.code() if value is not None else None
     if code is not None and default_value is not None:
         findings.error("AOS106", "a variable has `default_value:` or `code:`, not both", code.span)
     keys = section.last("key_types", findings)
-    kind = declaration.type
+    kind, is_array, index_enum = array_type(declaration.type)
+    index_span = declaration.type_text.after(declaration.type_text.text.find("[") + 1).strip().span
+    if mark is not None:
+        index_enum, index_span = mark[1] or index_enum, rest.after(mark.start(1)).span
     return StateVariable(
         name=declaration.name.text,
-        type=kind.replace(" ", "").removesuffix("[]") if kind.rstrip().endswith("]") else kind,
+        type=kind,
         span=declaration.name.span,
-        is_array=_ARRAY_MARKS.get(mark, False) or kind.rstrip().endswith("]"),
+        is_array=is_array or mark is not None or _ARRAY_WORDS.get(rest.text.lower(), False),
         is_parameter_value=is_parameter_value,
         default_value=expression(default_value, drop_semicolon=True) if default_value else None,
         default_code=code.code() if code is not None else None,
         key_types=_key_types(keys.value, findings) if keys is not None else (),
         low_level_type=low_level_type,
         type_span=declaration.type_text.span,
+        index_enum=index_enum,
+        index_span=index_span if index_enum else None,
     )
 
 

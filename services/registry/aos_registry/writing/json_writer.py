@@ -99,6 +99,7 @@ def _variable(variable: StateVariable) -> dict[str, Any]:
         "Type": variable.type,
         **_given(
             IsArray=variable.is_array,
+            IndexedBy=variable.index_enum,
             IsActionParameterValue=variable.is_parameter_value,
             Parameters=list(variable.key_types),
             UnderlineLocalVariableType=variable.low_level_type,

@@ -15,6 +15,8 @@ _PLACE = re.compile(
     r"(?P<file>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+):\s+"
     r"(?P<kind>fatal error|error|warning|note|required)\b:?\s*(?P<text>.*)"
 )
+_ANOTHER_ENUM = re.compile(r"deleted .*(?:Named<.*operator\[\]|operator `\[\]`)")
+"""What g++ and clang say of the one deleted operator that documents can meet, see named_array.hpp."""
 _FAULTS = ("error", "fatal error")
 
 
@@ -97,6 +99,11 @@ def _plain(text: str) -> tuple[str, str]:
     text = re.sub(r"\s*\[-[\w+=-]+\]$", "", text).replace("'", "`")
     text = re.sub(r"there are no arguments to (`[^`]+`) that depend on .*", r"\1 was not declared", text)
     text = text.replace("was not declared in this scope", "was not declared")
+    if _ANOTHER_ENUM.search(text):
+        return (
+            "this array is indexed by another enum",
+            "Use a value of its own enum, or a number: `int(value)`",
+        )
     message, separator, suggestion = text.partition("; ")
     if separator and suggestion.startswith("did you mean"):
         return message, suggestion[0].upper() + suggestion[1:]

@@ -119,6 +119,7 @@ def _laid_out(program: Program) -> tuple[str, dict[int, tuple[Origin, ...]]]:
         before="" if program.is_one_state else "const ",
         flags_type=_flags_type(program),
         has_tables=any(variable.axes for variable in program.variables),
+        has_named_arrays=_has_named_arrays(program),
         has_rollout_policy=any(skill.rollout_policy for skill in program.skills),
         draws_enums=any("AOS.SampleDiscrete(-1, " in piece.text for piece in program.pieces),
         has_corrections=any(skill.is_corrected for skill in program.skills),
@@ -279,6 +280,12 @@ def _saved_variables(program: Program) -> tuple[Variable, ...]:
 
 def _members_of(objects: ObjectList, state: str) -> list[str]:
     return [f"&{state}::{name}" for name in objects.members]
+
+
+def _has_named_arrays(program: Program) -> bool:
+    types = [field.type for compound in program.compounds for field in compound.fields]
+    types += [variable.type for variable in program.variables]
+    return any("aos::Named<" in each for each in types)
 
 
 def _state_digest(program: Program) -> str:

@@ -91,7 +91,8 @@ def lower_variables(
             hint = "Actions are the same in all states; let an initial belief draw another variable"
             findings.error("AOS124", message, variable.span, hint)
         axes = tuple(types.axis(key, variable.span) for key in variable.key_types)
-        stored = types.stored(variable.type, variable.name, variable.span, is_array=variable.is_array)
+        array = f"[{variable.index_enum}]" if variable.is_array else ""
+        stored = types.stored(f"{variable.type}{array}", variable.name, variable.span)
         if axes:
             stored = f"aos::Table<{stored}, {', '.join(axis.type for axis in axes)}>"
         value, code = variable.default_value, variable.default_code

@@ -18,6 +18,7 @@ _PLAIN = frozenset({
     "long long", "short", "size_t", "uint16_t", "uint32_t", "uint64_t", "uint8_t", "unsigned",
     "unsigned char", "unsigned int", "unsigned long",
 })  # fmt: skip
+_OVER_ENUM = re.compile(r"(.+)\[([A-Za-z_]\w*)\]")
 _RANGE = re.compile(r"\(\s*(-?\d+)\s*,\s*(-?\d+)\s*,\s*([1-9]\d*)\s*\)")
 
 
@@ -66,9 +67,9 @@ class Types:
         self._capacities = capacities
         self._findings = findings
 
-    def stored(self, text: str, name: str, span: Span, *, is_array: bool = False) -> str:
+    def stored(self, text: str, name: str, span: Span) -> str:
         """The type of a variable or field called `name`; AOS110 or AOS124, and `int`, if there is none."""
-        return self._stored(f"{text}[]" if is_array else text, name, span, level=0)
+        return self._stored(text, name, span, level=0)
 
     def plain(self, text: str, span: Span) -> str:
         """The type of a parameter or a temporary variable, which is not bound to fixed storage."""
@@ -76,6 +77,8 @@ class Types:
         inner = _element_type(text)
         if inner is not None:
             return f"std::vector<{self.plain(inner, span)}>"
+        if (over := _OVER_ENUM.fullmatch(text)) is not None:
+            return self._over_enum(over[2], self.plain(over[1], span), span)
         if text == "string":
             return "std::string"
         if text in self._named or text in _PLAIN:
@@ -103,6 +106,8 @@ class Types:
         if inner is not None:
             capacity = self._capacities.capacity(name, level)
             return f"aos::Vector<{self._stored(inner, name, span, level + 1)}, {capacity}>"
+        if (over := _OVER_ENUM.fullmatch(text)) is not None:
+            return self._over_enum(over[2], self._stored(over[1], name, span, level + 1), span)
         array = re.fullmatch(r"array<(.+),\s*(\d+)\s*>", text)
         if array is not None:
             return f"std::array<{self._stored(array[1], name, span, level + 1)}, {array[2]}>"
@@ -116,6 +121,15 @@ class Types:
         else:
             self._unknown(text, span)
         return "int"
+
+    def _over_enum(self, enum: str, element: str, span: Span) -> str:
+        """The type of an array over an enum."""
+        if enum not in self._enums:
+            known = ", ".join(sorted(self._enums)) or "none"
+            message = f"`{enum}` is no enum, and cannot be what an array is indexed by"
+            self._findings.error("AOS110", message, span, f"The enums are: {known}")
+            return "int"
+        return f"aos::Named<{self._qualified(enum)}, {len(self._enums[enum].values)}, {element}>"
 
     def _qualified(self, name: str) -> str:
         return f"model::{name}" if name in self._named and name in self._members else name

@@ -85,6 +85,11 @@ class Field(msgspec.Struct, frozen=True):
     type: str
     default: Piece | None = None
 
+    @property
+    def is_over_enum(self) -> bool:
+        """Whether it is an array over an enum, whose default may be that of each element."""
+        return self.type.startswith("aos::Named<")
+
 
 class Compound(msgspec.Struct, frozen=True):
     name: str
@@ -114,6 +119,11 @@ class Variable(msgspec.Struct, frozen=True):
     default_code: Piece | None = None
     axes: tuple[Axis, ...] = ()
     is_relevant: bool = True
+
+    @property
+    def is_over_enum(self) -> bool:
+        """Whether it is an array over an enum, whose default may be that of each element."""
+        return self.type.startswith("aos::Named<")
 
 
 class ObjectList(msgspec.Struct, frozen=True):

@@ -40,6 +40,9 @@ concept Sequence = requires(const T& value) {
   value.size();
   value.begin();
 } && !std::same_as<T, Text> && !std::same_as<T, std::string>;
+// An array over an enum. Its elements have the names of the enum's values.
+template <class T>
+concept Enumerated = requires { typename T::index_enum; };
 template <class T>
 concept Mapping = requires { typename T::mapped_type; };
 
@@ -137,6 +140,14 @@ void visit_value(const T& value, ValueVisitor& visitor) {
     visitor.begin_mapping();
     for (const auto& [key, element] : value) {
       visitor.entry(key_text(key));
+      visit_value(element, visitor);
+    }
+    visitor.end();
+  } else if constexpr (Enumerated<T>) {
+    visitor.begin_mapping();
+    int index = 0;
+    for (const auto& element : value) {
+      visitor.entry(name_of(static_cast<typename T::index_enum>(index++)));
       visit_value(element, visitor);
     }
     visitor.end();

@@ -40,6 +40,8 @@ class StateReader {
       T::aos_fields(value, [this](const char*, auto& member) { read(member); });
     } else if constexpr (Mapping<T>) {
       for (auto& entry : value) read(entry.second);
+    } else if constexpr (Enumerated<T>) {
+      for (auto& element : value) read(element);
     } else if constexpr (std::derived_from<T, std::vector<bool>>) {
       value.resize(static_cast<std::size_t>(next()));
       for (auto element : value) element = next() != 0;

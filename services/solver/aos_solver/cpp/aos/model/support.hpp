@@ -18,6 +18,7 @@
 #include "aos/base/random.hpp"
 #include "aos/model/containers.hpp"
 #include "aos/model/grounding.hpp"
+#include "aos/model/named_array.hpp"
 #include "aos/model/reporting.hpp"
 #include "aos/model/step.hpp"
 #include "aos/model/text.hpp"
@@ -32,6 +33,9 @@ void out_of_range(std::ptrdiff_t index, std::size_t size) {
 void over_capacity(std::size_t size, std::size_t max) {
   const std::string holds = "; its state variable holds " + std::to_string(max);
   throw ModelFault{"AOS215", "a vector of " + std::to_string(size) + " elements" + holds};
+}
+void wrong_length(std::size_t given, std::size_t size) {
+  throw ModelFault{"AOS215", "a list of " + std::to_string(given) + " for an array over an enum of " + std::to_string(size) + " values"};
 }
 void bad_weights(const char* text) { throw ModelFault{"AOS215", text}; }
 void bad_distribution(const char* text) { throw ModelFault{"AOS215", text}; }

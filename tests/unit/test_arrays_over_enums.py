@@ -1,0 +1,149 @@
+"""Arrays over an enum: `state.at[Soda]`, in documents, in emitted models and in what people see."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from scripted_models import ScriptedModel, scripted, text_project
+
+from aos_protocol.diagnostics import Diagnostic
+from aos_registry.convert import Dialect, convert, without_origins
+from aos_registry.documents.document import array_type
+from aos_registry.load import load_files
+from aos_registry.outline import outline
+
+ENVIRONMENT = """project: shop
+horizon: 5
+define_type: Item
+enum_members: Soda, Chips, Tea
+define_type: Place
+enum_members: Shelf, Table, Hand
+define_type: Robot
+variable: int seen [Item] 1
+variable: bool heavy [Item] {true, false, true}
+state_variable: Place at [Item]
+default_value: Shelf
+state_variable: float price [Item]
+code:
+state.price = {1.5, 2.5, 3};
+state_variable: vector<int> rows [Item]
+code:
+state.rows[Tea] = {7, 8};
+state_variable: Robot robot
+action_parameter: Item soda
+code:
+state.soda = Soda;
+initial_belief:
+state.at[Tea] = AOS.Bernoulli(0.5) ? Table : Shelf;
+reward_code:
+if (state.at[Soda] == Hand) __reward = 1;
+"""
+TAKE = """project: shop
+parameter: Item item
+dynamic_model:
+Place before = state.at[item];
+state__.at[item] = Hand;
+for (Item each : state.ItemObjects) state__.robot.seen[each] += state.at[each] == Table ? 10 : 0;
+for (int i = 0; i < 3; i++) if (state__.robot.heavy[i]) state__.robot.seen[i]++;
+vector<float> prices = state.price;
+state__.price[1] = accumulate(prices.begin(), prices.end(), 0.0f);
+state__.price[1] += count(state.at.begin(), state.at.end(), Shelf);
+state__.rows[Tea].push_back(before);
+__moduleResponse = before == Shelf ? taken : again;
+"""
+LATER = """project: shop
+dynamic_model:
+state__.at = {Table, Table};
+"""
+FILES = {"shop.ef": ENVIRONMENT, "take.sd": TAKE, "later.sd": LATER}
+
+
+def files(**changed: str) -> dict[str, bytes]:
+    """The bundle; `environment="OLD -> NEW"` replaces a text of the environment."""
+    old, _, new = changed.get("environment", " -> ").partition(" -> ")
+    assert old in ENVIRONMENT
+    return {name: text.replace(old, new, 1).encode() for name, text in FILES.items()}
+
+
+@pytest.fixture(scope="module")
+def model(cache_dir: Path) -> ScriptedModel:
+    return scripted(text_project(FILES), cache_dir)
+
+
+def errors(environment: str) -> list[Diagnostic]:
+    return [each for each in load_files(files(environment=environment)).diagnostics if each.is_error]
+
+
+def test_elements_exist_from_the_start_and_have_the_names_of_the_enums_values(model: ScriptedModel) -> None:
+    state = model.play(initial="1").initial["state"]
+    assert [state[f"at[{item}]"] for item in ("Soda", "Chips", "Tea")] == ["Shelf", "Shelf", "Table"]
+    assert [state[f"price[{item}]"] for item in ("Soda", "Chips", "Tea")] == ["1.5", "2.5", "3"]
+    assert [state[f"robot.seen[{item}]"] for item in ("Soda", "Tea")] == ["1", "1"]
+    assert [state[f"robot.heavy[{item}]"] for item in ("Soda", "Chips")] == ["true", "false"]
+    assert [state["rows[Tea][0]"], state["rows[Tea][1]"]] == ["7", "8"]
+
+
+def test_values_and_numbers_index_them_and_they_read_like_arrays(model: ScriptedModel) -> None:
+    played = model.play("take(item=soda)", "take(item=soda)", initial="1")
+    assert played.observations == ["taken", "again"]
+    assert played.values("at[Soda]") == ["Shelf", "Hand", "Hand"]
+    assert played.values("robot.seen[Tea]") == ["1", "12", "23"]
+    assert played.values("robot.seen[Chips]") == ["1", "1", "1"]
+    assert played.values("price[Chips]") == ["2.5", "9", "14.5"]
+    assert played.steps[0]["state"]["rows[Tea][2]"] == "0"
+
+
+def test_a_list_of_another_length_is_a_fault(model: ScriptedModel) -> None:
+    fault = model.fault("later", initial="1")
+    assert "a list of 2 for an array over an enum of 3 values" in json.dumps(fault)
+
+
+def test_all_dialects_say_the_same() -> None:
+    bundle = load_files(files())
+    assert bundle.project is not None, bundle.diagnostics
+    assert "variable Place[Item] at = Shelf" in outline(bundle.project)
+    texts, findings = convert(files(), Dialect.JSON)
+    assert findings == ()
+    assert '"IndexedBy": "Item"' in texts["environment.ef.json"]
+    as_json = {name: text.encode() for name, text in texts.items()}
+    papers = {
+        name: data.replace(b'"PlpMain"', b'"GsdlMain"').replace(b'"PLP"', b'"GSDL"')
+        for name, data in as_json.items()
+    }
+    back, _ = convert(as_json, Dialect.SDL)
+    assert "state_variable: Place at [Item]" in back["environment.ef"]
+    for other in (as_json, papers, {name: text.encode() for name, text in back.items()}):
+        project = load_files(other).project
+        assert project is not None
+        assert without_origins(project) == without_origins(bundle.project)
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("int", ("int", False, "")),
+        ("int[]", ("int", True, "")),
+        ("vector<int> [ Item ]", ("vector<int>", True, "Item")),
+    ],
+)
+def test_the_type_of_an_array_says_its_index(written: str, read: tuple[str, bool, str]) -> None:
+    assert array_type(written) == read
+
+
+@pytest.mark.parametrize(
+    ("change", "place", "hint"),
+    [
+        ("at [Item] -> at [Itm]", "shop.ef:10:27", "Did you mean `Item`?"),
+        ("at [Item] -> at [Robot]", "shop.ef:10:27", "The enums are `Item`, `Place`"),
+        ("seen [Item] -> seen [Robot]", "shop.ef:8:11", "The enums are `Item`, `Place`"),
+        ("at[Soda] == -> at[Sodda] ==", "shop.ef:25:14", "Did you mean `Soda`?"),
+        ("at[Soda] == -> at[ Table ] ==", "shop.ef:25:15", "The values of Item are `Soda`, `Chips`, `Tea`"),
+        ("state.at[Soda] == Hand -> state.robot.seen[Hand] == 1", "shop.ef:25:22", "The values of Item are"),
+    ],
+)
+def test_an_index_that_is_of_no_enum_or_of_another_is_an_error(change: str, place: str, hint: str) -> None:
+    (error,) = errors(change)
+    assert (error.code, str(error.span)) == ("AOS110", place)
+    assert error.hint.startswith(hint)
