@@ -129,6 +129,11 @@ def mapping_text(*responses: str, variable: str = "", project: str = "test") -> 
     return "\n".join([f"project: {project}", *rules, activation, local, ending])
 
 
+def mapping_of_model(code: str) -> str:
+    """The mapping of a model with this code: with `done` if it gives a response, else without rules."""
+    return mapping_text(*(["done"] if "__moduleResponse" in code else []))
+
+
 def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
     """The emitted model of a project without errors."""
     program, diagnostics = lower(project)

@@ -9,6 +9,7 @@ Source: the paper, sections 3.2.1 and 3.2.2; the AOS documentation manual, versi
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 
 import msgspec
@@ -16,6 +17,7 @@ import msgspec
 from aos_protocol.diagnostics import Span
 
 __all__ = [
+    "ACTIVATION_KINDS",
     "AbstractionMapping",
     "Activation",
     "ActivationField",
@@ -297,8 +299,19 @@ class ActivationField(msgspec.Struct, frozen=True):
     value: Snippet
 
 
+ACTIVATION_KINDS: Mapping[str, str] = {
+    "ros_service": "RosService",
+    "ros_action": "RosAction",
+    "skill": "Skill",
+}
+"""The kinds of activation with their words in JSON; `ros_action` and `skill` are ours.
+
+Those of ROS name the type of what they call. Whatever the kind, the path's adapter is called.
+"""
+
+
 class Activation(msgspec.Struct, frozen=True):
-    """How to run the skill: the kind (`ros_service`, or our `skill`), the path, the request's fields."""
+    """How to run the skill: the kind (one of `ACTIVATION_KINDS`), the path, the request's fields."""
 
     kind: str
     path: str

@@ -30,6 +30,14 @@ from aos_runtime.children import Child
 
 ROBOT = """
 import asyncio, time
+from enum import Enum
+from types import SimpleNamespace
+
+import numpy as np
+
+from aos_runtime.adapters import Observed
+
+Side = Enum("Side", {"LEFT": "left"})
 
 async def drive(call, x, y=0.0):
     call.progress(0.5, "half way")
@@ -53,6 +61,29 @@ async def fail(call):
 
 async def odd(call):
     return 3
+
+async def measure(call):
+    call.progress(np.float32(0.5), "half way")
+    call.publish("/scan", ranges=np.arange(3.0), is_near=np.bool_(True))
+    return {
+        "depth": np.float32(0.5), "count": np.int64(3), "cells": np.eye(2, dtype=int), "side": Side.LEFT,
+        "pose": SimpleNamespace(x=np.float64(1.5)), "seen": {"cup", }, "sure": np.bool_(True),
+    }
+
+async def unsendable(call):
+    return {"ok": True, "picture": iter([])}
+
+async def huge(call):
+    return {"picture": bytes(17_000_000)}
+
+async def too_far(call):
+    return {"ticks": 2 ** 70}
+
+async def says_too_much(call):
+    call.publish("/scan", made_by=measure)
+
+async def nonsense(call):
+    return Observed(3)
 
 class Arm:
     def __init__(self):
@@ -151,11 +182,28 @@ async def test_methods_of_a_class_share_one_object(robot: Robot) -> None:
     assert (await robot.call("/count", 2)).fields == {"picks": 1}
 
 
+async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot) -> None:
+    await robot.start(measure="robot.py:measure")
+    scans = robot.bus.listen(robot.keys.topic("/scan"), TopicMessage)
+    async with asyncio.timeout(HANG_S), scans:
+        result = await robot.call("/measure")
+        assert (await anext(scans))[1].fields == {"ranges": [0.0, 1.0, 2.0], "is_near": True}
+    assert result.fields == {
+        "depth": 0.5, "count": 3, "cells": [[1, 0], [0, 1]], "side": "left", "pose": {"x": 1.5},
+        "seen": ["cup"], "sure": True,
+    }  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("function", "fields", "code", "text"),
     [
         ("fail", {}, "AOS510", "/skill failed: RuntimeError: gripper jammed"),
         ("odd", {}, "AOS510", "/skill answered 3, which is no mapping of field names to values"),
+        ("unsendable", {}, "AOS510", "the field picture of the result of /skill cannot be sent"),
+        ("huge", {}, "AOS510", "the result of /skill has 17000005 bytes, and the bus carries 16777216"),
+        ("too_far", {}, "AOS510", "the field ticks of the result of /skill cannot be sent"),
+        ("says_too_much", {}, "AOS510", "the field made_by of a message on /scan cannot be sent"),
+        ("nonsense", {}, "AOS510", "the observation of /skill is 3, which is no word"),
         ("drive", {"z": 1}, "AOS502", "The function takes x, y; the mapping sends z"),
     ],
 )
@@ -202,7 +250,7 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
 @pytest.mark.parametrize(
     ("target", "text"),
     [
-        ("robot.py:fly", "robot.py has no fly. It has asyncio, time, drive"),
+        ("robot.py:fly", "robot.py has no fly. It has asyncio, time, Enum"),
         ("nowhere.py:drive", "there is no file"),
         ("drive", "/skill is not bound to a function. Write it as /skill: {python: my_robot.py:function}"),
         ("robot.py:time", "which cannot be called"),

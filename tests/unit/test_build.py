@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from processes import HANG_S, until_ended
-from scripted_models import bundle_project, json_text, lowered, mapping_text, text_project
+from scripted_models import bundle_project, json_text, lowered, mapping_of_model, mapping_text, text_project
 
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as build_module
@@ -35,7 +35,7 @@ BEING_BUILT = f"*.{os.getpid()}.*.building"
 def emitted_skill(code: str, home: str = HOME) -> EmittedModel:
     """A model with one skill, whose dynamic model starts in line 3 of act.sd."""
     act = f"project: test\ndynamic_model:\n{code}\n"
-    return lowered(text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text("done")}))[0]
+    return lowered(text_project({"home.ef": home, "act.sd": act, "act.am": mapping_of_model(act)}))[0]
 
 
 async def build_error(emitted: EmittedModel, cache_dir: Path, deadline_s: float | None = None) -> ModelError:
@@ -130,7 +130,7 @@ async def test_mistakes_in_json_are_told_inside_their_strings(cache_dir: Path) -
     text = json_text(document, "PLP", "act")
     # The registry knows the built-ins; the compiler has the last word about documents that it did not read.
     project = text_project({"home.ef": HOME, "act.json": text.replace("Bernouli", "Bernoulli"),
-                            "act.am": mapping_text("done")})  # fmt: skip
+                            "act.am": mapping_text()})  # fmt: skip
     error = await build_error(lowered(project)[0], cache_dir)
     line = next(n for n, content in enumerate(text.split("\n"), 1) if "int a" in content)
     # g++ points at the value, clang at the variable.

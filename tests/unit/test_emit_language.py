@@ -98,7 +98,7 @@ SKILLS = {
                                                    do="b.weight = 0; __meetPrecondition = b.weight == 0;")},
             ]},
         ),
-        ("badly", "done"),
+        (),
     ),
     "count": (
         skill_text(

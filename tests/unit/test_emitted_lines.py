@@ -40,7 +40,7 @@ def test_long_lists_go_on_in_the_next_line(bundles: Path) -> None:
         f"project: test\nhorizon: 3\ndefine_type: Place\nenum_members: {values}\nstate_variable: Place at\n"
     )
     act = "project: test\ndynamic_model:\nstate__.at = place_number_7;\n"
-    project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text("done")})
+    project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text()})
     own = own_lines(lowered(project)[0])
     assert max(map(len, own)) <= MAX_COLUMNS
     assert sum("place_number_39" in line for line in own) >= 1
@@ -57,6 +57,6 @@ def test_the_number_before_an_enums_first_is_explained_where_it_is_used(bundles:
 def test_names_of_the_emitted_model_are_no_names_of_documents() -> None:
     home = "project: test\nhorizon: 3\nstate_variable: int aos_ending\n"
     act = "project: test\ndynamic_model:\nstate__.aos_ending = 1;\n"
-    project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text("done")})
+    project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text()})
     _, findings = lower(project)
     assert "the emitted model uses the name `aos_ending`" in [each.message for each in findings]

@@ -227,3 +227,62 @@ def test_parameters_of_a_skill_that_was_left_out_are_an_error() -> None:
     ]
     pointer = "\nextrinsic_code:\nCell* cell = NULL;\nif (cell == NULL) state_.second.x = 1;\n"
     assert found(environment=ENVIRONMENT + pointer) == ()
+
+
+@pytest.mark.parametrize(
+    ("written", "message", "right"),
+    [
+        ("Bernoulli(0.1)", "unknown function `Bernoulli`", "AOS.Bernoulli"),
+        ("Bernouli(0.1)", "unknown function `Bernouli`", "AOS.Bernoulli"),
+        ("SampleNormal(0, 1)", "unknown function `SampleNormal`", "AOS.SampleNormal"),
+        ("sample_discrete({0.5, 0.5})", "unknown function `sample_discrete`", "AOS.SampleDiscrete"),
+        ("IsInitialized(steps)", "unknown function `IsInitialized`", "AOS.IsInitialized"),
+        ("AOS::Bernoulli(0.1)", "`AOS::Bernoulli` is not how AOS writes it", "AOS.Bernoulli"),
+        ("aos.bernoulli(0.1)", "unknown name `aos`", "AOS.Bernoulli"),
+    ],
+)
+def test_a_draw_that_is_not_written_as_aos_writes_it_is_told_with_the_right_words(
+    written: str, message: str, right: str
+) -> None:
+    (only,) = found(skill=SKILL.replace("state.second.x + steps", f"steps + {written}"))
+    assert (only.severity, only.code, only.message) == (Severity.ERROR, "AOS110", message)
+    assert (only.span.line, only.span.column, only.hint) == (9, 28, f"Write `{right}`")
+    assert only.mend is not None
+    assert only.mend.text == right
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "auto Bernoulli = [](double p) { return AOS.Bernoulli(p); };\nsteps + Bernoulli(0.1)",
+        "double draw = AOSUtils::Bernoulli(0.5) + AOSUtils.Bernoulli(0.5);\nsteps + draw",
+        "double level = sqrt(2.0) + round(1.5) + std::max(1, 2);\nsteps + level",
+    ],
+)
+def test_functions_of_ones_own_and_of_cpp_are_left_alone(code: str) -> None:
+    before, value = code.split("\n")
+    changed = f"{before}\nstate__.second.x = {value}"
+    assert told(skill=SKILL.replace("state__.second.x = state.second.x + steps", changed)) == []
+
+
+def test_a_model_that_never_says_what_comes_back_is_an_error_with_what_to_add() -> None:
+    (only,) = told(skill=SKILL.replace("__moduleResponse = walked;\n", ""))
+    message = "the dynamic model of walk never sets __moduleResponse, so that every response is impossible"
+    assert only == f"9 AOS117 {message}. Add `__moduleResponse = walked;`"
+    (nothing,) = told(skill=SKILL.partition("state__.second.x")[0])
+    assert message in nothing
+
+
+def test_a_text_that_the_model_never_gives_is_an_error_too() -> None:
+    text = "response_local_variable: steps\n"
+    mapping = MAPPING.replace("response: walked\nresponse_rule: True\n", text)
+    skill = SKILL.replace("__moduleResponse = walked;\n", "")
+    (only,) = told(mapping=mapping, skill=skill)
+    assert only.startswith("9 AOS117 the dynamic model of walk never sets __moduleResponseStr")
+
+
+@pytest.mark.parametrize("rules", ["", "response: DefaultObservation\nresponse_rule: True\n"])
+def test_a_skill_that_observes_nothing_needs_no_response(rules: str) -> None:
+    mapping = MAPPING.replace("response: walked\nresponse_rule: True\n", rules)
+    errors = found(mapping=mapping, skill=SKILL.replace("__moduleResponse = walked;\n", ""))
+    assert [each.message for each in errors if each.is_error] == []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 import pytest
-from scripted_models import json_text, mapping_text, text_project
+from scripted_models import json_text, mapping_of_model, mapping_text, text_project
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
@@ -33,7 +33,7 @@ ACT = "project: test\ndynamic_model:\n"
 
 def project_of(act: str = "state__.total += state.count;", home: str = "", given: str = "") -> Project:
     skill = f"{ACT}{act}\n" + (f"state_given_observation:\n{given}\n" if given else "")
-    return text_project({"home.ef": HOME + home, "act.sd": skill, "act.am": mapping_text("done")})
+    return text_project({"home.ef": HOME + home, "act.sd": skill, "act.am": mapping_of_model(skill)})
 
 
 def program_of(project: Project) -> Program:
@@ -171,7 +171,7 @@ def test_what_no_state_can_hold_is_refused(stored: str) -> None:
         "Environment",
         "environment",
     )
-    project = text_project({"home.json": text, "act.sd": ACT, "act.am": mapping_text("done")})
+    project = text_project({"home.json": text, "act.sd": ACT, "act.am": mapping_text()})
     assert [d.code for d in errors_of(project)] == ["AOS124"]
 
 
@@ -179,7 +179,7 @@ def test_the_outline_shows_the_decisions() -> None:
     text = outline(program_of(project_of()))
     assert "a particle holds\n  total: int\n" in text
     assert "  count: int { state.count = 4; }  [home.ef:9:1]" in text
-    assert "skill act() observes done\n  dynamic model\n    [act.sd:3:1]" in text
+    assert "skill act() observes nothing\n  dynamic model\n    [act.sd:3:1]" in text
 
 
 def errors_of(project: Project) -> list[Diagnostic]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from scripted_models import mapping_text, text_project
+from scripted_models import mapping_of_model, text_project
 
 from aos_solver.emission.lower_averages import averaged_draws
 
@@ -26,7 +26,7 @@ def averaged(act: str, extrinsic: str = "", special: str = "") -> list[bool]:
         {
             "home.ef": environment,
             "act.sd": f"project: test\ndynamic_model:\n{act}\n",
-            "act.am": mapping_text("done"),
+            "act.am": mapping_of_model(act),
         }
     )
     (snippet,) = [part.code for part in project.skills[0].model.dynamic_model if part.code is not None]

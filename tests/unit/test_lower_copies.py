@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from scripted_models import mapping_text, text_project
+from scripted_models import mapping_of_model, text_project
 
 from aos_solver.emission.lower_copies import Copies, copies_of
 
@@ -26,7 +26,7 @@ def copies(act: str, extrinsic: str = "") -> Copies:
         {
             "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
             "act.sd": f"project: test\ndynamic_model:\n{act}\n",
-            "act.am": mapping_text("done"),
+            "act.am": mapping_of_model(act),
         }
     )
     return copies_of(project.skills[0].model, project.environment)

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from scripted_models import bundle_project, mapping_text, text_project
+from scripted_models import bundle_project, mapping_of_model, text_project
 
 from aos_protocol.documents import Project
 from aos_solver.emission.lower_relevance import (
@@ -44,7 +44,7 @@ def idle(act: str, extrinsic: str = "", policy: str = "") -> set[str]:
         {
             "home.ef": HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else ""),
             "act.sd": f"project: test\n{rollout}dynamic_model:\n{act}\n",
-            "act.am": mapping_text("done"),
+            "act.am": mapping_of_model(act),
         }
     )
     irrelevant = irrelevant_variables(project)
@@ -124,7 +124,7 @@ def shaping(act: str) -> list[bool]:
         {
             "home.ef": HOME,
             "act.sd": f"project: test\ndynamic_model:\n{act}\n",
-            "act.am": mapping_text("done"),
+            "act.am": mapping_of_model(act),
         }
     )
     (snippet,) = [part.code for part in project.skills[0].model.dynamic_model if part.code is not None]
@@ -232,6 +232,6 @@ def acting(act: str, extrinsic: str = "", precondition: str = "") -> Project:
             "act.sd": f"project: test\n{parameter}"
             + (f"precondition:\n{precondition}\nviolate_penalty: -5\n" if precondition else "")
             + f"dynamic_model:\n{act}\n",
-            "act.am": mapping_text("done"),
+            "act.am": mapping_of_model(act),
         }
     )

@@ -75,7 +75,7 @@ def test_a_reported_draw_is_emitted_as_its_distribution(dialect: str) -> None:
         if dialect == "sdl"
         else {"look.json": json_text(skill, "PLP", "look")}
     )
-    mapping = {"look.am": f"{mapping_text('seen')}\n{LOCALS}"}
+    mapping = {"look.am": f"{mapping_text()}\n{LOCALS}"}
     project = text_project(
         {"test.json": json_text(ENVIRONMENT, "Environment", "environment"), **model, **mapping}
     )
@@ -116,7 +116,7 @@ def test_a_variable_matters_that_only_a_number_depends_on() -> None:
         {
             "test.json": json_text(environment, "Environment", "environment"),
             "look.sd": f"project: test\n\ndynamic_model:\n{dynamic}",
-            "look.am": f"{mapping_text('seen')}\n{LOCALS}",
+            "look.am": f"{mapping_text()}\n{LOCALS}",
         }
     )
     assert irrelevant_variables(project) == {"spare"}

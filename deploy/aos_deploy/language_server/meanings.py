@@ -119,7 +119,7 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
         "response": (
             "A response of the skill; the first one whose rule holds is the observation.",
             {
-                "response_rule": "A Python expression over local variables; `True` always holds.",
+                "response_rule": "A Python expression over local variables; `True` or nothing always holds.",
                 "assign_variable": "An anyValue that gets a new low-level value with this response.",
                 "value": "The new low-level value: a Python expression over local variables.",
             },
@@ -129,11 +129,11 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             {},
         ),
         "module_activation": (
-            "`ros_service` or `skill`: how the skill is called.",
+            "`ros_service`, `ros_action` or `skill`: how the skill is called.",
             {
                 "imports": _IMPORTS,
                 "path": "The service's path; the deploy file binds it to an adapter.",
-                "srv": "The ROS service's type.",
+                "srv": "The type of the ROS service or action.",
                 "max_duration": "How long the call may take, in seconds.",
                 "parameter": "A field of the call; its value stands below `code:`.",
                 "code": "The field's value: a Python expression over local variables.",

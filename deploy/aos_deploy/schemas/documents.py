@@ -20,6 +20,7 @@ from aos_deploy.schemas.parts import (
     said,
     shared_parts,
 )
+from aos_protocol.documents import ACTIVATION_KINDS
 
 __all__ = ["gsdl_schema", "plp_schema"]
 
@@ -249,10 +250,11 @@ def _mapping() -> Schema:
     activation = object_of(
         "How the skill is called.",
         RosService=object_of("A ROS service.", **service, required=("ServicePath", "ServiceName")),
-        Skill=object_of("A skill that is no ROS service.", **service, required=("ServicePath",)),
+        RosAction=object_of("A ROS action.", **service, required=("ServicePath", "ServiceName")),
+        Skill=object_of("A skill that is neither.", **service, required=("ServicePath",)),
         MaxDuration=said({"type": "number", "exclusiveMinimum": 0}, "How long the call may take, in s."),
     )
-    activation["anyOf"] = [{"required": ["RosService"]}, {"required": ["Skill"]}]
+    activation["anyOf"] = [{"required": [word]} for word in ACTIVATION_KINDS.values()]
     return object_of(
         "A skill's abstraction mapping.",
         GlueFramework={},

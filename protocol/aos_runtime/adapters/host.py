@@ -33,6 +33,7 @@ from aos_protocol.spelling import did_you_mean
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, Observed
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.ledger import Ledger
+from aos_runtime.adapters.sendable import sendable
 from aos_runtime.adapters.settings import AdapterSettings, Binding
 from aos_runtime.lifecycle import Service
 
@@ -164,7 +165,11 @@ class Host:
             self._failed.set_exception(error)
 
     def publish(self, topic: str, fields: dict[str, Any]) -> None:
-        """Sends a message on a topic. From any thread, in order."""
+        """Sends a message on a topic. From any thread, in order.
+
+        SkillError AOS510 if a field is nothing that the bus can carry.
+        """
+        fields = sendable(fields, f"a message on {topic}")
         with self._sending:
             if len(self._unsent) == MAX_UNSENT_MESSAGES:
                 self._lost += 1
@@ -290,7 +295,12 @@ class Host:
 
     def _result(self, call: Call, binding: Binding, answer: Any) -> SkillResult:
         if isinstance(answer, Observed):
-            return SkillResult(call.id, {}, dict(self._published), answer.response, answer.numbers)
+            what = f"the observation of {call.path}"
+            response = sendable({"response": answer.response}, what)["response"]
+            if not isinstance(response, str):
+                raise SkillError(f"{what} is {response!r}, which is no word", code="AOS510")
+            numbers = sendable(answer.numbers, what)
+            return SkillResult(call.id, {}, dict(self._published), response, numbers)
         try:
             given = dict(answer)
         except (TypeError, ValueError) as error:
@@ -300,6 +310,7 @@ class Host:
                 hint=f"Mend the adapter {self.name}",
             ) from error
         fields = translated(binding.result, given, f"the result of {call.path}")
+        fields = sendable(fields, f"the result of {call.path}")
         return SkillResult(call.id, fields, dict(self._published))
 
     async def _cancel(self, cancel: Cancel, _: str) -> Cancelled:
@@ -332,7 +343,8 @@ class Host:
     # --- what is told --------------------------------------------------------------------------------
 
     def _on_progress(self, progress: float, text: str) -> None:
-        self._loop.call_soon_threadsafe(self._take_progress, progress, text)
+        # Made plain here, so that what is wrong with them is told to whoever gave them.
+        self._loop.call_soon_threadsafe(self._take_progress, float(progress), str(text))
 
     def _take_progress(self, progress: float, text: str) -> None:
         running = self._running

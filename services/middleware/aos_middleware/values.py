@@ -8,16 +8,14 @@ the framework's class cannot be imported, and `plain_from` turns both, and the r
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import Enum
 from typing import Any
 
 import msgspec
 
 from aos_protocol.spelling import nearest
+from aos_runtime import plain_data
 
 __all__ = ["Message", "low_level_type", "message_from", "plain_from", "put", "stand_in", "text_of"]
-
-_MAX_DEPTH = 64
 
 
 class Message:
@@ -52,11 +50,8 @@ def message_from(plain: Any) -> Any:
 
 
 def plain_from(value: Any) -> Any:
-    """The plain data of a value; TypeError if it has none.
-
-    An object counts by its public fields: those in `__slots__`, where it has them, else its attributes.
-    """
-    return _plain(value, _MAX_DEPTH)
+    """The plain data of a value of mapping code; TypeError if it has none."""
+    return plain_data.plain_from(value, (Message,))
 
 
 def stand_in(name: str, module: str) -> type[Message]:
@@ -97,39 +92,3 @@ def text_of(value: Any) -> str:
         return msgspec.json.encode(plain_from(value)).decode()
     except (TypeError, ValueError, OverflowError):
         return repr(value)
-
-
-def _plain(value: Any, depth: int) -> Any:
-    if depth == 0:
-        raise TypeError("the value is nested too deeply, or contains itself")
-    if isinstance(value, Enum):
-        return _plain(value.value, depth - 1)
-    if value is None or type(value) in (bool, int, float, str, bytes):
-        return value
-    if isinstance(value, bytearray | memoryview):
-        return bytes(value)
-    if isinstance(value, Mapping):
-        return {str(name): _plain(item, depth - 1) for name, item in value.items()}
-    if isinstance(value, list | tuple | set | frozenset):
-        return [_plain(item, depth - 1) for item in value]
-    if not isinstance(value, Message) and hasattr(value, "tolist"):  # numpy's arrays and numbers
-        return _plain(value.tolist(), depth - 1)
-    for primitive in (int, float, str):
-        if isinstance(value, primitive):
-            return primitive(value)
-    fields = _fields(value)
-    if fields is None:
-        raise TypeError(f"a value of type {type(value).__name__} cannot be sent to a skill")
-    return {name: _plain(getattr(value, name), depth - 1) for name in fields}
-
-
-def _fields(value: Any) -> list[str] | None:
-    if isinstance(value, type) or callable(value):
-        return None
-    if isinstance(value, Message):
-        return list(value.__dict__)
-    if hasattr(value, "get_fields_and_field_types"):  # ROS 2 messages; their slots are named otherwise
-        return list(value.get_fields_and_field_types())
-    slots = getattr(type(value), "__slots__", None)
-    names = [slots] if isinstance(slots, str) else slots or getattr(value, "__dict__", None)
-    return None if names is None else [name for name in names if not name.startswith("_")]

@@ -2,8 +2,8 @@
 
 `declarations` looks at names and types, `defaults` at what variables start with, `model_code` at the C++ of
 environment and skills, `responses` at what the two halves of a skill say to each other, `mapping_code` at the
-Python of the mappings, `endings` at what ends a mission, `observed_numbers` at numbers beside responses,
-`unused` at what nothing mentions.
+Python of the mappings and `python_names` at the names in it, `endings` at what ends a mission,
+`observed_numbers` at numbers beside responses, `unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -51,19 +51,19 @@ def check(assembly: Assembly, findings: Findings) -> None:
         check_skill_code(model, scope, findings)
         check_reports(model, findings)
         if name in assembly.mappings:
-            check_responses(model, assembly.mappings[name], scope, findings)
+            check_responses(model, assembly.mappings[name], scope, findings, is_whole=is_whole)
             check_given_observation(model, assembly.mappings[name], findings)
             check_observed_numbers(model, assembly.mappings[name], assembly.environment, findings)
     for name, mapping in assembly.mappings.items():
         before = len(findings)
-        check_mapping(mapping, assembly.models.get(name), scope, findings)
+        check_mapping(mapping, assembly.models.get(name), scope, findings, is_whole=is_whole)
         is_sound = len(findings) == before
         if assembly.environment is not None:
             check_reported_variables(mapping, assembly.environment, findings)
         if is_whole and is_sound and not mapping.is_derived:
             check_unused_locals(mapping, _reported_to_model(mapping, name, assembly), findings)
     if assembly.low_level is not None:
-        check_low_level(assembly.low_level, findings)
+        check_low_level(assembly.low_level, assembly.mappings.values(), scope, findings)
     if is_whole and assembly.environment is not None:
         check_goals(assembly.environment, findings)
         check_unused_variables(assembly.environment, assembly.models.values(), findings)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import builtins
 import keyword
 import re
 import warnings
@@ -22,35 +21,39 @@ from aos_protocol.documents import (
 )
 from aos_protocol.findings import Findings
 from aos_protocol.spelling import quoted
+from aos_registry.check.python_names import PythonNames, check_names
 from aos_registry.check.scope import Scope
 
 __all__ = ["check_low_level", "check_mapping"]
 
+_CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
-_BUILT_IN_NAMES = frozenset(dir(builtins))
-_OF_SKILL = frozenset({"__skill_status", "__skill_error"})
-"""What rules can say of a skill that has failed."""
 
 
 def check_mapping(
-    mapping: AbstractionMapping, model: SkillModel | None, scope: Scope, findings: Findings
+    mapping: AbstractionMapping,
+    model: SkillModel | None,
+    scope: Scope,
+    findings: Findings,
+    *,
+    is_whole: bool = True,
 ) -> None:
-    """Rules, local variables and the request of one mapping."""
+    """Rules, local variables and the request of one mapping.
+
+    Where the documents are not read as a `whole`, a local variable that seems missing may stand in the rest.
+    """
     _check_path(mapping.activation.path, mapping.activation.span, findings)
     _check_local_names(mapping, findings)
-    known = _known_names(mapping)
-    for rule in mapping.rules:
-        _check_expression(rule.condition, known and known | _OF_SKILL, findings)
-        for assignment in rule.assignments:
-            made = scope.low_level_types | scope.low_level_names
-            _check_expression(assignment.value, known and known | made, findings)
-            if model is not None and scope.has_environment:
-                _check_assigned(assignment, model, scope, findings)
+    names = PythonNames.of(mapping, model, scope)
+    severity = Severity.ERROR if is_whole else Severity.WARNING
+    _check_rules(mapping, model, names, scope, findings, severity)
     _check_order(mapping.rules, findings)
+    # Documents that are only planned with may have a request from elsewhere and nothing that it could name.
+    of_request = severity if mapping.local_variables else Severity.WARNING
     for field in mapping.activation.fields:
-        _check_expression(field.value, known, findings)
+        _check_expression(field.value, names, findings, of_request)
     for variable in mapping.local_variables:
-        _check_variable(variable, findings)
+        _check_variable(variable, names, findings, severity)
         if variable.source is LocalSource.PARAMETER and model is not None:
             _check_parameter(variable, model, scope, findings)
     if model is not None:
@@ -62,10 +65,15 @@ def check_mapping(
         findings.unknown(mapping.response_variable, local_names, message, span, _listing(local_names))
 
 
-def check_low_level(document: LowLevelDocument, findings: Findings) -> None:
+def check_low_level(
+    document: LowLevelDocument, mappings: Iterable[AbstractionMapping], scope: Scope, findings: Findings
+) -> None:
     """The code that makes low-level constants."""
+    names = PythonNames.of_constants(mappings, scope)
     for constant in document.constants:
-        _parse(constant.code, "exec", findings)
+        tree = _parse(constant.code, "exec", findings)
+        if tree is not None:
+            check_names(constant.code, tree, names, findings)
 
 
 def _check_path(path: str, span: Span, findings: Findings) -> None:
@@ -90,45 +98,54 @@ def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
             findings.error("AOS126", message, field.value.span, "Choose another name")
 
 
-def _known_names(mapping: AbstractionMapping) -> frozenset[str] | None:
-    """The names an expression may use; None where an `import *` brings names we cannot know."""
-    imports = [*mapping.activation.imports]
-    for variable in mapping.local_variables:
-        imports += variable.imports
-    names = [name.split(" as ")[-1].strip().split(".")[0] for item in imports for name in item.names]
-    if "*" in names:
-        return None
-    return _BUILT_IN_NAMES.union(names, (variable.name for variable in mapping.local_variables))
-
-
 # --- code ----------------------------------------------------------------------------------------------
 
 
-def _check_expression(snippet: Snippet | None, known: frozenset[str] | None, findings: Findings) -> None:
-    """Parses an expression; a name that nothing gives is a warning, since it fails only when it runs."""
-    tree = _parse(snippet, "eval", findings) if snippet is not None else None
-    if snippet is None or tree is None or known is None:
-        return
-    bound = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
-    bound |= {argument.arg for argument in ast.walk(tree) if isinstance(argument, ast.arg)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and node.id not in known | bound:
-            column = _column(snippet, node.lineno, node.col_offset)
-            span = snippet.locate(node.lineno, column)
-            message = f"no local variable gives `{node.id}`"
-            findings.unknown(node.id, sorted(known), message, span, severity=Severity.WARNING)
+def _check_rules(
+    mapping: AbstractionMapping,
+    model: SkillModel | None,
+    names: PythonNames,
+    scope: Scope,
+    findings: Findings,
+    severity: Severity,
+) -> None:
+    before: list[ast.AST] = []
+    severity = Severity.WARNING if mapping.response_variable else severity
+    for rule in mapping.rules:
+        for snippet in (rule.condition, *(assignment.value for assignment in rule.assignments)):
+            if snippet is not None:
+                tree = _check_expression(snippet, names.of_rules(before), findings, severity)
+                before += [tree] if tree is not None else []
+        if model is not None and scope.has_environment:
+            for assignment in rule.assignments:
+                _check_assigned(assignment, model, scope, findings)
+        if _constant_truth(rule.condition) is True:
+            severity = Severity.WARNING  # What stands behind a rule that always holds never runs.
 
 
-def _check_variable(variable: LocalVariable, findings: Findings) -> None:
+def _check_expression(
+    snippet: Snippet, names: PythonNames, findings: Findings, severity: Severity = Severity.ERROR
+) -> ast.AST | None:
+    """Parses an expression and looks at its names."""
+    tree = _parse(snippet, "eval", findings)
+    if tree is not None:
+        check_names(snippet, tree, names, findings, severity)
+    return tree
+
+
+def _check_variable(
+    variable: LocalVariable, names: PythonNames, findings: Findings, severity: Severity
+) -> None:
     if variable.source is LocalSource.TOPIC:
         _check_path(variable.topic, variable.source_span or variable.span, findings)
     if variable.initial_value is not None:
-        _parse(variable.initial_value, "eval", findings)
+        _check_expression(variable.initial_value, names.at_start(), findings, severity)
     if variable.code is None:
         return
     tree = _parse(variable.code, "exec", findings)
     if tree is None:
         return
+    check_names(variable.code, tree, names.of_code(), findings, severity)
     assigned = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
     if variable.name in assigned:
         return
@@ -156,16 +173,11 @@ def _parse(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
         # Python gives no column where the code ends too early.
         end = len(code) - (code.rfind("\n") + 1) + 1
         span = snippet.locate((error.lineno or 1) - is_long, error.offset or end)
-        findings.error("AOS121", f"this is not Python: {error.msg}", span)
+        hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(code) else ""
+        findings.error("AOS121", f"this is not Python: {error.msg}", span, hint)
     except (ValueError, RecursionError, MemoryError) as error:
         findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
     return None
-
-
-def _column(snippet: Snippet, line: int, byte_offset: int) -> int:
-    """A column from 1 for an offset in UTF-8 bytes, as `ast` gives it."""
-    text = snippet.code.split("\n")[line - 1]
-    return len(text.encode()[:byte_offset].decode(errors="ignore")) + 1
 
 
 # --- rules ---------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from aos_protocol.documents import Assignment, Environment, SkillModel
 from aos_protocol.findings import Findings
 from aos_protocol.spelling import nearest, quoted
 from aos_registry.check.blocks import Block, environment_blocks, skill_blocks
+from aos_registry.check.built_ins import BUILT_INS, check_built_in
 from aos_registry.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_registry.check.subscripts import subscripts_of
 from aos_registry.check.weights import check_weights
@@ -31,13 +32,6 @@ from aos_runtime.snippets import (
 
 __all__ = ["check_block", "check_environment_code", "check_skill_code", "read_block"]
 
-_BUILT_INS = {
-    "AOS": (
-        "Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform", "SetNull", "IsInitialized",
-        "Initialize", "Uninitialize",
-    ),
-    "AOSUtils": ("Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform"),
-}  # fmt: skip
 _PLAIN_SPECIAL_NAMES = {name.strip("_").lower(): name for name in SPECIAL_NAMES}
 _LITERAL_NAMES = frozenset({"false", "nullptr", "true"})
 
@@ -171,12 +165,9 @@ class _BlockCheck:
                 values = [d for d in self._cpp.declarations if d.kind is DeclarationKind.ENUMERATOR]
                 self._enum_sizes[enum.name] = sum(value.type == enum.name for value in values)
         for call in self._cpp.calls:
-            owner = call.name[0] if len(call.name) == 2 else ""
-            if owner in _BUILT_INS and call.name[1] not in _BUILT_INS[owner]:
-                known, name = _BUILT_INS[owner], call.name[1]
-                span = self._part_span(call.function, name)
-                self._unknown(name, known, f"{owner} has no `{name}`", span, f"It has {quoted(known)}")
-            elif owner in _BUILT_INS:
+            declared = self._declared.union(self._locals, self._block.names)
+            check_built_in(call, self._cpp.code, declared, self._span, self._findings)
+            if len(call.name) == 2 and call.name[1] in BUILT_INS.get(call.name[0], ()):
                 self._check_enum(call)
                 check_weights(call, self._cpp.code, self._enum_sizes, self._span, self._findings)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from difflib import get_close_matches
 
 from aos_protocol.documents import AbstractionMapping, SkillModel
 from aos_protocol.findings import Findings
@@ -16,11 +17,24 @@ from aos_runtime.snippets import Access, Cpp, DeclarationKind, Mention
 
 __all__ = ["check_responses"]
 
+_RESPONSES = frozenset({"__moduleResponse", "__moduleResponseStr"})
+_NO_RESPONSE = "DefaultObservation"
+"""What comes back where nothing says it: of a model, and of a mapping without rules."""
 _KNOWN_TO_CPP = frozenset({"AOS", "AOSUtils", "false", "nullptr", "NULL", "this", "true"})
 
 
-def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope, findings: Findings) -> None:
-    """Both directions: a response that no rule gives, and a rule whose response no code produces."""
+def check_responses(
+    model: SkillModel,
+    mapping: AbstractionMapping,
+    scope: Scope,
+    findings: Findings,
+    *,
+    is_whole: bool = True,
+) -> None:
+    """Both directions: a response that no rule gives, and a rule whose response no code produces.
+
+    Where the documents are not read as a `whole`, what seems to be missing may stand in the rest.
+    """
     blocks = list(assignment_blocks(DYNAMIC, model.dynamic_model))
     read = [(block, read_block(block)) for block in blocks]
     if any(cpp.faults for _, cpp in read):
@@ -48,6 +62,8 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
         message = f"the responses of {model.name} cannot be told from its code"
         hint = f"Assign names to __moduleResponse, or write an abstraction mapping: {model.name}.am"
         findings.error("AOS114", message, place, hint)
+    if is_whole and _check_any_response(model, mapping, read, findings):
+        return
     _check_text_response(model, mapping, read, findings)
     mentioned = {mention.path[0] for _, cpp in read for mention in cpp.mentions if len(mention.path) == 1}
     for rule in mapping.rules:
@@ -58,6 +74,31 @@ def check_responses(model: SkillModel, mapping: AbstractionMapping, scope: Scope
             message = f"the skill document of {model.name} never produces the response {rule.response}"
             hint = "When it comes, the belief has no explanation for it"
             findings.warning("AOS117", message, rule.span, hint)
+
+
+def _check_any_response(
+    model: SkillModel, mapping: AbstractionMapping, read: list[tuple[Block, Cpp]], findings: Findings
+) -> bool:
+    """AOS117 for a model that never says what comes back, where the mapping always gives a word: True if so.
+
+    Such a model gives `DefaultObservation` in every run, so that what really comes is impossible.
+    """
+    mentioned = {mention.path[0] for _, cpp in read for mention in cpp.mentions}
+    given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
+    # A name that is nearly one of the two is told where it stands.
+    is_set = any(get_close_matches(name, _RESPONSES, n=1, cutoff=0.85) for name in mentioned)
+    if is_set or _NO_RESPONSE in given or not (given or mapping.response_variable):
+        return False
+    word = "__moduleResponseStr" if mapping.response_variable else "__moduleResponse"
+    hint = f"Set it: the abstraction mapping gives {quoted(given)}"
+    if mapping.response_variable:
+        hint = f"Set it: the abstraction mapping gives the text of {mapping.response_variable}"
+    elif len(given) == 1:
+        hint = f"Add `__moduleResponse = {given[0]};`"
+    span = read[-1][0].snippet.span if read else model.span
+    message = f"the dynamic model of {model.name} never sets {word}, so that every response is impossible"
+    findings.error("AOS117", message, span, hint)
+    return True
 
 
 def _check_text_response(

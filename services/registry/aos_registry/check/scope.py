@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import msgspec
 
-from aos_protocol.documents import CompoundType, EnumType, SkillModel, StateVariable
+from aos_protocol.documents import CompoundType, EnumType, LowLevelDocument, SkillModel, StateVariable
 from aos_registry.assembly import Assembly
 from aos_registry.documents.document import array_type
 
@@ -51,6 +51,7 @@ class Scope(msgspec.Struct, frozen=True):
     skills: Mapping[str, SkillModel]
     low_level_names: frozenset[str]
     low_level_types: frozenset[str]
+    low_level: LowLevelDocument | None
     has_environment: bool
     is_one_state_model: bool
 
@@ -68,6 +69,7 @@ class Scope(msgspec.Struct, frozen=True):
             skills=assembly.models,
             low_level_names=frozenset(c.name for c in low_level.constants) if low_level else frozenset(),
             low_level_types=frozenset(t.name for t in low_level.types) if low_level else frozenset(),
+            low_level=low_level,
             has_environment=environment is not None,
             is_one_state_model=environment is not None and environment.is_one_state_model,
         )

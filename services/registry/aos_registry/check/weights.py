@@ -63,6 +63,9 @@ def _check_list(
         findings.error("AOS122", f"{min(weights):g} is no weight", span, "Weights are not negative")
     elif total == 0.0:
         findings.error("AOS122", "these weights are all zero", span, "At least one must be above 0")
+    elif size is not None and len(weights) == 1 < size:
+        hint = "Write one for each value of the enum, 0 for one that never comes"
+        findings.error("AOS122", f"1 weight for {size} values: it always gives the first", span, hint)
     elif size is not None and len(weights) > size:
         findings.error("AOS122", f"{len(weights)} weights for {size} values", span)
     elif rounding is not None and abs(total - 1.0) > rounding + _TOLERANCE:
@@ -71,6 +74,10 @@ def _check_list(
     elif rounding is None and abs(total - 1.0) > _TOLERANCE:
         hint = "AOSUtils does not divide by the sum: a missing part gives -1, a surplus is cut off"
         findings.warning("AOS122", f"these weights add up to {total:.6g}", span, hint)
+    elif size is not None and len(weights) < size:
+        # In the original, too, a weight that is missing is 0.
+        message = f"{len(weights)} weights for {size} values: those behind them never come"
+        findings.warning("AOS122", message, span, "Write 0 for a value that never comes")
 
 
 def _weights(text: str) -> tuple[list[float], float]:

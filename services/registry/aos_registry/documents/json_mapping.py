@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
+    ACTIVATION_KINDS,
     AbstractionMapping,
     Activation,
     ActivationField,
@@ -84,23 +85,27 @@ def _activation(record: Record) -> Activation | None:
     if max_duration_s is not None and max_duration_s <= 0.0:
         message = "the longest duration must be above 0 s"
         record.findings.error("AOS106", message, group.value_span("MaxDuration"))
-    ros = group.record("RosService", "RosService")
-    skill = group.record("Skill", "Skill")
+    given = {
+        kind: service for kind, word in ACTIVATION_KINDS.items() if (service := group.record(word, word))
+    }
     group.finish()
-    service = ros or skill
-    if service is None:
-        message = 'ModuleActivation lacks "RosService"'
-        record.findings.error("AOS105", message, group.span, 'Or "Skill", for a skill that is no ROS service')
+    if not given:
+        message, hint = (
+            'ModuleActivation lacks "RosService"',
+            'Or "RosAction", or "Skill" if it is neither',
+        )
+        record.findings.error("AOS105", message, group.span, hint)
         return None
+    kind, service = next(iter(given.items()))
     path = service.text("ServicePath", required=True)
-    service_type = service.text("ServiceName", required=ros is not None)
+    service_type = service.text("ServiceName", required=kind != "skill")
     fields = _fields(service)
     imports = _imports(service)
     service.finish()
     if path is None:
         return None
     return Activation(
-        kind="ros_service" if ros is not None else "skill",
+        kind=kind,
         path=path.text,
         span=path.span,
         service_type=service_type.text if service_type else "",
@@ -132,9 +137,9 @@ def _imports(record: Record) -> tuple[Import, ...]:
         names = item.texts("Import")
         item.finish()
         if names:
-            imports.append(
-                Import(module.text if module else "", tuple(name.text for name in names), item.span)
-            )
+            # Several names in one text are what Python's `import a, b` has.
+            each = tuple(part.strip() for name in names for part in name.text.split(",") if part.strip())
+            imports.append(Import(module.text if module else "", each, item.span))
         else:
             record.findings.error("AOS105", 'an import lacks "Import"', item.span)
     return tuple(imports)

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
+    ACTIVATION_KINDS,
     AbstractionMapping,
     Activation,
     ActivationField,
@@ -25,7 +26,6 @@ from aos_registry.documents.source import Text
 
 __all__ = ["read_mapping"]
 
-_ACTIVATION_KINDS = ("ros_service", "skill")
 _IMPORT = re.compile(r"(?:from(?:\s*:\s*|\s+)(?P<module>\S+)\s+)?import(?:\s*:\s*|\s+)(?P<names>.+)")
 _COLON_AFTER_WORD = re.compile(r"(?:from\s*:.*\s)?import\s*:")
 
@@ -59,7 +59,7 @@ def read_mapping(
 def _rule(section: Section, findings: Findings) -> ResponseRule | None:
     rule = section.last("response_rule", findings)
     condition = rule.expression() if rule is not None else None
-    if condition is None:
+    if rule is None:
         hint = "Write `response_rule: True` for a response that always holds"
         findings.error("AOS105", f"the response {section.value.text} has no rule", section.span, hint)
     if not section.value.text:
@@ -89,11 +89,11 @@ def _assignments(section: Section, findings: Findings) -> tuple[LowLevelAssignme
 
 def _activation(section: Section, findings: Findings) -> Activation | None:
     kind = section.value.text.lower()
-    if kind not in _ACTIVATION_KINDS:
+    if kind not in ACTIVATION_KINDS:
         name, span = section.value.text, section.value.span if kind else section.span
-        otherwise = f"It is one of {', '.join(_ACTIVATION_KINDS)}"
+        otherwise = f"It is one of {', '.join(ACTIVATION_KINDS)}"
         message = f"unknown activation {name!r}"
-        findings.unknown(name, _ACTIVATION_KINDS, message, span, otherwise, code="AOS106")
+        findings.unknown(name, ACTIVATION_KINDS, message, span, otherwise, code="AOS106")
         return None
     path, service = section.last("path", findings), section.last("srv", findings)
     duration = section.last("max_duration", findings)
@@ -102,8 +102,8 @@ def _activation(section: Section, findings: Findings) -> Activation | None:
     max_duration_s = read_number(duration, findings) if duration is not None else None
     if duration is not None and max_duration_s is not None and max_duration_s <= 0.0:
         findings.error("AOS106", "the longest duration must be above 0 s", duration.value.span)
-    if kind == "ros_service" and service is None:
-        findings.error("AOS105", "a ros_service needs `srv:`", section.span)
+    if kind != "skill" and service is None:
+        findings.error("AOS105", f"a {kind} needs `srv:`, its type", section.span)
     if path is None or not path.value.text:
         findings.error("AOS105", "the activation needs `path:`", section.span)
         return None

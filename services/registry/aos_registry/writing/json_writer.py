@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from aos_protocol.documents import (
+    ACTIVATION_KINDS,
     AbstractionMapping,
     Assignment,
     CompoundType,
@@ -186,7 +187,7 @@ def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
         }
         for rule in mapping.rules
     ]
-    kind = "RosService" if activation.kind == "ros_service" else "Skill"
+    kind = ACTIVATION_KINDS[activation.kind]
     return {
         "GlueFramework": "ROS",
         "ModuleResponse": {

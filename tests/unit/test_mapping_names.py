@@ -1,0 +1,162 @@
+"""The names in the Python of mappings: what nothing gives is told, what Python allows is not."""
+
+from __future__ import annotations
+
+import pytest
+
+from aos_protocol.diagnostics import Severity
+from aos_registry.load import load_files
+
+ENVIRONMENT = """project: shop
+horizon: 3
+define_type: Item
+variable: anyValue place of Place
+state_variable: int sold
+action_parameter: Item cup
+code:
+state.cup.place = home;
+reward_code:
+if (state.sold > 3) { __reward = 1; __isGoalState = true; }
+"""
+LOW_LEVEL = """project: shop
+define_type: Place
+variable: float x
+constant: Place home
+code:
+import math
+home.x = math.pi
+"""
+SKILL = """project: shop
+parameter: Item item
+
+dynamic_model:
+state__.sold = state.sold + 1;
+__moduleResponse = AOS.Bernoulli(0.5) ? sold : refused;
+"""
+MAPPING = """project: shop
+response: sold
+response_rule: {rule}
+response: refused
+response_rule: {second}
+
+module_activation: skill
+imports: {imports}
+path: /sell
+parameter: what
+code:
+{field}
+
+local_variable: item
+action_parameter: item
+
+local_variable: answer
+from_ros_service_response: true
+code:
+{code}
+
+local_variable: heard
+topic: /heard
+initial_value: {initial}
+code:
+{topic}
+"""
+RIGHT = {
+    "rule": "answer and heard",
+    "second": "True",
+    "imports": "import: json",
+    "field": "item",
+    "code": "answer = __input.answer",
+    "initial": "None",
+    "topic": "return __input.text",
+}
+
+
+def told(**texts: str) -> list[str]:
+    files = {
+        "shop.ef": ENVIRONMENT,
+        "shop.lf": texts.pop("low_level", LOW_LEVEL),
+        "sell.sd": SKILL,
+        "sell.am": MAPPING.format(**{**RIGHT, **texts}),
+    }
+    found = load_files({name: text.encode() for name, text in files.items()}).diagnostics
+    return [
+        f"{each.span}: {each.severity}: {each.message}. {each.hint}"
+        for each in found
+        if each.code != "AOS133"
+    ]
+
+
+@pytest.mark.parametrize(
+    "texts",
+    [
+        {},
+        {"rule": "(n := len(answer)) and heard", "second": "n > 3"},
+        {"rule": "any(part in answer for part in heard)"},
+        {"rule": "(lambda text: text)(answer) == heard"},
+        {"rule": "__skill_status == 'failed' and __skill_error"},
+        {"rule": "json.loads(answer) == heard"},
+        {"rule": "answer == home.x or heard == Place or math.pi"},
+        {"imports": "from: shops import: *", "rule": "anything(answer, heard)"},
+        {"imports": "from: shops import: Basket as Bag, Till", "rule": "Bag(answer) == Till(heard)"},
+        {"field": "[each for each in item]"},
+        {"code": "import re\nfor part in re.split(',', __input.answer):\n    answer = part"},
+        {"code": "try:\n    answer = numpy.mean(__input.answer)\nexcept NameError:\n    answer = 0"},
+        {"code": "def first(text):\n    return text[0]\nanswer = first(__input.answer)"},
+        {"code": "with open('x') as file:\n    answer = file.read()"},
+        {"code": "from os.path import *\nanswer = join('a', __input.answer)"},
+        {"code": "match __input.answer:\n    case [one, *rest]:\n        answer = (one, rest)"},
+        {"initial": "home.x if parameters else Place"},
+        {"topic": "return heard if __input.text is None else answer"},
+    ],
+)  # fmt: skip
+def test_what_python_allows_is_not_told(texts: dict[str, str]) -> None:
+    assert told(**texts) == []
+
+
+@pytest.mark.parametrize(
+    ("texts", "place", "rest"),
+    [
+        ({"rule": "answr and heard"}, "sell.am:3:16", "`answr`. Did you mean `answer`?"),
+        ({"rule": "heard and\n  answer == zebra"}, "sell.am:4:13", "`zebra`. The local"),
+        ({"rule": "answer == true"}, "sell.am:3:26", "`true`. Python writes `True`"),
+        ({"rule": "state.sold > 1"}, "sell.am:3:16", "`state`. A mapping knows"),
+        ({"rule": "__input.answer"}, "sell.am:3:16", "`__input`. It is there in"),
+        ({"second": "unknown_name"}, "sell.am:5:16", "`unknown_name`. The local"),
+        ({"field": "itm"}, "sell.am:12:1", "`itm`. Did you mean `item`?"),
+        ({"code": "answer = np.mean(__input.answer)"}, "sell.am:20:10", "`np`."),
+        ({"code": "if __input.ok:\n    answer = reply"}, "sell.am:21:14", "`reply`."),
+        ({"initial": "heard"}, "sell.am:24:16", "`heard`."),
+        ({"topic": "return input_.text"}, "sell.am:26:8", "`input_`."),
+                ({"low_level": LOW_LEVEL.replace("import math\n", "")},
+         "shop.lf:6:10", "`math`."),
+    ],
+)  # fmt: skip
+def test_a_name_that_nothing_gives_is_an_error_at_its_place(
+    texts: dict[str, str], place: str, rest: str
+) -> None:
+    (found,) = told(**texts)
+    assert found.startswith(f"{place}: error: no local variable gives {rest}")
+
+
+def test_an_operator_of_cpp_in_a_rule_is_told_with_pythons_word() -> None:
+    (found,) = told(rule="answer && heard")
+    assert found.startswith("sell.am:3:24: error: this is not Python")
+    assert found.endswith("Python writes `and`, `or`, `not`")
+
+
+def test_a_rule_that_is_never_tried_fails_in_no_run() -> None:
+    warned = "sell.am:5:16: warning: no local variable gives `unknown_name`."
+    assert any(each.startswith(warned) for each in told(rule="True", second="unknown_name"))
+
+
+def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning() -> None:
+    mapping = (
+        "project: shop\nresponse: sold\nresponse_rule: True\nmodule_activation: skill\n"
+        "path: /sell\nparameter: what\ncode:\nPoint(x=goal_x)\n"
+    )
+    files = {"shop.ef": ENVIRONMENT, "shop.lf": LOW_LEVEL, "sell.sd": SKILL, "sell.am": mapping}
+    loaded = load_files({name: text.encode() for name, text in files.items()})
+    (error,) = (each for each in loaded.diagnostics if each.severity is Severity.ERROR)
+    assert "goal_x" not in error.message
+    warned = [each.message for each in loaded.diagnostics if each.severity is Severity.WARNING]
+    assert "no local variable gives `goal_x`" in warned
