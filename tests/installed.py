@@ -54,14 +54,14 @@ class Installation:
         )
 
 
-def built_wheel(root: Path, folder: Path) -> Path:
-    """The wheel of a checkout's files, built in a copy, so that the checkout stays as it is."""
+def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:
+    """The wheel of a checkout's files, or of a part of it, built in a copy: the checkout stays as it is."""
     source = folder / "source"
     left = shutil.ignore_patterns(".*", "build", "runs", "*.egg-info", "__pycache__")
     shutil.copytree(root, source, ignore=left)
     pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check"]
     subprocess.run(
-        [*pip, "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", folder, source],
+        [*pip, "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", folder, source / part],
         check=True,
         stdin=subprocess.DEVNULL,
         timeout=_PATIENCE_S,
@@ -70,11 +70,13 @@ def built_wheel(root: Path, folder: Path) -> Path:
     return wheel
 
 
-def install(wheel: Path, environment: Path, *, without: tuple[str, ...] = ()) -> None:
+def install(
+    wheel: Path, environment: Path, *, without: tuple[str, ...] = (), only: tuple[str, ...] = ("",)
+) -> None:
     """Makes an environment with the wheel in it.
 
-    What it depends on is linked from the environment of the tests, which has it already, but for packages
-    that begin with one of `without`.
+    What it depends on is linked from the environment of the tests, which has it already: packages that begin
+    with one of `only`, and with none of `without`.
     """
     venv.create(environment, symlinks=True)
     pip = [sys.executable, "-m", "pip", "--python", environment / "bin" / "python", "install"]
@@ -84,5 +86,5 @@ def install(wheel: Path, environment: Path, *, without: tuple[str, ...] = ()) ->
     (available,) = Path(sys.prefix).glob("lib/python*/site-packages")
     for package in available.iterdir():
         ours = package.name.startswith(("aos", "__editable__", "_", *without)) or package.suffix == ".pth"
-        if not ours and not (packages / package.name).exists():
+        if package.name.startswith(only) and not ours and not (packages / package.name).exists():
             (packages / package.name).symlink_to(package)

@@ -64,11 +64,20 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
         "solver: {simulations: 10_000, seed: 1}",
     ]
     if kind == "command":
-        lines += ["adapters:", f"  robot: {{command: [python, {program}]}}"]
+        lines += [
+            "# python is the one that AOS runs in. Another one needs eclipse-zenoh and msgspec.",
+            "adapters:",
+            f"  robot: {{command: [python, {program}]}}",
+        ]
     elif kind == "external":
         lines += ["adapters:", "  robot: external"]
     elif kind == "class":
-        lines += ["adapters:", f"  robot: {{class: '{program.removesuffix('.py')}:Robot'}}"]
+        lines += [
+            "# In the robot's own Python, with the package aos-adapter (docs/adapters/command.md):",
+            f"#   robot: {{command: [python3, -m, aos_runtime.adapters, '{program}:Robot']}}",
+            "adapters:",
+            f"  robot: {{class: '{program.removesuffix('.py')}:Robot'}}",
+        ]
     elif kind in ROS_KINDS:
         value, meaning = ROS_KINDS[kind]
         lines += [

@@ -7,9 +7,10 @@ exceptions and live in `errors`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from enum import StrEnum
 
 import msgspec
+
+from aos_protocol.older_python import StrEnum
 
 __all__ = ["Diagnostic", "Mend", "Severity", "Span", "has_errors", "render"]
 

@@ -10,11 +10,11 @@ Source: the paper, sections 3.2.1 and 3.2.2; the AOS documentation manual, versi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import StrEnum
 
 import msgspec
 
 from aos_protocol.diagnostics import Span
+from aos_protocol.older_python import StrEnum
 
 __all__ = [
     "ACTIVATION_KINDS",

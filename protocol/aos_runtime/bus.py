@@ -11,7 +11,7 @@ import asyncio
 import logging
 from collections.abc import Awaitable, Callable
 from functools import partial
-from typing import Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import zenoh
 from zenoh.handlers import Callback
@@ -21,8 +21,12 @@ from aos_protocol.errors import AosError, BusError, LateAnswerError, LostAnswerE
 from aos_protocol.messages import Message
 from aos_runtime.bus_config import LEASE_S, client_config
 from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.older_python import timeout
 from aos_runtime.server_watch import ServerWatch
 from aos_runtime.subscription import Subscription, Undeclare
+
+if TYPE_CHECKING:
+    from typing import Self  # not in Python 3.10
 
 __all__ = ["Bus", "Subscription"]
 
@@ -180,7 +184,7 @@ class Bus:
         )
         watch = ServerWatch(self._session, key)
         try:
-            async with asyncio.timeout(timeout_s + _LATE_S if on_stray is None else timeout_s):
+            async with timeout(timeout_s + _LATE_S if on_stray is None else timeout_s):
                 await self._wait_while_served(watch, answer)
                 result = answer.result()
         except TimeoutError:
@@ -313,7 +317,7 @@ class Bus:
             timeout=_ROUND_TRIP_S,
         )
         try:
-            async with asyncio.timeout(_ROUND_TRIP_S + _LATE_S):
+            async with timeout(_ROUND_TRIP_S + _LATE_S):
                 await done
         except TimeoutError:
             return False

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import sqlite3
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Message
 from aos_runtime.clock import Clock, SystemClock
+
+if TYPE_CHECKING:
+    from typing import Self  # not in Python 3.10
 
 __all__ = ["Journal", "JournalRow"]
 

@@ -26,6 +26,7 @@ from aos_protocol.messages import Fault
 from aos_runtime.bus import Bus
 from aos_runtime.bus_config import LEASE_S
 from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.older_python import BaseExceptionGroup
 from aos_runtime.parent import die_with_parent
 from aos_runtime.service_settings import ServiceSettings, fault_path
 
@@ -68,9 +69,16 @@ class Service(Generic[S]):
 
 
 def run_service(
-    settings_type: type[S], serve: Callable[[Service[S]], Awaitable[None]], *, lease_s: float = LEASE_S
+    settings_type: type[S],
+    serve: Callable[[Service[S]], Awaitable[None]],
+    *,
+    lease_s: float = LEASE_S,
+    settings: S | None = None,
 ) -> NoReturn:
-    """The whole of a service's `__main__`: runs `serve` until it returns, fails or is told to stop."""
+    """The whole of a service's `__main__`: runs `serve` until it returns, fails or is told to stop.
+
+    The settings are given, or stand in the file that the command line names.
+    """
 
     async def run(settings: S) -> None:
         clock = SystemClock()
@@ -84,13 +92,15 @@ def run_service(
         async with bus:
             await serve(Service(settings, bus, clock))
 
-    run_process(settings_type, run)
+    run_process(settings_type, run, settings)
 
 
-def run_process(settings_type: type[S], run: Callable[[S], Coroutine[Any, Any, None]]) -> NoReturn:
+def run_process(
+    settings_type: type[S], run: Callable[[S], Coroutine[Any, Any, None]], settings: S | None = None
+) -> NoReturn:
     """As `run_service`, for a process that opens its own connection to the bus."""
     die_with_parent()
-    settings = _read_settings(settings_type)
+    settings = settings or _read_settings(settings_type)
     logging.basicConfig(
         level=os.environ.get("AOS_LOG", "INFO").upper(),
         format=f"%(asctime)s %(levelname)-7s {settings.service}: %(message)s",

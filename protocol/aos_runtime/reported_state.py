@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable
 from typing import TypeVar
 
 from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.messages import Message
 from aos_runtime.bus import Bus
+from aos_runtime.older_python import timeout
 
 __all__ = ["state_when"]
 
@@ -29,7 +29,7 @@ async def state_when(
     LateAnswerError if no such state is told within `timeout_s`, BusError AOS605 if the bus is left.
     """
     try:
-        async with asyncio.timeout(timeout_s), bus.listen(key, kind) as told:
+        async with timeout(timeout_s), bus.listen(key, kind) as told:
             try:
                 state = await bus.ask(key, question, kind, timeout_s=min(timeout_s, _QUESTION_S))
             except _IS_AWAY:

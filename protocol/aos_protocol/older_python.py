@@ -1,0 +1,18 @@
+"""What Python 3.10 lacks, for robots that have no newer one: it is that of Ubuntu 22.04 and ROS 2 Humble."""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ["StrEnum"]
+
+if sys.version_info >= (3, 11):
+    from enum import StrEnum
+else:
+    from enum import Enum
+
+    class StrEnum(str, Enum):
+        """`enum.StrEnum`: a member is its text."""
+
+        __str__ = str.__str__
+        __format__ = str.__format__

@@ -1,0 +1,85 @@
+"""What an adapter that is started by a command is told: by its words and by its environment."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from aos_runtime.adapters.settings import AdapterSettings
+
+__all__ = ["USAGE", "settings_told"]
+
+USAGE = """usage: python -m aos_runtime.adapters MODULE:CLASS [NAME=VALUE]...
+
+CLASS of MODULE, or of a FILE.py, is the adapter; it finds each NAME in host.options. aos-up tells the rest
+by the environment; by hand, name AOS_ENDPOINT (such as tcp/127.0.0.1:7447), AOS_ROBOT and AOS_ADAPTER."""
+
+_MUST_BE_TOLD = ("AOS_ENDPOINT", "AOS_ROBOT", "AOS_ADAPTER")
+
+
+def settings_told(
+    words: Sequence[str], environment: Mapping[str, str] = os.environ
+) -> AdapterSettings | None:
+    """The settings of the class that the words name; None for a settings file. Mistakes end the process.
+
+    What is bound to the adapter stands in $AOS_SETTINGS. Without that it serves whatever the class has.
+    """
+    if len(words) == 1 and words[0].endswith(".json"):
+        return None
+    module, _, name = words[0].rpartition(":") if words else ("", "", "")
+    if not module or not name or any("=" not in word for word in words[1:]):
+        sys.exit(USAGE)
+    missing = [variable for variable in _MUST_BE_TOLD if not environment.get(variable)]
+    if missing:
+        sys.exit(f"{', '.join(missing)} is not in the environment\n{USAGE}")
+    settings = _bound(environment)
+    folder = Path.cwd()
+    if module.endswith(".py"):
+        folder = (folder / module).parent
+        module = Path(module).stem
+    options = {word.partition("=")[0]: _value(word.partition("=")[2]) for word in words[1:]}
+    return msgspec.structs.replace(
+        settings,
+        robot=environment["AOS_ROBOT"],
+        service=environment["AOS_ADAPTER"],
+        endpoint=environment["AOS_ENDPOINT"],
+        run_dir=str(_run_dir(settings, environment)),
+        adapter=f"{module}:{name}",
+        folder=str(folder),
+        options={**settings.options, **options},
+    )
+
+
+def _bound(environment: Mapping[str, str]) -> AdapterSettings:
+    path = environment.get("AOS_SETTINGS")
+    if not path:
+        return AdapterSettings(robot="", service="", endpoint="", run_dir="", adapter="", serves_others=True)
+    try:
+        return msgspec.json.decode(Path(path).read_bytes(), type=AdapterSettings)
+    except (OSError, msgspec.MsgspecError) as error:
+        sys.exit(f"{path}: {error}")
+
+
+def _run_dir(settings: AdapterSettings, environment: Mapping[str, str]) -> Path:
+    """Where the ledger of calls is kept: in the run's folder; on another host among temporary files."""
+    is_here = settings.endpoint == environment["AOS_ENDPOINT"]
+    if is_here and settings.run_dir:
+        return Path(settings.run_dir)
+    name = Path(settings.run_dir).name or f"{environment['AOS_ROBOT']}-{os.getpid()}"
+    folder = Path(tempfile.gettempdir()) / f"aos-{os.getuid()}" / name
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    return folder
+
+
+def _value(text: str) -> Any:
+    """Numbers and truth values as such, all else as text."""
+    try:
+        return msgspec.json.decode(text)
+    except msgspec.MsgspecError:
+        return text

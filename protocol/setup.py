@@ -1,0 +1,57 @@
+"""What pyproject.toml cannot say: which modules an adapter needs, and how `aos-adapter` stays out of the way.
+
+It has packages of the same names as `aos-autonomy`. Had they the same files, too, the one that is installed
+last would win, and whichever is removed would take the other's files with it. So those of `aos-adapter` stand
+below `aos_adapter/`, and `aos-adapter.pth` makes them importable where nothing else provides them.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from setuptools import setup
+from setuptools.command.build_py import build_py
+
+RUNTIME = (
+    "__init__",
+    "bus",
+    "bus_config",
+    "client",
+    "clock",
+    "journal",
+    "lifecycle",
+    "older_python",
+    "parent",
+    "reported_state",
+    "server_watch",
+    "service_settings",
+    "subscription",
+)
+"""Of `aos_runtime`, without what compilers, generators and aos-up need."""
+
+ABOUT_DOCUMENTS = ("distribution", "findings", "local_types", "sarif")
+"""Of `aos_protocol`, what only commands and checks of documents need."""
+
+SEARCH = (
+    "import importlib.util, os, sys; "
+    "importlib.util.find_spec('aos_protocol') "
+    "or sys.path.append(os.path.join(sys._getframe(1).f_locals['sitedir'], 'aos_adapter'))\n"
+)
+"""Python carries out the lines of .pth files that begin with `import`, when it starts."""
+
+
+class BuildForRobots(build_py):
+    """The modules that adapters need, and the file that leads to them."""
+
+    def find_package_modules(self, package: str, package_dir: str) -> list[tuple[str, str, str]]:
+        found = super().find_package_modules(package, package_dir)
+        if package.endswith(".aos_runtime"):
+            return [each for each in found if each[1] in RUNTIME]
+        return [each for each in found if each[1] not in ABOUT_DOCUMENTS]
+
+    def run(self) -> None:
+        super().run()
+        Path(self.build_lib, "aos-adapter.pth").write_text(SEARCH, encoding="ascii")
+
+
+setup(cmdclass={"build_py": BuildForRobots})

@@ -1,0 +1,81 @@
+"""What an adapter makes of the words of its command and of its environment."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from aos_runtime.adapters import AdapterSettings, Binding
+from aos_runtime.adapters.told import settings_told
+
+HERE = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "fetch", "AOS_ADAPTER": "arm"}
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> dict[str, str]:
+    """The environment that aos-up gives, with a settings file."""
+    run = tmp_path / "20260101T000000Z-fetch"
+    settings = AdapterSettings(
+        robot="fetch",
+        service="arm",
+        endpoint=HERE["AOS_ENDPOINT"],
+        run_dir=str(run),
+        adapter="",
+        options={"command": ["python"]},
+        bind={"/pick": Binding(target="grasp")},
+    )
+    path = tmp_path / "arm.json"
+    path.write_bytes(msgspec.json.encode(settings))
+    return {**HERE, "AOS_SETTINGS": str(path)}
+
+
+def told(words: list[str], environment: dict[str, str]) -> AdapterSettings:
+    settings = settings_told(words, environment)
+    assert settings is not None
+    return settings
+
+
+def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str], tmp_path: Path) -> None:
+    settings = told(["my_arm.adapter:Arm", "port=/dev/ttyUSB0", "baud=9600", "slow=true"], written)
+    assert (settings.adapter, settings.folder) == ("my_arm.adapter:Arm", str(Path.cwd()))
+    assert settings.bind == {"/pick": Binding(target="grasp")}
+    assert not settings.serves_others
+    assert settings.run_dir == str(tmp_path / "20260101T000000Z-fetch")
+    assert settings.options == {
+        "command": ["python"],
+        "port": "/dev/ttyUSB0",
+        "baud": 9600,
+        "slow": True,
+    }
+
+
+def test_a_class_of_a_file_is_imported_from_its_folder(written: dict[str, str]) -> None:
+    settings = told(["drivers/arm.py:Arm"], written)
+    assert (settings.adapter, settings.folder) == ("arm:Arm", str(Path.cwd() / "drivers"))
+
+
+def test_started_by_hand_it_serves_what_it_has(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    settings = told(["arm:Arm"], HERE)
+    assert settings.serves_others
+    assert (settings.robot, settings.service, settings.endpoint) == tuple(
+        HERE[name] for name in ("AOS_ROBOT", "AOS_ADAPTER", "AOS_ENDPOINT")
+    )
+    assert Path(settings.run_dir).is_dir()
+
+
+def test_on_another_host_it_keeps_its_ledger_there(
+    written: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    settings = told(["arm:Arm"], {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"})
+    assert settings.run_dir == str(tmp_path / f"aos-{os.getuid()}" / "20260101T000000Z-fetch")
+    assert settings.endpoint == "tcp/127.0.0.1:23456"
+
+
+def test_a_settings_file_is_left_to_the_service() -> None:
+    assert settings_told(["arm.json"], HERE) is None
