@@ -130,9 +130,24 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "outcome `timed_out`", "`mission.activation_timeout_s`, `max_duration`",
         ),
         Row(
-            "activations in a row that brought no observation",
+            "failures in a row of one skill",
+            "aos_deploy.deploy_file.MissionPart.set_aside_after", "",
+            "it is set aside", "`mission.set_aside_after`",
+        ),
+        Row(
+            "the time for which a skill is set aside",
+            "aos_deploy.deploy_file.MissionPart.set_aside_s", "s",
+            "it may be chosen again", "`mission.set_aside_s`",
+        ),
+        Row(
+            "failures of all skills in a mission",
             "aos_deploy.deploy_file.MissionPart.failure_limit", "",
-            "ending `fault`", "`mission.failure_limit`",
+            "ending `skills_failed`", "`mission.failure_limit`",
+        ),
+        Row(
+            "combinations of what skills did that nobody observed",
+            "belief/hypotheses.hpp:max_hypotheses", "",
+            "the oldest row of failures is closed",
         ),
         Row(
             "holding, when no skill can be run or a person is waited for",

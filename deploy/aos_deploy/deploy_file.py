@@ -67,15 +67,18 @@ class ConstraintPart(msgspec.Struct, frozen=True, kw_only=True):
 class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """When a mission ends. `stop_below_value` is an expected return; without one nothing is too poor.
 
-    It ends when `failure_limit` activations in a row brought no observation. It holds for `hold_s` at most,
-    for somebody or for adapters that have left. `constraints` are what it must hardly ever do.
+    A skill is set aside for `set_aside_s` after `set_aside_after` failures in a row, and the mission ends
+    after `failure_limit` failures of all skills; see docs/when-a-skill-fails.md. It holds for `hold_s` at
+    most, for somebody or for adapters that have left. `constraints` are what it must hardly ever do.
     """
 
     goal_probability: Probability = 0.9
     step_limit: Count = 30
     stop_below_value: float | None = None
     activation_timeout_s: Seconds = 120.0
-    failure_limit: Count = 3
+    failure_limit: Count = 30
+    set_aside_after: Count = 3
+    set_aside_s: Seconds = 300.0
     hold_s: Seconds = 600.0
     constraints: tuple[ConstraintPart, ...] = ()
 
@@ -84,12 +87,17 @@ class SkillPart(msgspec.Struct, frozen=True, kw_only=True):
     """What follows when a skill fails. `timeout_s` is the mission's `activation_timeout_s` if not given.
 
     The same action is tried again up to `retries` times, by default once for `retry` and else never. Then
-    `observe` goes on with the belief that it ran or did not, `hold` waits for `aos resume`, and `end` ends
-    the mission.
+    `observe` goes on, `hold` waits for `aos resume`, and `end` ends the mission. `ran_probability` is how
+    probable it is that the skill ran nevertheless, also where it reports a failure; without it, 0 where it
+    reports one and 0.5 where nobody knows. `set_aside_after` and `set_aside_s` are the mission's if not
+    given.
     """
 
     retries: Annotated[int, msgspec.Meta(ge=0)] | None = None
     timeout_s: Seconds | None = None
+    ran_probability: Annotated[float, msgspec.Meta(ge=0, le=1)] | None = None
+    set_aside_after: Count | None = None
+    set_aside_s: Seconds | None = None
     on_failure: Literal["observe", "retry", "hold", "end"] = "observe"
 
 

@@ -51,7 +51,7 @@ async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system
     outcomes = [await system.activate("see", step, parameters=parameters) for step in (1, 2, 3)]
     assert system.adapter.calls[0].fields == parameters
     assert [(each.status, each.response) for each in outcomes] == [
-        ("observed", "seen"), ("failed", ""), ("failed", ""),
+        ("observed", "seen"), ("unknown", ""), ("unknown", ""),
     ]  # fmt: skip
     told = [each.fault for each in outcomes]
     assert told[1] is not None
@@ -152,14 +152,16 @@ async def test_the_activations_deadline_counts_where_it_is_shorter(system: Syste
     assert system.adapter.calls[0].deadline_s <= 0.4
 
 
-async def test_a_result_that_no_rule_covers_is_a_failure_with_the_values(system: System) -> None:
+async def test_a_result_that_no_rule_covers_is_unknown_with_the_values(
+    system: System,
+) -> None:
     project = system.registry.current.project
     text = SENSE.replace("level <= 3", "level < 0")
     system.registry.announce(msgspec.structs.replace(project, skills=(skill_of(text, "sense.am"),)))
     await system.state(2)
     await system.adapter.serve("/sense", answering({}))
     outcome = await system.activate("sense")
-    assert outcome.status == "failed"
+    assert outcome.status == "unknown"
     assert outcome.local_variables == {"level": "0"}
     assert outcome.fault is not None
     assert outcome.fault.code == "AOS402"
@@ -167,12 +169,12 @@ async def test_a_result_that_no_rule_covers_is_a_failure_with_the_values(system:
     assert outcome.fault.diagnostics[0].span.file == "sense.am"
 
 
-async def test_mapping_code_that_raises_is_a_failure_at_the_documents_line(
+async def test_mapping_code_that_raises_is_unknown_at_the_documents_line(
     system: System, bundles: Path
 ) -> None:
     await system.adapter.serve("/pick", answering({"sucess": True}))
     outcome = await system.activate("pick")
-    assert outcome.status == "failed"
+    assert outcome.status == "unknown"
     assert outcome.fault is not None
     assert outcome.fault.code == "AOS401"
     source = (bundles / "armadillo-finer" / "pick.am").read_text().splitlines()
@@ -194,7 +196,7 @@ async def test_mapping_code_that_fails_during_the_call_does_not_end_the_call(sys
     outcome = await system.activate("sense")
     assert ended.is_set()
     assert outcome.fault is not None
-    assert (outcome.status, outcome.fault.code) == ("failed", "AOS401")
+    assert (outcome.status, outcome.fault.code) == ("unknown", "AOS401")
 
 
 async def test_parameters_that_the_mapping_does_not_find_are_a_failure_without_a_call(

@@ -144,6 +144,7 @@ class Robot:
 
     clock = SystemClock()
     unavailable: ClassVar[dict[str, str]] = {}
+    announced: ClassVar[dict[str, int]] = {}
 
     def __init__(self, bus: Bus, keys: Keys) -> None:
         self._bus = bus

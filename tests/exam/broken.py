@@ -13,9 +13,8 @@ from aos_registry.load import load_files
 from aos_runtime.clock import SystemClock
 from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
-from aos_solver.failures import Failures
 from aos_solver.hot_plug import RunningModel, build_project
-from aos_solver.mission import FAILURE_LIMIT, Mission
+from aos_solver.mission import Mission
 from aos_solver.search import Search
 
 from .jobs import Job
@@ -83,7 +82,6 @@ async def _mission(
             Search(simulations=simulations, seed=1),
             robot,
             activation_timeout_s=1.0,
-            failures=Failures({}, FAILURE_LIMIT),
         )
         return await mission.run()
     finally:
@@ -95,6 +93,7 @@ class _Robot:
 
     clock = SystemClock()
     unavailable: Mapping[str, str] = {}
+    announced: Mapping[str, int] = {}
 
     def __init__(self, job: Job, broken: str = "") -> None:
         self._job = job

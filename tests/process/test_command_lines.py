@@ -48,6 +48,7 @@ async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
         await engine.count_processor_time(False)
         await engine.exact(2)
         await engine.reach(0.1, 5)
+        await engine.may_reach_goal()
         await engine.list_states(100)
         await engine.write_listing(cache_dir / "model.flat", cache_dir / "states")
         await engine.predict(0)

@@ -11,7 +11,7 @@ from aos_protocol.errors import ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_registry.load import load_files
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import ExportedBelief
+from aos_solver.child.answers import ExportedBeliefs
 from aos_solver.child.engine import Engine
 from aos_solver.hot_plug import ModelShelf, RunningModel
 
@@ -133,13 +133,13 @@ async def test_a_revision_that_cannot_take_the_belief_is_given_up_and_the_missio
         made.middleware_may_answer.set()
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
-        made.engines[1].import_belief = refuse  # type: ignore[method-assign]
+        made.engines[1].import_beliefs = refuse  # type: ignore[method-assign]
         assert await made.shelf.newest(running) is running
         assert await made.shelf.newest(running) is running
         assert made.living == [running.engine]
 
 
-async def refuse(_: ExportedBelief) -> BeliefSummary:
+async def refuse(_: ExportedBeliefs) -> BeliefSummary:
     raise ModelError("the state does not fit")
 
 

@@ -15,6 +15,7 @@ __all__ = [
     "CheckModel",
     "ConstraintRisk",
     "DecisionRecord",
+    "EndingOdds",
     "History",
     "HistoryQuery",
     "Marginal",
@@ -58,13 +59,22 @@ class Marginal(Message, frozen=True):
     others: float = 0.0
 
 
+class EndingOdds(Message, frozen=True):
+    """The chance of each ending; `over_probability` is as in BeliefSummary."""
+
+    goal_probability: float
+    failure_probability: float
+    over_probability: float
+
+
 class BeliefSummary(Message, frozen=True):
     """A belief for people: marginals of all variables, entropy in nats, and the chance of each ending.
 
     `over_probability` is that of a mission that is over and is neither a goal nor a failure.
     `states` is the number of distinct states; `effective_states` is how many of equal weight would tell as
     much. No event's probability is further than `error_bound` from what Bayes' rule gives: 0 where the belief
-    is exact, 1 where steps had to be sampled and nothing is certain.
+    is exact, 1 where steps had to be sampled and nothing is certain. `cautious` has the chances of the
+    endings if nothing ran that was not observed; None where nothing sets that belief apart from this one.
     """
 
     marginals: tuple[Marginal, ...]
@@ -76,6 +86,7 @@ class BeliefSummary(Message, frozen=True):
     effective_states: float = 0.0
     error_bound: float = 0.0
     over_probability: float = 0.0
+    cautious: EndingOdds | None = None
 
 
 class MissionQuery(Message, frozen=True):
@@ -140,7 +151,9 @@ class DecisionRecord(Message, frozen=True):
     -log P(observation | belief, action) in nats, of a density where numbers were observed; infinite surprise
     is given as `is_impossible`. `remark` says what of the outcome could not be used for the belief. `planner`
     made the decision with so many `threads`; `why` says why it was that planner and what it has found.
-    `constraints` are the mission's, each with what the decision risks.
+    `constraints` are the mission's, each with what the decision risks. The decision does without the skills
+    that are `set_aside`, each with the reason; `actions` has none of theirs. With `is_cautious` it is for the
+    belief in which nothing ran that was not observed.
     """
 
     sequence: int
@@ -168,6 +181,8 @@ class DecisionRecord(Message, frozen=True):
     why: str = ""
     threads: int = 1
     constraints: tuple[ConstraintRisk, ...] = ()
+    set_aside: dict[str, str] = {}
+    is_cautious: bool = False
 
 
 class HistoryQuery(Message, frozen=True):

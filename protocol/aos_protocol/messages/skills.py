@@ -89,13 +89,15 @@ class MappingQuery(Message, frozen=True):
 class MappingState(Message, frozen=True):
     """The newest revision whose mappings run (0 before the first), its skills, and the newest one refused.
 
-    `unavailable` are the skills that cannot be run now, each with the reason.
+    `unavailable` are the skills that cannot be run now, each with the reason. `announced` says of each skill
+    how often an adapter has announced that it serves the skill's path.
     """
 
     revision: int
     skills: tuple[str, ...]
     refused: int = 0
     unavailable: dict[str, str] = {}
+    announced: dict[str, int] = {}
 
 
 class SkillCall(Message, frozen=True):

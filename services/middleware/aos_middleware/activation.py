@@ -96,17 +96,21 @@ async def run_activation(request: Activate, evaluator: Evaluator, around: Surrou
     started_ns = around.clock.now_ns()
     observation = _Observation()
     fault: AosError | None = None
+    status = "observed"
+    activation = _Activation(request, evaluator, around)
     try:
-        observation = await _Activation(request, evaluator, around).run()
+        observation = await activation.run()
     except MappingFault as error:
         fault, observation = error, _Observation(local_variables=error.local_variables)
+        # A skill that was called may have done its work: its mapping has failed, not the robot.
+        status = "unknown" if activation.was_called else "failed"
     except AosError as error:
-        fault = error
+        fault, status = error, _STATUS.get(error.code, "failed")
     told = fault or observation.failure
     return Outcome(
         request.id,
         request.skill,
-        "observed" if fault is None else _STATUS.get(fault.code, "failed"),
+        status,
         observation.response,
         observation.local_variables,
         started_ns,
@@ -141,6 +145,7 @@ class _Activation:
         self._seen: dict[str, int] = {}
         self._has_seen = asyncio.Event()
         self._fault: AosError | None = None
+        self.was_called = False
 
     async def run(self) -> _Observation:
         """From the fields of the call to what is observed."""
@@ -226,6 +231,7 @@ class _Activation:
     async def _call_path(self, path: str, fields: dict[str, Any]) -> SkillResult:
         """The answer to the call; there is doubt whether it has ended unless the adapter says that it has."""
         request = self._request
+        self.was_called = True
         started_s = self._clock.monotonic_s()
         limit_s = max(self._ends_at_s - started_s, 0.0)
         if self._mapping.activation.max_duration_s is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections import Counter
 from collections.abc import Callable
 
 from aos_protocol.errors import SkillError
@@ -24,6 +25,7 @@ class ServedPaths:
         self._on_change = on_change
         self._changed = asyncio.Event()
         self._servers: dict[str, list[Serving]] = {}
+        self._announced: Counter[str] = Counter()
 
     async def follow(self) -> None:
         """Until the bus closes."""
@@ -34,6 +36,7 @@ class ServedPaths:
                     continue
                 servers = self._servers.setdefault(serving.path, [])
                 servers.append(serving) if is_alive else servers.remove(serving)
+                self._announced[serving.path] += is_alive
                 verb = "serves" if is_alive else "has left"
                 _log.info("%s %s %s", serving.adapter, verb, serving.path)
                 self._changed.set()
@@ -43,6 +46,10 @@ class ServedPaths:
     def servers(self, path: str) -> list[Serving]:
         """Who answers calls of a path now."""
         return self._servers.get("/" + path.strip("/"), [])
+
+    def announced(self, path: str) -> int:
+        """How often somebody has announced to serve a path."""
+        return self._announced["/" + path.strip("/")]
 
     def fault(self, path: str) -> SkillError | None:
         """Why a path cannot be called now: AOS505 if nobody serves it, AOS511 if two do."""

@@ -118,10 +118,11 @@ class _Middleware:
         return self._state()
 
     def _state(self) -> MappingState:
-        """The mappings that run, and which of their skills nobody could run."""
+        """The mappings that run, which of their skills nobody could run, and how often adapters came."""
         faults = {skill: self._served.fault(path) for skill, path in self._mappings.paths.items()}
         unavailable = {skill: fault.message for skill, fault in faults.items() if fault is not None}
-        return msgspec.structs.replace(self._mappings.state, unavailable=unavailable)
+        announced = {skill: self._served.announced(path) for skill, path in self._mappings.paths.items()}
+        return msgspec.structs.replace(self._mappings.state, unavailable=unavailable, announced=announced)
 
     def _tell_state(self) -> None:
         self._service.bus.tell(self._service.keys.mapping_state, self._state())

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 import msgspec
 
-from aos_protocol.messages import ActionValue, BeliefSummary
+from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds
 
 __all__ = [
     "Ending",
@@ -14,6 +14,8 @@ __all__ = [
     "believed_ending",
     "ending_after_planning",
     "ending_of_belief",
+    "is_held_back",
+    "is_worth_nothing",
     "remark_of",
 ]
 
@@ -47,13 +49,44 @@ class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
     step_limit: int = 30
     stop_below_value: float | None = None
 
+    @property
+    def worth_of_stopping(self) -> float:
+        """What it is worth to do nothing."""
+        return self.stop_below_value if self.stop_below_value is not None else 0.0
+
+    @property
+    def refuted_below(self) -> float:
+        """The cautious belief is refuted once observations are less probable in it by this factor.
+
+        Where it is true, that happens with this probability at most, a tenth of what `goal_probability`
+        leaves for errors.
+        """
+        return (1 - self.goal_probability) / 10
+
+
+_WORST = (Ending.GOAL, Ending.OVER, Ending.FAILURE)
+
 
 def believed_ending(belief: BeliefSummary, limits: MissionLimits) -> Ending | None:
     """The ending that a belief holds for sure enough; None where the mission may well go on.
 
     A mission that is surely over, but not surely in one way, counts as what it is at least: the endings are,
-    from the best to the worst, goal, over and failure.
+    from the best to the worst, goal, over and failure. It is no better than where nothing ran that was not
+    observed, and not over where it goes on there.
     """
+    held = _held_ending(belief, limits)
+    if held is None or belief.cautious is None:
+        return held
+    held_cautiously = _held_ending(belief.cautious, limits)
+    return None if held_cautiously is None else max(held, held_cautiously, key=_WORST.index)
+
+
+def is_held_back(belief: BeliefSummary, limits: MissionLimits) -> bool:
+    """Whether the mission would be over, but for what nobody has observed."""
+    return _held_ending(belief, limits) is not None and believed_ending(belief, limits) is None
+
+
+def _held_ending(belief: BeliefSummary | EndingOdds, limits: MissionLimits) -> Ending | None:
     probability = belief.goal_probability
     if probability >= limits.goal_probability:
         return Ending.GOAL
@@ -85,10 +118,19 @@ def ending_after_planning(best: ActionValue, limits: MissionLimits) -> Ending | 
     return None
 
 
+def is_worth_nothing(best: ActionValue, limits: MissionLimits) -> bool:
+    """Whether the best action promises no more than to do nothing, given twice its standard error."""
+    return best.q + 2 * best.stderr <= limits.worth_of_stopping
+
+
 def remark_of(ending: Ending, belief: BeliefSummary, limits: MissionLimits) -> str:
     """Why a mission ended, in one line for people; where nobody can tell how it ended, it says so."""
     if ending == Ending.GOAL:
-        return f"the goal is reached with probability {belief.goal_probability:.3f}"
+        cautious = belief.cautious
+        unless = (
+            f", and {cautious.goal_probability:.3f} if nothing ran that was not observed" if cautious else ""
+        )
+        return f"the goal is reached with probability {belief.goal_probability:.3f}{unless}"
     if ending == Ending.STEP_LIMIT:
         return f"the step limit of {limits.step_limit} is reached"
     if ending == Ending.NOTHING_WORTHWHILE:

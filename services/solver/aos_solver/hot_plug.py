@@ -202,9 +202,9 @@ class ModelShelf:
             if candidate.built.emitted.state_digest != running.built.emitted.state_digest:
                 log.warning("revision %d changes the state and waits for a new mission", candidate.revision)
                 return running
-            belief = await running.engine.export_belief()
+            beliefs = await running.engine.export_beliefs()
             try:
-                await candidate.engine.import_belief(belief)
+                await candidate.engine.import_beliefs(beliefs)
             except AosError as error:
                 log.warning("revision %d cannot take the belief: %s", candidate.revision, error)
                 self._ready = None

@@ -7,7 +7,7 @@ move before anything moves.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import msgspec
@@ -22,9 +22,9 @@ from aos_protocol.messages import (
     MissionState,
     Outcome,
 )
-from aos_runtime.clock import Clock
-from aos_solver.child.answers import BeliefUpdate, Plan, Risks
-from aos_solver.endings import Ending, MissionLimits, ending_after_planning, ending_of_belief, remark_of
+from aos_solver.child.answers import BeliefUpdate
+from aos_solver.choosing import Available, Choice, Chooser, Ended, Held
+from aos_solver.endings import Ending, MissionLimits, ending_of_belief, remark_of
 from aos_solver.failures import Failures
 from aos_solver.hot_plug import RunningModel
 from aos_solver.risk import RiskBudget
@@ -32,22 +32,9 @@ from aos_solver.search import Search
 
 __all__ = ["Mission", "Ports"]
 
-FAILURE_LIMIT = 3
-"""Activations in a row without an observation before a mission ends, unless it is told another number."""
 
-RAN_PROBABILITY = 0.5
-"""How probable it is that a skill without an observation did its work. The belief is the mixture of both."""
-
-
-class Ports(Protocol):
+class Ports(Available, Protocol):
     """What the loop needs from outside."""
-
-    clock: Clock
-
-    @property
-    def unavailable(self) -> Mapping[str, str]:
-        """The skills that nobody could run now, each with the reason."""
-        ...
 
     async def until_changed(self, timeout_s: float) -> None:
         """Returns when other skills are available, when somebody wants the mission to go on, or in time."""
@@ -94,11 +81,11 @@ class Mission:
         self._search = search
         self._ports = ports
         self._activation_timeout_s = activation_timeout_s
-        self._failures = failures or Failures({}, FAILURE_LIMIT)
+        self._failures = failures or Failures()
         self._hold_s = hold_s
         self._is_resumed = False
         self._budget = RiskBudget(model.engine.bounds)
-        self._risks: Risks | None = None
+        self._chooser = Chooser(search, limits, self._failures, ports, self._budget)
 
     async def run(self) -> MissionState:
         """Decide and act until the mission ends; machine faults end it as `fault` with their text."""
@@ -120,92 +107,34 @@ class Mission:
     async def _run_until_ended(self) -> None:
         belief = await self._model.engine.summary()
         steps_taken = 0
-        while not self._ends_with(ending_of_belief(belief, steps_taken, self._limits), belief):
+        while (ending := ending_of_belief(belief, steps_taken, self._limits)) is None:
             self._model = await self._ports.newest_model(self._model)
-            self._risks = await self._risks_at(steps_taken + 1)
-            plan = await self._plan(steps_taken, belief)
-            if plan is None:
-                return
-            if self._ends_with(ending_after_planning(plan.best, self._limits), belief):
-                return
+            choice = await self._choose(steps_taken, belief)
+            if isinstance(choice, Ended):
+                return self._end(choice.ending, choice.remark)
             steps_taken += 1
-            decision = self._decide(steps_taken, plan, belief)
+            decision = self._decide(steps_taken, choice, belief)
             self._move_to("acting", steps_taken, belief, remark=decision.action)
-            await self._search.ponder(self._model.engine, steps_taken, plan.index)
+            await self._search.ponder(self._model.engine, steps_taken, choice.plan.index)
             outcome = await self._act(decision)
             belief = await self._observe(decision, outcome)
-            self._failures.take(decision, outcome)
             if self._failures.to_end:
                 return self._end(Ending.SKILLS_FAILED, self._failures.to_end)
             if self._failures.to_hold:
                 await self._hold(self._failures.to_hold, steps_taken, belief, lambda: False)
+        self._end(ending, remark_of(ending, belief, self._limits))
 
-    async def _plan(self, steps_taken: int, belief: BeliefSummary) -> Plan | None:
-        """The next decision: for what can be carried out now, and still can be when it is made.
-
-        None where every action is too risky, which ends the mission.
-        """
+    async def _choose(self, steps_taken: int, belief: BeliefSummary) -> Choice | Ended:
+        """The next decision, or an ending; holds while nothing can be run."""
+        engine = self._model.engine
         while True:
-            if self._is_all_too_risky():
-                assert self._risks is not None
-                self._end(Ending.TOO_RISKY, self._budget.remark(self._risks))
-                return None
-            barred = self._barred()
-            retried = self._failures.to_retry
-            if retried is not None and self._model.digest == retried.model_digest:
-                index = self._index_of(retried)
-                if index not in barred:
-                    return await self._repeated(retried, index)
-            if barred and not self._is_something_available():
-                why = "; ".join(sorted(set(self._ports.unavailable.values())))
-                risky = ", and all others are too risky" if self._forbidden() else ""
-                text = f"the mission holds, for no skill can be run: {why}{risky}"
-                await self._hold(text, steps_taken, belief, self._is_something_available)
-                continue
             self._move_to("planning", steps_taken, belief)
-            plan = await self._search.run(self._model.engine, steps_taken + 1, barred)
-            if plan.index not in self._barred():
-                return plan
-
-    def _barred(self) -> list[int]:
-        """The numbers of the actions that nobody could carry out now, or that are too risky."""
-        unavailable, forbidden = self._ports.unavailable, self._forbidden()
-        actions = self._model.engine.description.actions
-        return [
-            number
-            for number, action in enumerate(actions)
-            if action.skill in unavailable or number in forbidden
-        ]
-
-    async def _risks_at(self, step: int) -> Risks | None:
-        """What each action risks now, where there are constraints."""
-        return await self._model.engine.risks(self._search.seed_of(step)) if self._budget else None
-
-    def _forbidden(self) -> frozenset[int]:
-        return self._budget.forbidden(self._risks) if self._risks is not None else frozenset()
-
-    def _is_all_too_risky(self) -> bool:
-        return len(self._forbidden()) == len(self._model.engine.description.actions)
-
-    def _is_something_available(self) -> bool:
-        return len(self._barred()) < len(self._model.engine.description.actions)
-
-    def _index_of(self, decision: DecisionRecord) -> int:
-        names = [action.name for action in self._model.engine.description.actions]
-        return names.index(decision.action)
-
-    async def _repeated(self, decision: DecisionRecord, index: int) -> Plan:
-        prediction = await self._model.engine.predict(index)
-        return Plan(
-            index,
-            0,
-            decision.horizon,
-            decision.actions,
-            prediction.predicted,
-            0.0,
-            planner=decision.planner,
-            why=self._failures.retry_text,
-        )
+            choice = await self._chooser.choose(self._model, steps_taken + 1, belief)
+            if not isinstance(choice, Held):
+                return choice
+            await self._hold(
+                choice.remark, steps_taken, belief, lambda: self._chooser.is_something_available(engine)
+            )
 
     async def _hold(self, why: str, step: int, belief: BeliefSummary, goes_on: Callable[[], bool]) -> None:
         """Decides nothing until the mission goes on by itself or is resumed, for `hold_s` at most."""
@@ -213,12 +142,14 @@ class Mission:
         self._is_resumed = False
         self._move_to("holding", step, belief, remark=why)
         while not (self._is_resumed or goes_on()):
-            left_s = ends_at_s - self._ports.clock.monotonic_s()
+            now_s = self._ports.clock.monotonic_s()
+            left_s = ends_at_s - now_s
             if left_s <= 0:
                 raise AosError(f"{why}; nothing has changed for {self._hold_s:g} s", code="AOS513")
-            await self._ports.until_changed(left_s)
+            await self._ports.until_changed(min(left_s, self._failures.s_until_return(now_s)))
 
-    def _decide(self, step: int, plan: Plan, belief: BeliefSummary) -> DecisionRecord:
+    def _decide(self, step: int, choice: Choice, belief: BeliefSummary) -> DecisionRecord:
+        plan, risks = choice.plan, choice.risks
         chosen = self._model.engine.description.actions[plan.index]
         record = DecisionRecord(
             sequence=len(self.records),
@@ -241,7 +172,9 @@ class Mission:
             planner=plan.planner,
             why=plan.why,
             threads=plan.threads,
-            constraints=self._budget.spend(self._risks, plan.index) if self._risks is not None else (),
+            constraints=self._budget.spend(risks, plan.index) if risks is not None else (),
+            set_aside=choice.set_aside,
+            is_cautious=choice.is_cautious,
         )
         self._publish(record)
         return record
@@ -262,6 +195,14 @@ class Mission:
 
     async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> BeliefSummary:
         update = await self._updated_belief(decision, outcome)
+        remark = self._failures.take(
+            decision,
+            outcome,
+            is_excluded=update.is_impossible or update.is_excluded,
+            surprise=update.surprise,
+            now_s=self._ports.clock.monotonic_s(),
+            announced=self._ports.announced,
+        )
         record = msgspec.structs.replace(
             decision,
             sequence=len(self.records),
@@ -270,35 +211,32 @@ class Mission:
             outcome=outcome,
             surprise=update.surprise,
             is_impossible=update.is_impossible,
-            remark=update.remark,
+            remark="; ".join(each for each in (update.remark, remark) if each),
         )
         self._publish(record)
         return update.summary
 
     async def _updated_belief(self, decision: DecisionRecord, outcome: Outcome) -> BeliefUpdate:
-        """The belief after an outcome. Without an observation it is the mixture of "it ran" and "it did not";
-        after a refusal it is what it was.
-        """
+        """The belief after an outcome; without an observation by how probable it is that the skill ran."""
         engine = self._model.engine
         if outcome.status == "observed":
             # An observation that does not come from a mapping has no local variables.
             return await engine.update(
-                decision.action, outcome.response, outcome.local_variables or None, outcome.numbers
+                decision.action,
+                outcome.response,
+                outcome.local_variables or None,
+                outcome.numbers,
+                refuted_below=self._limits.refuted_below,
             )
-        if outcome.status == "refused":
+        ran_probability = self._failures.ran_probability(outcome)
+        if ran_probability == 0:
             return BeliefUpdate(0.0, False, await engine.summary())
-        return await engine.update_without_observation(decision.action, ran_probability=RAN_PROBABILITY)
+        return await engine.update_without_observation(decision.action, ran_probability=ran_probability)
 
     def _publish(self, record: DecisionRecord) -> None:
         self._ports.journal("decision", record)
         self.records.append(record)
         self._ports.publish_record(record)
-
-    def _ends_with(self, ending: Ending | None, belief: BeliefSummary) -> bool:
-        if ending is None:
-            return False
-        self._end(ending, remark_of(ending, belief, self._limits))
-        return True
 
     def _move_to(self, phase: str, step: int, belief: BeliefSummary, *, remark: str = "") -> None:
         self._change_state(

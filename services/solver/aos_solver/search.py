@@ -34,8 +34,19 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""
         return self.seed * SEEDS_PER_MISSION + step
 
-    async def run(self, engine: Engine, step: int, barred: Sequence[int] = ()) -> Plan:
-        """Decide on the engine's belief, for none of the actions of these numbers."""
+    async def run(
+        self,
+        engine: Engine,
+        step: int,
+        barred: Sequence[int] = (),
+        *,
+        without: Sequence[str] = (),
+        cautious: bool = False,
+    ) -> Plan:
+        """Decide on the engine's belief, or its cautious one, for none of the actions of these numbers.
+
+        The skills `without` which it decides are not looked ahead with either.
+        """
         return await engine.plan(
             simulations=None if self.time_s is not None else self.simulations,
             time_s=self.time_s,
@@ -44,6 +55,8 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             planner=self.planner,
             threads=self.threads,
             barred=barred,
+            without=without,
+            cautious=cautious,
         )
 
     async def ponder(self, engine: Engine, step: int, index: int) -> None:

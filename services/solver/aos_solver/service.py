@@ -39,7 +39,7 @@ from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
-from aos_solver.failures import Failures
+from aos_solver.failures import FailureRules, Failures
 from aos_solver.hot_plug import ModelShelf, RunningModel
 from aos_solver.mission import Mission
 from aos_solver.search import Search
@@ -90,6 +90,7 @@ class _Solver:
         self._started = asyncio.Event()
         self._changed = asyncio.Event()
         self.unavailable: dict[str, str] = {}
+        self.announced: dict[str, int] = {}
 
     async def run(self) -> None:
         bus, keys = self._bus, self._keys
@@ -209,7 +210,7 @@ class _Solver:
             self._search,
             self,
             activation_timeout_s=settings.activation_timeout_s,
-            failures=Failures(settings.skills, settings.failure_limit),
+            failures=Failures(msgspec.convert(settings, FailureRules, from_attributes=True)),
             hold_s=settings.hold_s,
         )
         await self._await_mappings(self._running.revision)
@@ -240,7 +241,7 @@ class _Solver:
     def _take_mapping_state(self, state: MappingState) -> None:
         if state.unavailable != self.unavailable:
             log.info("unavailable skills: %s", state.unavailable or "none")
-        self.unavailable = state.unavailable
+        self.unavailable, self.announced = state.unavailable, state.announced
         self._changed.set()
 
     async def until_changed(self, timeout_s: float) -> None:

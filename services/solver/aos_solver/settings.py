@@ -33,7 +33,9 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     stop_below_value: float | None = None
     constraints: tuple[Constraint, ...] = ()
     activation_timeout_s: float = 120.0
-    failure_limit: int = 3
+    failure_limit: int = 30
+    set_aside_after: int = 3
+    set_aside_s: float = 300.0
     hold_s: float = 600.0
     skills: dict[str, SkillRule] = msgspec.field(default_factory=dict)
     planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"

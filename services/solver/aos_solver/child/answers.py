@@ -11,11 +11,14 @@ from aos_protocol.messages import ActionValue, BeliefSummary, PredictedObservati
 from aos_solver.child.command_line import command_line
 
 __all__ = [
+    "BeliefCount",
     "BeliefUpdate",
     "EngineDescription",
     "EngineFault",
     "ExactValues",
     "ExportedBelief",
+    "ExportedBeliefs",
+    "GoalReach",
     "GroundedAction",
     "Listed",
     "Plan",
@@ -54,8 +57,9 @@ class EngineDescription(msgspec.Struct, frozen=True):
 class Plan(msgspec.Struct, frozen=True):
     """A decision: the index of the best action, and what the search found about each, in their order.
 
-    `planner` has made it with so many `threads`, and `why` says why that planner did. `known_simulations`
-    were in the tree before the search.
+    Skills that the search did without have no actions here; `place` is where the best one stands among those
+    that have, None where that is its index. `planner` has made it with so many `threads`, and `why` says why
+    that planner did. `known_simulations` were in the tree before the search.
     """
 
     index: int
@@ -69,10 +73,11 @@ class Plan(msgspec.Struct, frozen=True):
     planner: str = ""
     why: str = ""
     threads: int = 1
+    place: int | None = None
 
     @property
     def best(self) -> ActionValue:
-        return self.actions[self.index]
+        return self.actions[self.index if self.place is None else self.place]
 
 
 _ROUNDING = 1e-9
@@ -89,6 +94,9 @@ class EngineFault(msgspec.Struct, frozen=True):
 class BeliefUpdate(msgspec.Struct, frozen=True):
     """The belief after an outcome, and log P(observation | belief, action) before it.
 
+    `is_impossible` where no state of any belief explains it. `is_excluded` also where a report that was
+    impossible before is impossible in the cautious belief again.
+
     With numbers P is a density, in units of the numbers. `has_other_numbers` says that the model reports no
     such numbers with that response, so that the response counted alone. `uncorrected` is why the local
     variables of the outcome did not correct the belief. `remark` tells people of both.
@@ -97,6 +105,7 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
     log_probability: float
     is_impossible: bool
     summary: BeliefSummary
+    is_excluded: bool = False
     has_other_numbers: bool = False
     uncorrected: EngineFault | None = None
     remark: str = ""
@@ -150,6 +159,13 @@ class Reach(msgspec.Struct, frozen=True):
     limit: str
 
 
+class GoalReach(msgspec.Struct, frozen=True):
+    """Whether actions lead to a goal from a belief's running states; random walks leave it unproven."""
+
+    is_reachable: bool
+    is_proven: bool
+
+
 class Listed(msgspec.Struct, frozen=True):
     """How many states are listed with all that their actions lead to, and how many are known."""
 
@@ -201,6 +217,10 @@ class ExportedBelief(msgspec.Struct, frozen=True):
     @property
     def command(self) -> str:
         """What an engine is told that takes it over."""
+        return self.command_with()
+
+    def command_with(self, **fields: object) -> str:
+        """The same with further fields."""
         items = [item for pair in (*self.constants.items(), *self.particles) for item in pair]
         return command_line(
             "import_belief",
@@ -209,7 +229,33 @@ class ExportedBelief(msgspec.Struct, frozen=True):
             is_drawn=self.is_drawn,
             history=self.history,
             constants=len(self.constants),
+            **fields,
         )
+
+
+class ExportedBeliefs(msgspec.Struct, frozen=True):
+    """All that an engine believes: each hypothesis' belief, and the cautious one. `words` tell them apart."""
+
+    words: str
+    beliefs: tuple[ExportedBelief, ...]
+
+    @property
+    def commands(self) -> list[str]:
+        """What an engine is told that takes them over, the last of it changes what it believes."""
+        count = len(self.beliefs)
+        return [
+            belief.command_with(
+                is_first=number == 0, left=count - number - 1, beliefs=count, words=self.words
+            )
+            for number, belief in enumerate(self.beliefs)
+        ]
+
+
+class BeliefCount(msgspec.Struct, frozen=True):
+    """How many beliefs there are to export, and the words that go with them."""
+
+    beliefs: int
+    words: str
 
 
 class WorldStart(msgspec.Struct, frozen=True):

@@ -21,12 +21,15 @@ from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import (
+    BeliefCount,
     BeliefUpdate,
     EngineDescription,
     EngineFault,
     EngineStep,
     ExactValues,
     ExportedBelief,
+    ExportedBeliefs,
+    GoalReach,
     Listed,
     Plan,
     Prediction,
@@ -166,10 +169,14 @@ class Engine:
         planner: Planner = "pomcp",
         threads: int = 1,
         barred: Sequence[int] = (),
+        without: Sequence[str] = (),
+        cautious: bool = False,
     ) -> Plan:
         """Searches from the current belief within the budget; `horizon` None takes the document's.
 
-        The decision is for none of the actions that are `barred`, which nobody could carry out now.
+        The decision is for none of the actions that are `barred`, which nobody could carry out now. The
+        search does without the skills that are named, now and later. With `cautious` it starts from the
+        belief in which nothing ran that was not observed.
 
         With the planner `auto` the model's size decides, and the plan says why. POMCP can use
         several threads.
@@ -183,6 +190,8 @@ class Engine:
             horizon=horizon or 0,
             planner=planner,
             threads=threads,
+            without=",".join(without) or None,
+            cautious=cautious or None,
         )
         return await self._ask(command, Plan, deadline_s=PLANNING_DEADLINE_S + (time_s or 0))
 
@@ -212,6 +221,20 @@ class Engine:
         """
         return await self._ask(command_line("reach", seconds=seconds, max_seconds=max_seconds), Reach)
 
+    async def may_reach_goal(
+        self, *, without: Sequence[str] = (), cautious: bool = False, seconds: float = 1.0, seed: int = 0
+    ) -> GoalReach:
+        """Whether actions lead to a goal without these skills; looked at for so much processor time."""
+        command = command_line(
+            "may_reach_goal",
+            without=",".join(without) or None,
+            cautious=cautious or None,
+            seconds=seconds,
+            seed=seed,
+            horizon=0,
+        )
+        return await self._ask(command, GoalReach)
+
     async def list_states(self, max_states: int = 0) -> Listed:
         """Lists what one more decision leads to: from the current belief on where `max_states` is given, else
         from where the last call has ended. IntractableError where outcomes or states are too many."""
@@ -228,9 +251,9 @@ class Engine:
         """What each action risks of the mission's constraints; the seed is for what has to be sampled."""
         return await self._ask(command_line("risks", seed=seed), Risks)
 
-    async def predict(self, index: int) -> Prediction:
+    async def predict(self, index: int, *, cautious: bool = False) -> Prediction:
         """What may be observed after an action."""
-        return await self._ask(command_line("predict", action=index), Prediction)
+        return await self._ask(command_line("predict", action=index, cautious=cautious or None), Prediction)
 
     async def update(
         self,
@@ -238,16 +261,23 @@ class Engine:
         response: str,
         local_variables: Mapping[str, str] | None = None,
         numbers: Mapping[str, Any] | None = None,
+        refuted_below: float = 0.01,
     ) -> BeliefUpdate:
         """Bayes' rule after an action and its observation: a response, and the numbers reported beside it.
 
         The local variables of a real outcome, as text, correct the belief where the skill's documents say so.
-        The update's remark says why numbers or local variables could not be used.
+        The update's remark says why numbers or local variables could not be used. The cautious belief is
+        given up once all that was observed since it began is less probable in it by this factor.
         """
         index = self._index(action)
         skill = self.description.actions[index].skill
         observed = self.observed.get(skill, ())
-        question = {"action": index, "response": response, "numbers": numbers_field(observed, numbers or {})}
+        question = {
+            "action": index,
+            "response": response,
+            "numbers": numbers_field(observed, numbers or {}),
+            "refuted_below": refuted_below,
+        }
         update = await self._corrected(action, question, local_variables)
         if not update.has_other_numbers:
             return update
@@ -297,22 +327,32 @@ class Engine:
         return self._correction_faults[fault]
 
     async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
-        """The mixture of "it ran" and "it did not"."""
+        """The mixture of "it ran" and "it did not", with one cause for all such ends in a row of a skill."""
         index = self._index(action)
         command = command_line("update_without_observation", action=index, ran_probability=ran_probability)
         return await self._change_belief(command, BeliefUpdate)
 
-    async def export_belief(self, *, is_whole: bool = True) -> ExportedBelief:
+    async def export_belief(
+        self, *, is_whole: bool = True, cautious: bool = False, number: int | None = None
+    ) -> ExportedBelief:
         """The whole belief, however many pieces it takes; nobody changes it meanwhile.
 
-        Without `is_whole` states are told without what does not matter.
+        Without `is_whole` states are told without what does not matter. A `number` is that of one of all
+        beliefs, see `export_beliefs`.
         """
-        belief = await self._ask(command_line("export_belief", first=0, is_whole=is_whole), ExportedBelief)
+        fields = {"is_whole": is_whole, "cautious": cautious or None, "number": number}
+        belief = await self._ask(command_line("export_belief", first=0, **fields), ExportedBelief)
         particles = list(belief.particles)
         while len(particles) < belief.states:
-            command = command_line("export_belief", first=len(particles), is_whole=is_whole)
+            command = command_line("export_belief", first=len(particles), **fields)
             particles += (await self._ask(command, ExportedBelief)).particles
         return msgspec.structs.replace(belief, particles=tuple(particles))
+
+    async def export_beliefs(self) -> ExportedBeliefs:
+        """All that is believed: the belief of each hypothesis, and the cautious one; see hypotheses.hpp."""
+        count = await self._ask("describe_beliefs", BeliefCount)
+        beliefs = [await self.export_belief(number=number) for number in range(count.beliefs)]
+        return ExportedBeliefs(count.words, tuple(beliefs))
 
     async def draw_belief(self) -> BeliefSummary:
         """Back to the initial belief, as particles even where it could be enumerated."""
@@ -321,6 +361,13 @@ class Engine:
     async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
         """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
         return await self._change_belief(belief.command, BeliefSummary)
+
+    async def import_beliefs(self, beliefs: ExportedBeliefs) -> BeliefSummary:
+        """Takes over all that an engine believes whose model has the same state layout."""
+        *first, last = beliefs.commands
+        for command in first:
+            await self._ask(command, _Done)
+        return await self._change_belief(last, BeliefSummary)
 
     async def reset_world(self, seed: int) -> WorldStart:
         """Starts a hidden state, drawn from the initial belief, for missions without a robot."""

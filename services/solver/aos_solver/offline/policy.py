@@ -119,20 +119,31 @@ class PolicySearch(Search, frozen=True, kw_only=True):
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""
 
-    async def run(self, engine: Engine, step: int, barred: Sequence[int] = ()) -> Plan:
+    async def run(
+        self,
+        engine: Engine,
+        step: int,
+        barred: Sequence[int] = (),
+        *,
+        without: Sequence[str] = (),
+        cautious: bool = False,
+    ) -> Plan:
         """The policy's action at the engine's belief; PlanningError AOS322 if the policy does not fit.
+
+        Its values suppose that all skills can be used later, also those `without` which it decides now.
 
         Where the policy would stop it is the best of the other actions, whose value is then below that of
         stopping: whether the mission ends is for the mission's limits to say.
         """
         begun_s = time.perf_counter()
         self.policy.check_model(engine.model_digest)
-        choice = self.policy.choose(await engine.export_belief(is_whole=False))
+        choice = self.policy.choose(await engine.export_belief(is_whole=False, cautious=cautious))
         names = [action.name for action in engine.description.actions]
+        left_out = [n for n, action in enumerate(engine.description.actions) if action.skill in without]
         values = choice.values[: len(names)].copy()
-        values[list(barred)] = -np.inf
+        values[[*barred, *left_out]] = -np.inf
         best = int(np.argmax(values))
-        prediction = await engine.predict(best)
+        prediction = await engine.predict(best, cautious=cautious)
         actions = tuple(
             ActionValue(name, float(value), int(plans), 0.0)
             for name, value, plans in zip(names, choice.values, choice.plans, strict=False)

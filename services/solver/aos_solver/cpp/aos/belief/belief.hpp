@@ -163,14 +163,18 @@ class Belief {
     return std::max(sum, 0.0);
   }
 
-  void write_summary(JsonWriter& json) const {
-    Marginals<Model>{particles_}.write(json.begin_object().key("marginals"));
+  // These write members of an object: a summary for people, and the probabilities of the endings alone.
+  void write_members(JsonWriter& json) const {
+    Marginals<Model>{particles_}.write(json.key("marginals"));
     json.member("entropy", entropy());
+    write_endings(json);
+    json.member("states", particles_.size()).member("effective_states", effective_states());
+    json.member("is_exact", is_exact()).member("error_bound", error_bound_);
+  }
+  void write_endings(JsonWriter& json) const {
     json.member("goal_probability", probability_of(Ending::goal));
     json.member("failure_probability", probability_of(Ending::failure));
     json.member("over_probability", probability_of(Ending::over));
-    json.member("states", particles_.size()).member("effective_states", effective_states());
-    json.member("is_exact", is_exact()).member("error_bound", error_bound_).end_object();
   }
 
   // A belief that was saved. If a drawn one was saved with lineages and a history, it has these again.

@@ -6,13 +6,15 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
+#include <vector>
 
+#include "aos/base/base64.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/json.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/belief/hypotheses.hpp"
 #include "aos/belief/kept_beliefs.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/left_out.hpp"
@@ -30,22 +32,31 @@ class BeliefCommands {
 
   // `kept_beliefs` is the path of the file of KeptBeliefs. `search` follows the changes of the belief.
   BeliefCommands(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs, Planner<Model>& search)
-      : random_(seed), policy_(policy), belief_(Belief<Model>::initial(random_)), kept_(kept_beliefs), search_(search) {}
+      : random_(seed), policy_(policy), believed_(Belief<Model>::initial(random_)), kept_(kept_beliefs), search_(search) {}
 
-  const Belief<Model>& belief() const { return belief_; }
+  const Belief<Model>& belief() const { return believed_.belief(); }
+  // Null where nothing sets it apart from the belief.
+  const Belief<Model>* cautious() const { return believed_.cautious(); }
+  // The belief that a command is about: its flag `cautious` asks for the one in which nothing ran that was not observed.
+  const Belief<Model>& belief_for(const Command& command) const {
+    const bool is_cautious = command.optional_text("cautious") && command.flag("cautious");
+    return is_cautious && believed_.cautious() != nullptr ? *believed_.cautious() : belief();
+  }
+
+  void summary(JsonWriter& json) const { believed_.write_summary(json); }
 
   void reset(JsonWriter& json) {
     impossible_in_a_row_ = 0;
-    become(json, Belief<Model>::initial(random_), [&] { search_.start_over(); });
+    become(json, Hypotheses{Belief<Model>::initial(random_)}, [&] { search_.start_over(); });
   }
 
   // Makes the belief the initial belief in particles, even where enumeration gives it exactly: tests compare the two.
-  void draw(JsonWriter& json) { become(json, Belief<Model>::drawn(random_)); }
+  void draw(JsonWriter& json) { become(json, Hypotheses{Belief<Model>::drawn(random_)}); }
 
   // Writes the probability of each observation after an action.
-  void write_predicted(JsonWriter& json, int action) {
+  void write_predicted(JsonWriter& json, int action, const Belief<Model>& belief) {
     json.begin_array();
-    for (const auto& [observation, probability] : belief_.observations(action, random_)) {
+    for (const auto& [observation, probability] : belief.observations(action, random_)) {
       json.begin_object().member("response", text_of_response<Model>(action, observation));
       json.member("probability", probability).end_object();
     }
@@ -53,33 +64,40 @@ class BeliefCommands {
   }
   void predict(JsonWriter& json, const Command& command) {
     json.begin_object().key("predicted");
-    write_predicted(json, action_of<Model>(command));
+    write_predicted(json, action_of<Model>(command), belief_for(command));
     json.end_object();
   }
 
   // Updates the belief by a response and the `numbers` observed with it. If no step of the model reports just these
   // numbers, the response counts alone. `locals`, if given, are values of the mapping's local variables; they correct
-  // the belief. A fault of this correction is told in the answer, and the belief stays uncorrected.
+  // the belief. A fault of this correction is told in the answer, and the belief stays uncorrected. `refuted_below` is
+  // explained in hypotheses.hpp.
   void update(JsonWriter& json, const Command& command) {
     const int action = action_of<Model>(command);
     const Observation observation = observation_of<Model>(action, command.text("response"));
     const ObservedNumbers numbers = numbers_from(command.text("numbers"));
     const auto locals = command.optional_text("locals");
     Uncorrected uncorrected;
-    const auto by = [&](auto&& sink) {
-      return locals ? corrected_posterior(action, observation, sink, *locals, uncorrected)
-                    : belief_.posterior(action, observation, sink, random_);
+    const auto by = [&](const Belief<Model>& belief, auto&& sink) {
+      return locals ? corrected_posterior(belief, action, observation, sink, *locals, uncorrected)
+                    : belief.posterior(action, observation, sink, random_);
     };
-    auto [posterior, log_probability] = by(WeighedNumbers{numbers});
+    auto found = believed_.posteriors([&](const Belief<Model>& belief) { return by(belief, WeighedNumbers{numbers}); });
     bool has_other_numbers = false;
-    if (posterior.particles().empty() && Model::number_count(Model::skill_of(action)) > 0) {
-      WeighedNumbers reported{numbers, /*by_value=*/false};
-      has_other_numbers = belief_.posterior(action, observation, reported, random_).first.particles().empty();
-      if (has_other_numbers) std::tie(posterior, log_probability) = by(ignored_numbers);
+    if (found.are_empty() && Model::number_count(Model::skill_of(action)) > 0) {
+      has_other_numbers = believed_.posteriors([&](const Belief<Model>& belief) {
+        WeighedNumbers reported{numbers, /*by_value=*/false};
+        return belief.posterior(action, observation, reported, random_);
+      }).are_empty();
+      if (has_other_numbers) {
+        found = believed_.posteriors([&](const Belief<Model>& belief) { return by(belief, ignored_numbers); });
+      }
     }
-    const bool is_impossible = posterior.particles().empty();
-    json.begin_object().member("log_probability", is_impossible ? 0 : log_probability);
-    json.member("is_impossible", is_impossible).member("has_other_numbers", has_other_numbers && !is_impossible);
+    const bool is_impossible = found.are_empty();
+    const Report report{Model::skill_name(Model::skill_of(action)), std::string{command.text("response")}};
+    json.begin_object().member("log_probability", is_impossible ? 0 : believed_.log_probability(found));
+    json.member("is_impossible", is_impossible).member("is_excluded", believed_.excludes(found, report));
+    json.member("has_other_numbers", has_other_numbers && !is_impossible);
     if (!uncorrected.code.empty()) {
       json.key("uncorrected").begin_object().member("code", uncorrected.code).member("text", uncorrected.text);
       json.member("piece", uncorrected.piece).end_object();
@@ -87,10 +105,12 @@ class BeliefCommands {
     json.key("summary");
     if (is_impossible) {
       ++impossible_in_a_row_;
-      become(json, after_impossible(action));
+      become(json, believed_.remedied(report, after_impossible(action)));
     } else {
       impossible_in_a_row_ = 0;
-      become(json, std::move(posterior), [&] { search_.move_to(action, observation); });
+      const bool is_by_bayes = !found.hypotheses_are_empty() && !believed_.excludes(found, report);
+      auto after = believed_.given(Model::skill_of(action), report, std::move(found), command.number<double>("refuted_below"));
+      become(json, std::move(after), [&] { is_by_bayes ? search_.move_to(action, observation) : search_.forget(); });
     }
     json.end_object();
   }
@@ -99,35 +119,60 @@ class BeliefCommands {
   void update_without_observation(JsonWriter& json, const Command& command) {
     const int action = action_of<Model>(command);
     json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
-    become(json.key("summary"), belief_.predicted(action, random_, command.number<double>("ran_probability")));
+    become(json.key("summary"), believed_.unobserved(action, command.number<double>("ran_probability"), random_));
     json.end_object();
   }
 
-  // Writes the particles from `first` on. Unless `is_whole`, variables that do not matter have stand-ins.
+  // Writes the particles from `first` on, of the belief or of the one with this `number` among those of `describe_beliefs`.
+  // Unless `is_whole`, variables that do not matter have stand-ins.
   void export_belief(JsonWriter& json, const Command& command) const {
     const LeftOut<Model> left_out;
     const bool is_whole = command.flag("is_whole");
-    save_belief(json, belief_, command.number<std::size_t>("first"),
+    const auto all = believed_.beliefs();
+    const bool has_number = command.optional_text("number").has_value();
+    const auto number = has_number ? command.number<std::size_t>("number") : 0;
+    if (number >= all.size()) throw BadCommand{"there is no such belief"};
+    save_belief(json, has_number ? *all[number] : belief_for(command), command.number<std::size_t>("first"),
                 [&](const State& state) { return is_whole ? state : left_out.rest_of(state); });
   }
+  // Writes how many beliefs there are, and what tells them apart.
+  void describe_beliefs(JsonWriter& json) const {
+    json.begin_object().member("beliefs", believed_.beliefs().size());
+    json.member("words", to_base64(believed_.words())).end_object();
+  }
 
+  // Takes over a belief, or one of several: these come one after the other, and with the last of them (`left` is 0) all
+  // are taken over. `words` tells them apart.
   void import_belief(JsonWriter& json, const Command& command) {
     auto belief = load_belief<Model>(command.number<double>("error_bound"), command.flag("is_drawn"),
                                      command.text("history"), command.number<std::size_t>("constants"), command.items());
     if (belief.particles().empty()) throw BadCommand{"an empty belief"};
-    become(json, std::move(belief));
+    const bool is_one_of_many = command.optional_text("left").has_value();
+    if (is_one_of_many && command.flag("is_first")) incoming_.clear();
+    incoming_.push_back(std::move(belief));
+    if (is_one_of_many && command.number<int>("left") > 0) {
+      json.begin_object().end_object();
+      return;
+    }
+    std::vector<Belief<Model>> all = std::exchange(incoming_, {});
+    if (!is_one_of_many) return become(json, Hypotheses{std::move(all.back())});
+    if (all.size() != command.number<std::size_t>("beliefs")) throw BadCommand{"some of the beliefs are missing"};
+    const auto words = from_base64<std::uint64_t>(command.text("words"));
+    become(json, Hypotheses::of(std::move(all), words.value_or(Words{})));
   }
 
-  // Takes over the belief that an earlier engine kept after change number `change`.
+  // Takes over what an earlier engine kept after change number `change`.
   void restore(JsonWriter& json, const Command& command) {
     auto kept = kept_.restore(command.number<std::uint64_t>("change"));
     if (!kept) throw BadCommand{"that belief was not kept"};
-    belief_ = *std::move(kept);
+    believed_ = *std::move(kept);
     search_.forget();
     json.begin_object().end_object();
   }
 
  private:
+  using Hypotheses = aos::Hypotheses<Model>;
+
   // Why an observation did not correct the belief. The code is empty if it did.
   struct Uncorrected {
     std::string code;
@@ -136,31 +181,31 @@ class BeliefCommands {
   };
 
   template <class Numbers>
-  std::pair<Belief<Model>, double> corrected_posterior(int action, Observation observation, Numbers& numbers,
-                                                       std::string_view locals, Uncorrected& uncorrected) {
+  std::pair<Belief<Model>, double> corrected_posterior(const Belief<Model>& belief, int action, Observation observation,
+                                                       Numbers& numbers, std::string_view locals, Uncorrected& uncorrected) {
     try {
       Model::read_locals(action, locals);
       const typename Model::Correcting correcting{observation};
       // A replay of this step would not be corrected, so the corrected belief has no history.
-      const auto [posterior, log_probability] = belief_.without_history().posterior(action, observation, numbers, random_);
+      const auto [posterior, log_probability] = belief.without_history().posterior(action, observation, numbers, random_);
       return {posterior.without_history(), log_probability};
     } catch (const ModelFault& fault) {
       uncorrected = {fault.code, fault.text, blame::piece()};
     } catch (const std::exception& error) {
       uncorrected = {"AOS215", error.what(), blame::piece()};
     }
-    return belief_.posterior(action, observation, numbers, random_);
+    return belief.posterior(action, observation, numbers, random_);
   }
 
-  // Takes over a belief and writes its summary. If the summary fails, nothing changes.
-  void become(JsonWriter& json, Belief<Model> belief) {
-    become(json, std::move(belief), [&] { search_.forget(); });
+  // Takes over what is believed and writes its summary. If the summary fails, nothing changes.
+  void become(JsonWriter& json, Hypotheses believed) {
+    become(json, std::move(believed), [&] { search_.forget(); });
   }
   template <class Follow>
-  void become(JsonWriter& json, Belief<Model> belief, Follow&& follow) {
-    belief.write_summary(json);
-    belief_ = std::move(belief);
-    kept_.keep(belief_);
+  void become(JsonWriter& json, Hypotheses believed, Follow&& follow) {
+    believed.write_summary(json);
+    believed_ = std::move(believed);
+    kept_.keep(believed_);
     follow();
   }
 
@@ -173,10 +218,10 @@ class BeliefCommands {
   Belief<Model> after_impossible(int action) {
     const Belief<Model> initial = Belief<Model>::initial(random_);
     if (policy_ == ImpossiblePolicy::reset) return initial;
-    const Belief<Model> predicted = belief_.predicted(action, random_);
-    const bool may_be_too_few = belief_.is_drawn() && impossible_in_a_row_ <= held_in_a_row;
+    const Belief<Model> predicted = belief().predicted(action, random_);
+    const bool may_be_too_few = belief().is_drawn() && impossible_in_a_row_ <= held_in_a_row;
     if (policy_ == ImpossiblePolicy::hold || may_be_too_few) return predicted;
-    return predicted.mixed_with(belief_.mixed_with(initial, 0.5), 0.5);
+    return predicted.mixed_with(belief().mixed_with(initial, 0.5), 0.5);
   }
 
   static constexpr int held_in_a_row = 8;
@@ -184,7 +229,8 @@ class BeliefCommands {
   Sampler random_;
   ImpossiblePolicy policy_;
   int impossible_in_a_row_ = 0;
-  Belief<Model> belief_;
+  Hypotheses believed_;
+  std::vector<Belief<Model>> incoming_;
   KeptBeliefs<Model> kept_;
   Planner<Model>& search_;
 };

@@ -47,13 +47,14 @@ class Commands {
     const std::string_view name = command.name();
     if (command.optional_text("max_seconds")) watchdog::allow(command.number<double>("max_seconds"));
     if (name == "describe") return describe(json);
-    if (name == "summary") return beliefs_.belief().write_summary(json);
+    if (name == "summary") return beliefs_.summary(json);
     if (name == "reset_belief") return beliefs_.reset(json);
     if (name == "draw_belief") return beliefs_.draw(json);
     if (name == "predict") return beliefs_.predict(json, command);
     if (name == "update") return beliefs_.update(json, command);
     if (name == "update_without_observation") return beliefs_.update_without_observation(json, command);
     if (name == "export_belief") return beliefs_.export_belief(json, command);
+    if (name == "describe_beliefs") return beliefs_.describe_beliefs(json);
     if (name == "import_belief") return beliefs_.import_belief(json, command);
     if (name == "restore_belief") return beliefs_.restore(json, command);
     if (name == "risks") return write_risks(json, command, beliefs_.belief());
@@ -62,6 +63,7 @@ class Commands {
     if (name == "count_processor_time") return planning_.count_processor_time(json, command);
     if (name == "exact") return planning_.exact(json, command);
     if (name == "reach") return planning_.reach(json, command);
+    if (name == "may_reach_goal") return planning_.may_reach_goal(json, command);
     if (name == "list") return planning_.list(json, command);
     if (name == "write_listing") return planning_.write_listing(json, command);
     if (name == "reset_world") return worlds_.reset(json, command);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +17,7 @@
 #include "aos/base/random.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
+#include "aos/child/goal_reach.hpp"
 #include "aos/child/listing.hpp"
 #include "aos/child/reachability.hpp"
 #include "aos/child/wording.hpp"
@@ -30,41 +33,19 @@ class PlanningCommands {
  public:
   PlanningCommands(BeliefCommands<Model>& beliefs, Planner<Model>& search) : beliefs_(beliefs), search_(search) {}
 
-  // The command's items are the numbers of the actions that cannot be carried out now.
+  // The command's items are the numbers of the actions that cannot be carried out now. The skills that it names as
+  // `without` are not there for the whole search.
   void plan(JsonWriter& json, const Command& command) {
-    const auto start = std::chrono::steady_clock::now();
-    const auto processor_start = processor_time();
-    const Budget budget = budget_of(command);
-    const int horizon = horizon_of(command);
-    BarredActions barred;
-    for (const auto item : command.items()) {
-      barred.insert(static_cast<std::size_t>(checked_action<Model>(detail::number_in<int>(item))));
-    }
-    const auto planner = planner_kind(command.text("planner"));
-    if (!planner) throw BadCommand{"there is no planner " + std::string{command.text("planner")}};
-    if (horizon != planned_horizon_) search_.forget();
-    planned_horizon_ = horizon;
-    Sampler random{command.number<std::uint64_t>("seed")};
-    const std::uint64_t known = search_.known_simulations();
-    const std::uint64_t simulations = search_.search(*planner, belief(), budget, horizon, random, barred);
-    const auto estimates = search_.estimates(belief());
-    const int best = search_.choice(estimates, barred);
-    json.begin_object().member("index", best).member("simulations", simulations).member("horizon", horizon);
-    json.member("known_simulations", known);
-    const std::string_view name = search_.name();
-    json.member("planner", name).member("why", search_.why());
-    json.member("threads", name == "pomcp" ? budget.threads : 1);  // only POMCP has several threads
-    json.key("actions").begin_array();
-    for (int action = 0; action < Model::action_count(); ++action) {
-      const auto& estimate = estimates[static_cast<std::size_t>(action)];
-      json.begin_object().member("action", Model::action_name(action)).member("q", estimate.q);
-      json.member("n", estimate.n).member("stderr", estimate.standard_error).end_object();
-    }
-    json.end_array().key("predicted");
-    beliefs_.write_predicted(json, best);
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    const std::chrono::duration<double> processor{processor_time() - processor_start};
-    json.member("seconds", spent.count()).member("cpu_seconds", processor.count()).end_object();
+    const auto left_out = left_out_by(command);
+    if (left_out.empty()) return plan_with(search_, json, command, all_actions());
+    const std::vector<int> left = actions_left(left_out);
+    if (left.empty()) throw BadCommand{"no action is left"};
+    const typename Model::Without without{left_out};
+    if (!shorter_search_ || left != left_) shorter_search_ = std::make_unique<Planner<Model>>();
+    left_ = left;
+    shorter_search_->forget();
+    plan_with(*shorter_search_, json, command, left);
+    planned_horizon_ = 0;  // what follows is not pondered
   }
 
   // Notes an action that is carried out now. `go_on_pondering` then plans what may come after it.
@@ -80,7 +61,9 @@ class PlanningCommands {
     const Pondered pondered = *std::exchange(pondered_, std::nullopt);
     Sampler random{pondered.seed};
     try {
-      search_.ponder(pondered.action, belief(), pondered.budget, planned_horizon_, random, is_over);
+      const bool is_cautious = planned_cautiously_ && beliefs_.cautious() != nullptr;
+      const Belief<Model>& planned = is_cautious ? *beliefs_.cautious() : belief();
+      search_.ponder(pondered.action, planned, pondered.budget, planned_horizon_, random, is_over);
     } catch (...) {
       search_.forget();
       blame::at(0);
@@ -121,6 +104,15 @@ class PlanningCommands {
     json.member("limit", reached.limit()).end_object();
   }
 
+  void may_reach_goal(JsonWriter& json, const Command& command) const {
+    const auto left_out = left_out_by(command);
+    std::optional<typename Model::Without> without;
+    if (!left_out.empty()) without.emplace(left_out);
+    Sampler random{command.number<std::uint64_t>("seed")};
+    const GoalReach<Model> reach{beliefs_.belief_for(command), command.number<double>("seconds"), horizon_of(command), random};
+    json.begin_object().member("is_reachable", reach.is_reachable()).member("is_proven", reach.is_proven()).end_object();
+  }
+
   // Lists the model from the current belief on. A call without a limit of states continues the listing before it.
   void list(JsonWriter& json, const Command& command) {
     const auto max_states = command.number<std::size_t>("max_states");
@@ -143,6 +135,77 @@ class PlanningCommands {
 
   const Belief<Model>& belief() const { return beliefs_.belief(); }
 
+  static std::vector<int> all_actions() {
+    std::vector<int> actions(static_cast<std::size_t>(Model::action_count()));
+    std::iota(actions.begin(), actions.end(), 0);
+    return actions;
+  }
+  static std::vector<int> actions_left(const std::vector<bool>& left_out) {
+    std::vector<int> actions = all_actions();
+    std::erase_if(actions, [&](int action) { return left_out[static_cast<std::size_t>(Model::skill_of(action))]; });
+    return actions;
+  }
+  // For each skill whether it is left out; empty if none is.
+  static std::vector<bool> left_out_by(const Command& command) {
+    const std::string_view names = command.optional_text("without").value_or(std::string_view{});
+    if (names.empty()) return {};
+    std::vector<bool> left_out(static_cast<std::size_t>(Model::skill_count), false);
+    for (const auto name : detail::parts_of(names, ',')) {
+      for (int skill = 0; skill < Model::skill_count; ++skill) {
+        if (name == Model::skill_name(skill)) left_out[static_cast<std::size_t>(skill)] = true;
+      }
+    }
+    return left_out;
+  }
+
+  // Plans with the model's actions as they are now; `numbers` are those that they have in the documents.
+  void plan_with(Planner<Model>& search, JsonWriter& json, const Command& command, const std::vector<int>& numbers) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto processor_start = processor_time();
+    const Belief<Model>& belief = beliefs_.belief_for(command);
+    const Budget budget = budget_of(command);
+    const int horizon = horizon_of(command);
+    const auto planner = planner_kind(command.text("planner"));
+    if (!planner) throw BadCommand{"there is no planner " + std::string{command.text("planner")}};
+    const bool is_cautious = &belief != &beliefs_.belief();
+    if (horizon != planned_horizon_ || is_cautious != planned_cautiously_) search.forget();
+    planned_horizon_ = horizon;
+    planned_cautiously_ = is_cautious;
+    const BarredActions barred = barred_by(command, numbers);
+    Sampler random{command.number<std::uint64_t>("seed")};
+    const std::uint64_t known = search.known_simulations();
+    const std::uint64_t simulations = search.search(*planner, belief, budget, horizon, random, barred);
+    const auto estimates = search.estimates(belief);
+    const int best = search.choice(estimates, barred);
+    json.begin_object().member("index", numbers[static_cast<std::size_t>(best)]).member("place", best);
+    json.member("simulations", simulations).member("horizon", horizon).member("known_simulations", known);
+    const std::string_view name = search.name();
+    json.member("planner", name).member("why", search.why());
+    json.member("threads", name == "pomcp" ? budget.threads : 1);  // only POMCP has several threads
+    json.key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      const auto& estimate = estimates[static_cast<std::size_t>(action)];
+      json.begin_object().member("action", Model::action_name(action)).member("q", estimate.q);
+      json.member("n", estimate.n).member("stderr", estimate.standard_error).end_object();
+    }
+    json.end_array().key("predicted");
+    beliefs_.write_predicted(json, best, belief);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    const std::chrono::duration<double> processor{processor_time() - processor_start};
+    json.member("seconds", spent.count()).member("cpu_seconds", processor.count()).end_object();
+  }
+
+  // The actions that the command bars, by their numbers among `numbers`.
+  static BarredActions barred_by(const Command& command, const std::vector<int>& numbers) {
+    BarredActions barred;
+    for (const auto item : command.items()) {
+      const auto place = std::ranges::find(numbers, detail::number_in<int>(item));
+      if (place == numbers.end()) continue;
+      barred.insert(static_cast<std::size_t>(place - numbers.begin()));
+    }
+    return barred;
+  }
+
   static int horizon_of(const Command& command) {
     const int horizon = command.number<int>("horizon");
     return horizon > 0 ? horizon : Model::horizon;
@@ -157,6 +220,9 @@ class PlanningCommands {
   BeliefCommands<Model>& beliefs_;
   Planner<Model>& search_;
   int planned_horizon_ = 0;
+  bool planned_cautiously_ = false;
+  std::vector<int> left_;
+  std::unique_ptr<Planner<Model>> shorter_search_;  // with the actions that are `left_`
   std::optional<Pondered> pondered_;
   std::optional<Listing<Model>> listing_;
 };

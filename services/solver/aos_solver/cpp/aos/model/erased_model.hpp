@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "aos/model/model_table.hpp"
@@ -89,6 +90,22 @@ struct ErasedModel {
     Correcting(const Correcting&) = delete;
     Correcting& operator=(const Correcting&) = delete;
     ~Correcting() { corrected_.reset(); }
+  };
+  // As long as this object lives, the model has only the actions of the skills that are not left out: their numbers are
+  // then those in the shorter list. Searches use it, one at a time.
+  class Without {
+   public:
+    explicit Without(const std::vector<bool>& left_out) : all_(actions()) {
+      std::erase_if(actions(), [&](const GroundedAction& action) { return left_out[static_cast<std::size_t>(action.skill)]; });
+    }
+    Without(const Without&) = delete;
+    Without& operator=(const Without&) = delete;
+    ~Without() { actions() = std::move(all_); }
+
+   private:
+    // The table shows a vector that is not const itself.
+    static std::vector<GroundedAction>& actions() { return const_cast<std::vector<GroundedAction>&>(*compiled_model.actions); }
+    std::vector<GroundedAction> all_;
   };
   static bool meets_precondition(const State& state, int action, DirectedDraws& random) {
     return compiled_model.meets_precondition(state.bytes, action, random);

@@ -1,0 +1,317 @@
+// What is believed where skills ended and nobody observed what they did.
+//
+// Such a skill ran or did not. All such ends in a row of one skill have one cause: it ran every time, or never. So there
+// is one belief for each combination of causes, with a weight, and each observation weighs them by Bayes' rule. An
+// observed end of the skill closes its row: from then on, what its cause was makes no difference.
+//
+// Beside them is the cautious belief, in which nothing ran that was not observed. It is there from the first unobserved
+// end on, until it is the belief itself again or observations refute it. An observation that the model excludes is no
+// observed end for it: the remedy of the belief does not touch it.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aos/base/json.hpp"
+#include "aos/base/random.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/belief/gathering.hpp"
+#include "aos/belief/saved_history.hpp"
+#include "aos/model/step.hpp"
+
+namespace aos {
+
+inline constexpr std::size_t max_hypotheses = 16;
+inline constexpr std::size_t max_hypothetical_states = 4 * max_weighted_states;  // of all hypotheses together
+
+// Whether two beliefs are the same but for rounding.
+template <class Model>
+bool are_alike(const Belief<Model>& left, const Belief<Model>& right) {
+  Gathering<Model> difference;
+  for (const auto& [state, weight] : left.particles()) difference.add(state, weight);
+  for (const auto& [state, weight] : right.particles()) difference.add(state, -weight);
+  return std::ranges::all_of(difference.particles(), [](const auto& each) { return std::abs(each.weight) < 1e-9; });
+}
+
+// A response of a skill, by their names.
+using Report = std::pair<std::string, std::string>;
+
+template <class Model>
+class Hypotheses {
+ public:
+  // A belief after an observation, and the logarithm of the observation's probability. The belief is empty if the
+  // observation is impossible.
+  using Posterior = std::pair<Belief<Model>, double>;
+
+  explicit Hypotheses(Belief<Model> belief) { all_.push_back({1, {}, std::move(belief)}); }
+
+  // The mixture of all hypotheses.
+  const Belief<Model>& belief() const { return mixture_ ? *mixture_ : all_.front().belief; }
+  // The belief in which nothing ran that was not observed; null where that is the belief itself.
+  const Belief<Model>* cautious() const { return cautious_ ? &*cautious_ : nullptr; }
+  std::size_t size() const { return all_.size(); }
+
+  // What an observation makes of each hypothesis and of the cautious belief.
+  struct Posteriors {
+    std::vector<Posterior> each;
+    std::optional<Posterior> cautious;
+
+    bool hypotheses_are_empty() const {
+      return std::ranges::all_of(each, [](const Posterior& one) { return one.first.particles().empty(); });
+    }
+    bool has_cautious() const { return cautious && !cautious->first.particles().empty(); }
+    // Whether the observation is impossible, whatever ran.
+    bool are_empty() const { return hypotheses_are_empty() && !has_cautious(); }
+  };
+  // `posterior_of(belief)` gives a Posterior.
+  template <class PosteriorOf>
+  Posteriors posteriors(PosteriorOf&& posterior_of) const {
+    Posteriors found;
+    for (const Hypothesis& hypothesis : all_) found.each.push_back(posterior_of(hypothesis.belief));
+    if (cautious_) found.cautious = posterior_of(*cautious_);
+    return found;
+  }
+
+  // The logarithm of the observation's probability.
+  double log_probability(const Posteriors& found) const {
+    if (found.hypotheses_are_empty()) return found.cautious->second;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      if (!found.each[i].first.particles().empty()) most = std::max(most, log_weight(i) + found.each[i].second);
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      if (!found.each[i].first.particles().empty()) sum += std::exp(log_weight(i) + found.each[i].second - most);
+    }
+    return most + std::log(sum);
+  }
+
+  // Whether the model excludes what was reported. A report that it excluded before tells nothing against the cautious
+  // belief any more: it counts as excluded also where only the cautious belief excludes it.
+  bool excludes(const Posteriors& found, const Report& report) const {
+    return found.are_empty() || (found.cautious && !found.has_cautious() && discredited_.contains(report));
+  }
+
+  // Bayes' rule, for an observation that is possible. The cautious belief goes if it excludes the observation, or if the
+  // observations since it began are less probable under it than `refuted_below` times their probability under the belief.
+  // Where it is true, the latter happens with a probability of `refuted_below` at most (Ville's inequality).
+  Hypotheses given(int skill, const Report& report, Posteriors found, double refuted_below) const {
+    Hypotheses after;
+    after.discredited_ = discredited_;
+    if (found.hypotheses_are_empty()) {
+      after.all_.push_back({1, {}, std::move(found.cautious->first)});
+      return after;
+    }
+    after.open_ = open_;
+    const double total = log_probability(found);
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      auto& [posterior, log_likelihood] = found.each[i];
+      const double weight = all_.size() == 1 ? 1 : std::exp(log_weight(i) + log_likelihood - total);
+      if (posterior.particles().empty() || weight < negligible_weight) continue;
+      after.all_.push_back({weight, all_[i].ran, std::move(posterior)});
+    }
+    const auto row = std::ranges::find(open_, skill);
+    if (row != open_.end()) after.close(row - open_.begin());
+    after.mix();
+    after.log_ratio_ = log_ratio_;
+    if (cautious_) after.follow_cautiously(*cautious_, std::move(*found.cautious), total, refuted_below, discredited_.contains(report));
+    return after;
+  }
+
+  // After a report that the model excludes: `belief` is the remedy.
+  Hypotheses remedied(const Report& report, Belief<Model> belief) const {
+    Hypotheses after{std::move(belief)};
+    after.discredited_ = discredited_;
+    after.discredited_.insert(report);
+    after.log_ratio_ = log_ratio_;
+    after.keep_cautious(cautious_ ? *cautious_ : this->belief());
+    return after;
+  }
+
+  // After an end that nobody observed, of an action that ran with this probability.
+  Hypotheses unobserved(int action, double ran_probability, Sampler& random) const {
+    Hypotheses after;
+    after.discredited_ = discredited_;
+    after.log_ratio_ = log_ratio_;
+    after.open_ = open_;
+    const int skill = Model::skill_of(action);
+    const auto row = std::ranges::find(open_, skill);
+    if (row != open_.end()) {
+      for (const Hypothesis& each : all_) {
+        const bool ran = each.ran[static_cast<std::size_t>(row - open_.begin())];
+        after.all_.push_back({each.weight, each.ran, ran ? each.belief.predicted(action, random) : each.belief});
+      }
+    } else {
+      after.open_.push_back(skill);
+      bool makes_a_difference = false;
+      for (const Hypothesis& each : all_) {
+        Belief<Model> ran = each.belief.predicted(action, random);
+        makes_a_difference = makes_a_difference || !are_alike(ran, each.belief);
+        after.split(each, std::move(ran), ran_probability);
+      }
+      if (!makes_a_difference) return *this;
+    }
+    while (after.is_too_large()) after.close(0);
+    after.mix();
+    after.keep_cautious(cautious_ ? *cautious_ : belief());
+    return after;
+  }
+
+  void write_summary(JsonWriter& json) const {
+    json.begin_object();
+    belief().write_members(json);
+    if (cautious_) {
+      cautious_->write_endings(json.key("cautious").begin_object());
+      json.end_object();
+    }
+    json.end_object();
+  }
+
+  // The beliefs, the cautious one last, and all the rest as words, for `of`.
+  std::vector<const Belief<Model>*> beliefs() const {
+    std::vector<const Belief<Model>*> beliefs;
+    for (const Hypothesis& each : all_) beliefs.push_back(&each.belief);
+    if (cautious_) beliefs.push_back(&*cautious_);
+    return beliefs;
+  }
+  Words words() const {
+    Words words{cautious_ ? 1u : 0u, std::bit_cast<std::uint64_t>(log_ratio_), open_.size()};
+    for (const int skill : open_) detail::add_text(words, Model::skill_name(skill));
+    for (const Hypothesis& each : all_) {
+      words.push_back(std::bit_cast<std::uint64_t>(each.weight));
+      words.insert(words.end(), each.ran.begin(), each.ran.end());
+    }
+    words.push_back(discredited_.size());
+    for (const auto& [skill, response] : discredited_) {
+      detail::add_text(words, skill);
+      detail::add_text(words, response);
+    }
+    return words;
+  }
+  // Takes over what `beliefs` and `words` gave, in a model that may have other skills. There is at least one belief.
+  // Without words the first one is the belief.
+  static Hypotheses of(std::vector<Belief<Model>> beliefs, const Words& words) {
+    if (words.empty()) return Hypotheses{std::move(beliefs.front())};
+    Hypotheses taken;
+    detail::WordReader reader{words};
+    const bool has_cautious = reader.next() != 0 && beliefs.size() > 1;
+    taken.log_ratio_ = reader.real();
+    for (std::size_t rows = std::min<std::size_t>(reader.next(), reader.left()); rows > 0; --rows) {
+      taken.open_.push_back(skill_of_name(reader.text()));
+    }
+    const std::size_t count = beliefs.size() - (has_cautious ? 1 : 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      Hypothesis each{reader.real(), {}, std::move(beliefs[i])};
+      for (std::size_t row = 0; row < taken.open_.size(); ++row) each.ran.push_back(reader.next() != 0);
+      taken.all_.push_back(std::move(each));
+    }
+    for (std::size_t left = reader.next(); left > 0 && reader.left() > 0; --left) {
+      std::string skill = reader.text();
+      taken.discredited_.emplace(std::move(skill), reader.text());
+    }
+    for (std::size_t row = taken.open_.size(); row-- > 0;) {
+      if (taken.open_[row] < 0) taken.close(static_cast<std::ptrdiff_t>(row));
+    }
+    taken.mix();
+    if (has_cautious) taken.cautious_ = std::move(beliefs.back());
+    return taken;
+  }
+
+ private:
+  struct Hypothesis {
+    double weight;
+    std::vector<bool> ran;  // for each row that is open
+    Belief<Model> belief;
+  };
+
+  Hypotheses() = default;
+
+  double log_weight(std::size_t number) const { return std::log(all_[number].weight); }
+
+  bool is_too_large() const {
+    std::size_t states = 0;
+    for (const Hypothesis& each : all_) states += each.belief.particles().size();
+    return all_.size() > max_hypotheses || (states > max_hypothetical_states && all_.size() > 1);
+  }
+
+  // Adds the two hypotheses that a new row makes of one.
+  void split(const Hypothesis& before, Belief<Model> ran, double ran_probability) {
+    const auto add = [&](bool has_run, double probability, Belief<Model> belief) {
+      if (probability <= 0) return;
+      all_.push_back({before.weight * probability, before.ran, std::move(belief)});
+      all_.back().ran.push_back(has_run);
+    };
+    add(true, ran_probability, std::move(ran));
+    add(false, 1 - ran_probability, before.belief);
+  }
+
+  // Closes a row: hypotheses that differ in its cause alone become one.
+  void close(std::ptrdiff_t row) {
+    open_.erase(open_.begin() + row);
+    std::vector<Hypothesis> merged;
+    for (Hypothesis& each : all_) {
+      each.ran.erase(each.ran.begin() + row);
+      const auto same = std::ranges::find(merged, each.ran, &Hypothesis::ran);
+      if (same == merged.end()) {
+        merged.push_back(std::move(each));
+      } else {
+        same->weight += each.weight;
+        same->belief = same->belief.mixed_with(each.belief, each.weight / same->weight);
+      }
+    }
+    all_ = std::move(merged);
+  }
+
+  void mix() {
+    mixture_.reset();
+    if (all_.size() < 2) return;
+    mixture_ = all_.front().belief;
+    double weight = all_.front().weight;
+    for (std::size_t i = 1; i < all_.size(); ++i) {
+      weight += all_[i].weight;
+      mixture_ = mixture_->mixed_with(all_[i].belief, all_[i].weight / weight);
+    }
+  }
+
+  void keep_cautious(Belief<Model> cautious) {
+    if (!are_alike(cautious, belief())) cautious_ = std::move(cautious);
+  }
+
+  void follow_cautiously(const Belief<Model>& before, Posterior found, double log_probability, double refuted_below,
+                         bool is_discredited) {
+    auto& [posterior, log_likelihood] = found;
+    const bool is_possible = !posterior.particles().empty();
+    if (is_discredited && !is_possible) return keep_cautious(before);
+    const double change = log_likelihood - log_probability;
+    if (is_possible) log_ratio_ += is_discredited ? std::max(change, 0.0) : change;
+    if (is_possible && log_ratio_ >= std::log(refuted_below)) return keep_cautious(std::move(posterior));
+    log_ratio_ = 0;
+  }
+
+  static int skill_of_name(const std::string& name) {
+    for (int skill = 0; skill < Model::skill_count; ++skill) {
+      if (name == Model::skill_name(skill)) return skill;
+    }
+    return -1;
+  }
+
+  std::vector<Hypothesis> all_;
+  std::vector<int> open_;  // the skills whose rows of unobserved ends are open, the oldest first
+  std::optional<Belief<Model>> mixture_;
+  std::optional<Belief<Model>> cautious_;
+  // Of all observations since the cautious belief began: log P under it - log P under the belief. It goes on while the
+  // two are the same, so that the inequality holds for the mission and not for each time.
+  double log_ratio_ = 0;
+  std::set<Report> discredited_;
+};
+
+}  // namespace aos

@@ -1,0 +1,76 @@
+"""Skills that are set aside: after a row of failures nobody decides for them, for a while."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import msgspec
+
+__all__ = ["SettingAside"]
+
+_COUNTS_FULLY = math.log(10)
+"""The surprise from which on a failure that a rule has told counts as a whole one: one in ten."""
+
+
+class _Row(msgspec.Struct):
+    """Failures in a row of one skill, and how often its adapter had announced itself by then."""
+
+    announced: int
+    failures: int = 0
+    weight: float = 0.0
+
+
+class _Pause(msgspec.Struct, frozen=True):
+    ends_at_s: float
+    announced: int
+    reason: str
+
+
+class SettingAside:
+    """Counts each skill's failures in a row, whatever else ran between, and knows which are set aside.
+
+    An adapter that announces itself anew begins a new row, and ends the pause of its skills.
+    """
+
+    def __init__(self) -> None:
+        self._rows: dict[str, _Row] = {}
+        self._pauses: dict[str, _Pause] = {}
+
+    @staticmethod
+    def weight_of_told(surprise: float) -> float:
+        """What a failure counts that a rule has told: the less, the more probable the model holds it."""
+        return min(max(surprise, 0.0) / _COUNTS_FULLY, 1.0)
+
+    def count(self, skill: str, weight: float, announced: int) -> None:
+        """One more failure in a row."""
+        row = self._rows.get(skill)
+        if row is None or row.announced != announced:
+            row = self._rows[skill] = _Row(announced)
+        row.failures += 1
+        row.weight += weight
+
+    def end_row(self, skill: str) -> None:
+        """The skill did what it should, or somebody has looked after it."""
+        self._rows.pop(skill, None)
+
+    def set_aside(self, skill: str, after: int, pause_s: float, now_s: float, last: str) -> str:
+        """Sets a skill aside whose row counts for `after` failures; the reason, empty if it does not."""
+        row = self._rows.get(skill)
+        if row is None or row.weight < after - 1e-9:
+            return ""
+        count = f"{row.failures} failures in a row" if row.failures > 1 else "a failure"
+        reason = f"{skill} is set aside for {pause_s:g} s after {count}, the last {last}"
+        self._pauses[skill] = _Pause(now_s + pause_s, row.announced, reason)
+        return reason
+
+    def reasons(self, now_s: float, announced: Mapping[str, int]) -> dict[str, str]:
+        """The skills that are set aside now, each with the reason."""
+        for skill, pause in list(self._pauses.items()):
+            if now_s >= pause.ends_at_s or announced.get(skill, 0) != pause.announced:
+                del self._pauses[skill]
+        return {skill: pause.reason for skill, pause in self._pauses.items()}
+
+    def s_until_return(self, now_s: float) -> float:
+        """How long it takes until the next skill comes back by itself; infinite where none is set aside."""
+        return min((pause.ends_at_s - now_s for pause in self._pauses.values()), default=math.inf)
