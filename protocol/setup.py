@@ -12,22 +12,17 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-RUNTIME = (
-    "__init__",
-    "bus",
-    "bus_config",
-    "client",
-    "clock",
-    "journal",
-    "lifecycle",
-    "older_python",
-    "parent",
-    "reported_state",
-    "server_watch",
-    "service_settings",
-    "subscription",
+NOT_FOR_ROBOTS = (
+    "children",
+    "cpp_",
+    "document_code",
+    "foreign_bus",
+    "guard",
+    "observed",
+    "router",
+    "snippets",
 )
-"""Of `aos_runtime`, without what compilers, generators and aos-up need."""
+"""Of `aos_runtime`, how modules begin that only compilers, generators and aos-up need."""
 
 ABOUT_DOCUMENTS = ("distribution", "findings", "local_types", "sarif")
 """Of `aos_protocol`, what only commands and checks of documents need."""
@@ -46,7 +41,7 @@ class BuildForRobots(build_py):
     def find_package_modules(self, package: str, package_dir: str) -> list[tuple[str, str, str]]:
         found = super().find_package_modules(package, package_dir)
         if package.endswith(".aos_runtime"):
-            return [each for each in found if each[1] in RUNTIME]
+            return [each for each in found if not each[1].startswith(NOT_FOR_ROBOTS)]
         return [each for each in found if each[1] not in ABOUT_DOCUMENTS]
 
     def run(self) -> None:
