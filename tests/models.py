@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine, ImpossiblePolicy
 from aos_solver.hot_plug import build_project
 
-__all__ = ["built_bundle", "built_text", "engine_of"]
+__all__ = ["built_bundle", "built_bundles", "built_text", "engine_of"]
 
 
 async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:
@@ -19,6 +19,12 @@ async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:
     loaded = load_bundle(bundle)
     assert loaded.project is not None, loaded.diagnostics
     return await build_project(loaded.project, cache_dir, lambda remark: None)
+
+
+async def built_bundles(bundles: Sequence[Path], cache_dir: Path) -> BuiltModel:
+    """The compiled model of several; documents of a later one stand in place of those with the same name."""
+    files = {each.name: each.read_text() for bundle in bundles for each in sorted(bundle.iterdir())}
+    return await built_text(files, cache_dir)
 
 
 async def built_text(files: Mapping[str, str], cache_dir: Path) -> BuiltModel:

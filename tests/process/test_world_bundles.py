@@ -9,10 +9,20 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from models import built_bundle, engine_of
+from models import built_bundle, built_bundles, engine_of
 from tictactoe_games import game
 
 from aos_skills.pybullet.world_file import load_world_file
+from aos_skills.pybullet.worlds.tictactoe.rules import (
+    EMPTY_BOARD,
+    best_moves,
+    empty_cells,
+    is_over,
+    marked,
+)
+from aos_solver.endings import MissionLimits
+from aos_solver.search import Search
+from aos_solver.simulation import simulate_mission
 
 Point = tuple[float, float]
 TO_EASY_TABLE = "navigate(destination=easy_table)"
@@ -83,3 +93,40 @@ async def test_the_panda_never_loses_a_game_that_it_begins(bundles: Path, cache_
         for seed in range(3):
             ending, moves = await game(engine, "perfect", chance, seed, dry_centre=0.0)
             assert ending != "X", moves
+
+
+async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path, cache_dir: Path) -> None:
+    both = [bundles / name for name in ("tictactoe", "tictactoe-perfect-person")]
+    chance = random.Random(1)
+    async with engine_of(await built_bundles(both, cache_dir)) as engine:
+        indices = {action.name: index for index, action in enumerate(engine.description.actions)}
+        for seed in range(1, 21):
+            await engine.reset_world(seed)
+            board = EMPTY_BOARD
+            while not is_over(board):
+                cell = chance.choice(empty_cells(board))
+                await engine.step_world(indices[f"draw(cell={cell})"])
+                board = marked(board, cell, "O")
+                if is_over(board):
+                    break
+                seen = (await engine.step_world(indices["look"])).response
+                allowed = [marked(board, each, "X") for each in best_moves(board, "X")]
+                assert seen in allowed
+                board = seen
+
+
+async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world(
+    bundles: Path, cache_dir: Path
+) -> None:
+    own = await built_bundle(bundles / "tictactoe", cache_dir)
+    other = await built_bundles(
+        [bundles / name for name in ("tictactoe", "tictactoe-perfect-person")], cache_dir
+    )
+    limits = MissionLimits(goal_probability=0.9, step_limit=30)
+    async with engine_of(own) as engine, engine_of(other) as world:
+        search = Search(simulations=1000, seed=1)
+        alone = await simulate_mission(engine, search, limits, with_states=True)
+        run = await simulate_mission(engine, search, limits, with_states=True, world=world)
+    assert alone.steps < run.steps == 9
+    assert run.states[-1].count("=2") == 4
+    assert (run.total, run.world_ending) == (0.0, "over")

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from aos_deploy.experiments.physics import simulated_speed
 from aos_deploy.shipped import shipped
-from aos_deploy.trials.claims import Before, Claim, Count, When, judge, matches
+from aos_deploy.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches
 from aos_deploy.trials.files import read_experiment, read_script_file, read_test_file
-from aos_deploy.trials.intervals import interval_of_mean, interval_of_share
+from aos_deploy.trials.intervals import Interval, interval_of_mean, interval_of_share
 from aos_deploy.trials.setting import deployment_of
 from aos_deploy.trials.trial import Trial
 from aos_protocol.errors import DeployError
@@ -89,6 +91,58 @@ def test_nothing_is_claimed_of_states_that_nobody_knows() -> None:
     assert not judge(claim, [trial("a > b", states=("hurt=false, lost=true",))]).is_seen
 
 
+WORLD = trial(
+    "pick > ok",
+    "go > there",
+    "serve > done",
+    states=(
+        '{"step": 1, "held": true}',
+        '{"step": 3, "held": false, "served": true}',
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("claim", "holds"),
+    [
+        (Claim(says="", starts=("pick", "go")), True),
+        (Claim(says="", starts=("pick", "serve")), False),
+        (Claim(says="", starts=("pick", "go", "serve", "*")), False),
+        (Claim(says="", first_state='"held": true'), True),
+        (Claim(says="", first_state='"held": false'), False),
+        (Claim(says="", last_state='"served": true | never'), True),
+        (Claim(says="", last_state='"held": true'), False),
+        (Claim(says="", around=Around(step="serve", before='"held": true', after='"served": true')), True),
+        (Claim(says="", around=Around(step="serve", before='"held": false')), False),
+        (Claim(says="", around=Around(step="pick", after='"held": false')), False),
+        (Claim(says="", around=Around(step="pick", before='"held"')), False),
+        (Claim(says="", around=Around(step="go", after='"held"')), False),
+    ],
+)
+def test_the_world_is_asked_at_steps_and_knows_nothing_of_calls_that_it_has_not_seen(
+    claim: Claim, holds: bool
+) -> None:
+    assert judge(claim, [WORLD]).is_seen is holds
+
+
+def test_a_model_says_how_its_world_ended() -> None:
+    ended = Trial(seed=1, ending="goal", goal=False, actions=("a",), responses=("b",), states=("x=1",))
+    assert not judge(Claim(says="", last_state="world_ending=failure"), [ended]).is_seen
+    ended = msgspec.structs.replace(ended, world_ending="failure")
+    assert judge(Claim(says="", last_state="world_ending=failure"), [ended]).is_seen
+
+
+def test_the_goal_of_a_system_is_asked_of_the_world_where_somebody_knows_it() -> None:
+    claim = Claim(says="", goal=True)
+    asked = asking_the_world(claim, "system", '"served": true')
+    lies = trial("pick > ok", states=('{"step": 1, "served": false}',))
+    assert judge(claim, [lies]).is_seen
+    assert not judge(asked, [lies]).is_seen
+    assert judge(asked, [WORLD]).is_seen
+    assert asking_the_world(claim, "model", '"served": true') == claim
+    assert asking_the_world(claim, "system", "") == claim
+
+
 def test_a_claim_about_some_missions_leaves_the_others_out() -> None:
     claim = Claim(says="", when=When(some="serve"), first="pick")
     verdict = judge(claim, [DELIVERED, trial("wait > ok", seed=2)])
@@ -116,7 +170,8 @@ def test_intervals_are_those_of_the_tables() -> None:
     mean = interval_of_mean([1.0, 2.0, 3.0, 4.0, 5.0])
     assert mean is not None
     assert mean.high - mean.value == pytest.approx(2.776 * (2.5 / 5) ** 0.5, abs=0.01)
-    assert interval_of_mean([1.0]) is None
+    assert interval_of_mean([1.0]) == Interval(1.0, -math.inf, math.inf)
+    assert interval_of_mean([]) is None
 
 
 def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from aos_skills.pybullet.parts.place import Place
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.cleanlab import KIND
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile, FaultModel
+from aos_skills.pybullet.worlds.cleanlab.seeing import place_of_cup
 from aos_skills.pybullet.worlds.cleanlab.world import CleanLab, filled_stations
 
 pytestmark = pytest.mark.physics
@@ -53,6 +54,29 @@ def test_a_cup_is_seen_picked_and_taken_to_a_bin(file: CleanLabFile) -> None:
     call(world, "/release")
     assert world.held_cup is None
     assert world.binned() == [name]
+
+
+def test_a_cup_is_seen_where_it_stands_and_not_where_it_stood(file: CleanLabFile) -> None:
+    name = filled_stations(file, 1)[0]
+    world = CleanLab(at_station(file, name), 1)
+    cup = world.cups[name]
+    for dx, dy in ((0.0, 0.0), (0.05, -0.03), (-0.04, 0.04)):
+        x, y, z = world.scene.place(cup)
+        moved = (x + dx, y + dy, z)
+        world.scene.client.resetBasePositionAndOrientation(cup, moved, (0, 0, 0, 1))
+        assert place_of_cup(world) == pytest.approx(moved[:2], abs=0.003)
+
+
+def test_what_is_not_seen_is_not_grasped(file: CleanLabFile) -> None:
+    """A cup that is white to the camera, in the place where one would stand beside it."""
+    name = filled_stations(file, 1)[0]
+    world = CleanLab(at_station(file, name), 1)
+    x, y, z = world.scene.place(world.cups[name])
+    world.scene.client.changeVisualShape(world.cups[name], -1, rgbaColor=(1, 1, 1, 1))
+    world.scene.client.resetBasePositionAndOrientation(world.cups[name], (x + 0.1, y, z), (0, 0, 0, 1))
+    assert place_of_cup(world) is None
+    call(world, "/pick")
+    assert world.held_cup is None
 
 
 def test_at_an_empty_station_nothing_is_seen_and_nothing_picked(file: CleanLabFile) -> None:

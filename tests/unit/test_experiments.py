@@ -106,6 +106,14 @@ def test_a_report_has_claims_figures_faults_and_everything_it_was_made_with(tmp_
     assert "<svg" in whole.read_text()
 
 
+def test_one_mission_has_figures_without_intervals_in_the_page(tmp_path: Path) -> None:
+    results = results_of(part_of("system", (SERVED,)))
+    page, _ = write_report(results, draw_plots(results, tmp_path / "plots"), tmp_path)
+    text = page.read_text()
+    assert "| one | system | 1 | 1.00 [0.21, 1.00] | 1.00 [0.21, 1.00] | 20.00 | 4.00 |  |" in text
+    assert "| one | system | 2.00 | goal 1 | pick 1 |" in text
+
+
 def test_the_same_figures_give_the_same_drawings_with_a_row_for_each_part(tmp_path: Path) -> None:
     results = results_of(part_of("model"), part_of("system", (SERVED, GAVE_UP)))
     first, again = (draw_plots(results, tmp_path / name) for name in ("first", "again"))

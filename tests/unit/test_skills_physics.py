@@ -121,6 +121,13 @@ def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Mak
     assert world.has_injured
 
 
+def test_the_arm_comes_back_where_the_fingers_feel_nothing(make: Make) -> None:
+    world = make(FaultModel(arm_stays_out=1.0))
+    assert call(world, "/pick")["success"]
+    assert not world.is_holding
+    assert world.truth()["state"]["robot_at"] == "HardTable"
+
+
 def test_an_arm_that_stayed_out_is_folded_with_the_can_in_the_hand(make: Make) -> None:
     world = make(FaultModel(arm_stays_out=1.0))
     call(world, "/navigate", EASY_TABLE)

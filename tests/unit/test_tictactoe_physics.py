@@ -76,6 +76,27 @@ def test_a_pen_that_does_not_write_leaves_the_middle_empty(make: Make) -> None:
     assert not world.is_robots_turn
 
 
+def test_whether_a_circle_is_there_is_told_by_a_picture_and_not_by_the_ink(make: Make) -> None:
+    world = make()
+    picture, hidden = world.picture, []
+
+    def behind_a_hand() -> Any:
+        hidden.append(picture())
+        return np.full_like(hidden[-1], 90)
+
+    world.picture = behind_a_hand  # type: ignore[method-assign]
+    assert call(world, "/draw", {"cell": 0}) == {"success": False}
+    assert world.marks[0] == "O"
+    assert board_in(hidden[0]) == world.marks
+
+
+def test_the_other_one_may_begin(make: Make) -> None:
+    world = make(begins="person")
+    board = call(world, "/look")["board"]
+    assert board.count("X") == 1
+    assert board.count("O") == 0
+
+
 def test_boards_are_read_right_in_any_light_from_about_anywhere(file: TicTacToeFile) -> None:
     for seed in range(6):
         world = random_board(file, seed)

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 import pytest
 
+from aos_skills.pybullet.parts.place import Place
 from aos_skills.pybullet.parts.route import FloorMap
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.turtlebot import KIND
@@ -59,6 +60,17 @@ def test_a_crate_on_no_map_is_seen_and_the_place_under_it_reported_as_failed(mak
     contacts = world.scene.client.getContactPoints(bodyA=world.robot.body)
     floor = 0
     assert {contact[2] for contact in contacts} == {floor}
+
+
+def test_the_record_says_what_was_asked_and_which_places_were_missed(make: Make) -> None:
+    places = {"l1": Place(-1.6, -0.5), "l2": Place(-1.5, 1.0), "l3": Place(-0.5, 1.6)}
+    world = make(places=places, crates={"l3": Crate(-0.5, 1.6)})
+    assert go(world, -1.6, -0.5)
+    record = world.record(1, "/navigate", {"x": -1.6, "y": -0.5})
+    assert record["fields"] == {"x": -1.6, "y": -0.5}
+    assert record["missed"] == ["l2"]
+    assert record["stood"] == {"l1": 1}
+    assert record["repeated"] == []
 
 
 def test_a_crate_in_the_way_is_gone_around(make: Make) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -119,7 +120,7 @@ def run(
         name=path.stem,
         title=experiment.title,
         about=experiment.about,
-        command=f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}",
+        command=_command(name, seeds, system_seeds, first_seed, part or ()),
         surroundings=surroundings(),
         parts=tuple(results),
     )
@@ -216,6 +217,14 @@ def statistics(
         told = ", ".join(f"{response} {share.value:.2f}" for response, share in step.responses.items())
         print(f"{step.part} {step.number} {step.action}: {told}")
     print(f"the report is in {from_here(folder / 'report.md')}")
+
+
+def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: Sequence[str]) -> str:
+    """What runs the same missions again."""
+    command = f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}"
+    if first_seed != 1:
+        command += f" --first-seed {first_seed}"
+    return command + "".join(f" --part {part}" for part in parts)
 
 
 def _known_optimum(out: Path, digest: str, setting: Setting, folder: Path) -> Optimum:

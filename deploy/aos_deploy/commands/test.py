@@ -50,7 +50,7 @@ def run_tests(
     own model plays the skills, or the whole system with its adapters.
     """
     from aos_deploy.trials.campaign import play_campaign
-    from aos_deploy.trials.claims import judge
+    from aos_deploy.trials.claims import asking_the_world, judge
     from aos_deploy.trials.files import read_test_file
     from aos_deploy.trials.junit import Tested, failed_missions, verdict_text, write_junit
 
@@ -73,7 +73,9 @@ def run_tests(
             )
             by = "model" if test.by == "model" else "system"
             verdicts = tuple(
-                judge(claim, played.trials, by) for claim in test.claims if claim.only in (None, by)
+                judge(asking_the_world(claim, by, test.truth), played.trials, by)
+                for claim in test.claims
+                if claim.only in (None, by)
             )
             passed = all(verdict.is_seen for verdict in verdicts)
             tested[name] = Tested(verdicts=verdicts, trials=played.trials, passed=passed)

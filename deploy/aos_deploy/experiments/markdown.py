@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Iterator, Mapping
 
 from markdown_it import MarkdownIt
@@ -12,8 +13,9 @@ from aos_deploy.trials.intervals import Interval
 __all__ = ["head", "page", "row", "shown", "tally"]
 
 _STYLE = (
-    "body{font:16px/1.5 system-ui,sans-serif;max-width:60em;margin:2em auto;padding:0 1em}"
-    "table{border-collapse:collapse;margin:1em 0}th,td{border:1px solid #ccc;padding:.3em .6em}"
+    "body{font:16px/1.5 system-ui,sans-serif;max-width:66em;margin:2em auto;padding:0 1em}"
+    "table{display:block;overflow-x:auto;border-collapse:collapse;margin:1em 0;font-size:.9em}"
+    "th,td{border:1px solid #ccc;padding:.2em .45em;vertical-align:top}"
     "th{background:#f3f3f3}svg,img{max-width:100%;height:auto}code{background:#f3f3f3}"
 )
 
@@ -39,9 +41,11 @@ def row(*cells: str) -> str:
 
 
 def shown(interval: Interval | None, digits: int = 2) -> str:
-    """`0.95 [0.90, 0.98]`, or nothing."""
+    """`0.95 [0.90, 0.98]`, without ends where they are not known; or nothing."""
     if interval is None:
         return ""
+    if math.isinf(interval.low):
+        return f"{interval.value:.{digits}f}"
     return f"{interval.value:.{digits}f} [{interval.low:.{digits}f}, {interval.high:.{digits}f}]"
 
 

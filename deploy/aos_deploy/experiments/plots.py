@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -44,12 +45,17 @@ def draw_plots(results: Results, folder: Path) -> dict[str, Path]:
     return drawn
 
 
+def _length(half: float) -> float:
+    """What is drawn to one side; nothing where the end is not known."""
+    return max(0.0, half) if math.isfinite(half) else 0.0
+
+
 def _draw(title: str, rows: list[tuple[PartResult, Interval]], path: Path, *, is_share: bool) -> None:
     """A dot for each part between the ends of its interval."""
     figure = Figure(figsize=(7.0, 1.0 + _ROW_INCHES * len(rows)), layout="constrained")
     axes = figure.subplots()
     for place, (part, value) in enumerate(rows):
-        ends = [[max(0.0, value.value - value.low)], [max(0.0, value.high - value.value)]]
+        ends = [[_length(value.value - value.low)], [_length(value.high - value.value)]]
         axes.errorbar(value.value, place, xerr=ends, fmt="o", capsize=4, color=_COLOURS[part.by])
     axes.set_yticks(
         range(len(rows)), [f"{part.name} ({part.by}, {part.figures.missions})" for part, _ in rows]

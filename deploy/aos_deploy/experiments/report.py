@@ -46,6 +46,7 @@ def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
         lines += [results.about.strip(), ""]
     lines += [around.text(results.command), ""]
     lines += ["## Claims", "", *_claims(results), "", "## Figures", "", *_figures(results), ""]
+    lines += ["Steps of a mission, and how missions ended and began:", "", *_doings(results), ""]
     if any(part.regret for part in results.parts):
         lines += ["## Beside the optimum", "", _REGRET, "", *_regrets(results), ""]
     lines += ["Values in brackets are the ends of 95 % intervals.", ""]
@@ -114,10 +115,8 @@ def _first_of(seeds: tuple[int, ...]) -> str:
 
 
 def _figures(results: Results) -> Iterator[str]:
-    counted = sorted({name for part in results.parts for name in part.figures.counts})
     goal, in_world, speed = "goal reached", "reached in the world", "simulated seconds a second"
-    titles = ["part", "played by", "missions", goal, in_world, "return", "steps", *counted, speed]
-    yield from head(*titles, "endings", "first")
+    yield from head("part", "played by", "missions", goal, in_world, "return", "steps", speed)
     for part in results.parts:
         figures = part.figures
         yield row(
@@ -128,8 +127,20 @@ def _figures(results: Results) -> Iterator[str]:
             shown(figures.world_goal),
             shown(figures.value),
             shown(figures.steps),
-            *(shown(figures.counts.get(name)) for name in counted),
             f"{figures.speed:.1f}" if figures.speed is not None else "",
+        )
+
+
+def _doings(results: Results) -> Iterator[str]:
+    """A table of its own, so that none is wider than a page."""
+    counted = sorted({name for part in results.parts for name in part.figures.counts})
+    yield from head("part", "played by", *counted, "endings", "first")
+    for part in results.parts:
+        figures = part.figures
+        yield row(
+            part.name,
+            part.by,
+            *(shown(figures.counts.get(name)) for name in counted),
             tally(figures.endings),
             tally(figures.first_actions),
         )

@@ -16,7 +16,7 @@ import msgspec
 from aos_deploy.experiments.optimum import Regret
 from aos_deploy.experiments.physics import simulated_speed
 from aos_deploy.trials.campaign import Played
-from aos_deploy.trials.claims import Verdict, judge, matches
+from aos_deploy.trials.claims import Verdict, asking_the_world, judge, matches
 from aos_deploy.trials.files import Experiment, Part
 from aos_deploy.trials.intervals import Interval, interval_of_mean, interval_of_share
 from aos_deploy.trials.trial import Trial
@@ -91,7 +91,8 @@ class Results(msgspec.Struct, frozen=True, kw_only=True):
 
 def result_of(name: str, part: Part, by: str, played: Played, experiment: Experiment) -> PartResult:
     """A part's figures and verdicts."""
-    claims = [claim for claim in part.claims if claim.only in (None, by)]
+    truth = part.truth or experiment.truth
+    claims = [asking_the_world(claim, by, truth) for claim in part.claims if claim.only in (None, by)]
     return PartResult(
         name=name,
         by=by,
@@ -99,7 +100,7 @@ def result_of(name: str, part: Part, by: str, played: Played, experiment: Experi
         bundles=part.bundles,
         digest=played.digest,
         seeds=tuple(trial.seed for trial in played.trials),
-        figures=figures_of(played.trials, experiment.counts, experiment.truth if by == "system" else ""),
+        figures=figures_of(played.trials, experiment.counts, truth if by == "system" else ""),
         verdicts=tuple(judge(claim, played.trials, by) for claim in claims),
         broken={str(trial.seed): trial.fault for trial in played.trials if trial.fault},
     )

@@ -15,7 +15,7 @@ from aos_deploy.deploy_file import Deployment
 from aos_deploy.trials.model_player import ModelMissions, ModelPlayer
 from aos_deploy.trials.ray_cluster import RayPlayer
 from aos_deploy.trials.script_player import ScriptPlayer
-from aos_deploy.trials.setting import Setting, deployment_of
+from aos_deploy.trials.setting import Setting, deployment_of, world_deployment_of
 from aos_deploy.trials.system_player import SystemPlayer
 from aos_deploy.trials.trial import Trial
 from aos_protocol import __version__
@@ -64,7 +64,8 @@ async def play_campaign(
     be played `on` a Ray cluster, on `jobs` of its processors or on all; here it is one at a time if not said.
     """
     deployment = deployment_of(setting, folder, out)
-    digest = _digest(setting, deployment)
+    world = world_deployment_of(setting, deployment, folder) if setting.by == "model" else None
+    digest = _digest(setting, deployment, world)
     records = out / "missions.jsonl"
     done = {trial.seed: trial for trial in _kept(records, digest)}
     left = [seed for seed in seeds if seed not in done]
@@ -82,10 +83,11 @@ async def play_campaign(
     if left:
         await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)
         if on != HERE and setting.by == "model":
-            player = cluster = await RayPlayer.prepared(ModelMissions.of(deployment), on, jobs, on_progress)
+            missions = ModelMissions.of(deployment, world)
+            player = cluster = await RayPlayer.prepared(missions, on, jobs, on_progress)
             jobs = cluster.jobs
         else:
-            player = await _player(setting, deployment, out)
+            player = await _player(setting, deployment, world, out)
         try:
             await _play_all(player, left, jobs or 1, keep)
         finally:
@@ -108,11 +110,11 @@ async def _play_all(player: _Player, seeds: Sequence[int], jobs: int, keep: Call
         raise root_cause(group) from group
 
 
-async def _player(setting: Setting, deployment: Deployment, out: Path) -> _Player:
+async def _player(setting: Setting, deployment: Deployment, world: Deployment | None, out: Path) -> _Player:
     if setting.script:
         return await ScriptPlayer.prepared(deployment, setting.script, out)
     if setting.by == "model":
-        return await ModelPlayer.prepared(ModelMissions.of(deployment))
+        return await ModelPlayer.prepared(ModelMissions.of(deployment, world))
     return SystemPlayer(deployment, out / "runs")
 
 
@@ -129,14 +131,14 @@ def _kept(records: Path, digest: str) -> list[Trial]:
     return trials
 
 
-def _digest(setting: Setting, deployment: Deployment) -> str:
+def _digest(setting: Setting, deployment: Deployment, world: Deployment | None) -> str:
     """Of all that a mission's outcome depends on beside its seed."""
     whole = hashlib.sha256(f"{__version__} {setting.by}".encode())
     whole.update(" > ".join(setting.script).encode())
     whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))
     if setting.by != "model" and (setting.faults or deployment.file.skills):
         whole.update(msgspec.json.encode((setting.faults, deployment.file.skills)))
-    for bundle in deployment.bundles:
+    for bundle in (*deployment.bundles, *(world.bundles if world is not None else ())):
         for name, data in sorted(files_of_bundle(bundle, deployment.file.leave_out).items()):
             whole.update(f"{len(name)}:{name}:{len(data)}:".encode() + data)
     for path in (deployment.world if setting.by == "system" else None, deployment.policy):

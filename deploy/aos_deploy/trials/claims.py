@@ -16,7 +16,18 @@ import msgspec
 from aos_deploy.trials.intervals import Interval, interval_of_share
 from aos_deploy.trials.trial import Trial
 
-__all__ = ["Before", "Claim", "Count", "Verdict", "When", "has_check", "judge", "matches"]
+__all__ = [
+    "Around",
+    "Before",
+    "Claim",
+    "Count",
+    "Verdict",
+    "When",
+    "asking_the_world",
+    "has_check",
+    "judge",
+    "matches",
+]
 
 Share = Annotated[float, msgspec.Meta(ge=0, le=1)]
 Number = Annotated[int, msgspec.Meta(ge=0)]
@@ -41,12 +52,22 @@ class Before(msgspec.Struct, frozen=True, kw_only=True):
     times: Number = 1
 
 
+class Around(msgspec.Struct, frozen=True, kw_only=True):
+    """At each `step` the world's last state before it has the text `before`, and the one after it `after`."""
+
+    step: str
+    before: str | None = None
+    after: str | None = None
+
+
 class When(msgspec.Struct, frozen=True, kw_only=True):
     """Which missions a claim is about: what was done in them, with the words of a claim."""
 
+    starts: tuple[str, ...] = ()
     some: str | None = None
     never: str | None = None
     order: tuple[str, ...] = ()
+    endings: tuple[str, ...] = ()
 
 
 class Claim(msgspec.Struct, frozen=True, kw_only=True):
@@ -55,11 +76,14 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     `only` says by whom those missions are played. Without a share, 0.95 is wanted where the model plays and
     0.9 in a whole system, of which there are fewer missions.
 
-    `first` and `last` are the first and the last step. `some` step was taken, `never` another one. Steps of
-    `order` were taken in this order, and those of `never_order` were not. `actions` are all actions, in full.
-    `endings` are the allowed ones. `goal` says whether the goal was reached. `never_state` names texts of the
-    world's truth that no state holds, `some_state` such that some state holds. With `surely`, the interval's
-    lower end has to reach the share.
+    `first` and `last` are the first and the last step, `starts` the first ones. `some` step was taken,
+    `never` another one. Steps of `order` were taken in this order, and those of `never_order` were not.
+    `actions` are all actions, in full. `endings` are the allowed ones. `goal` says whether it was reached.
+
+    The world is asked by texts of its truth: no state holds one of `never_state`, some state one of
+    `some_state`, the one after the first step one of `first_state`, the last one one of `last_state`, and
+    those around a step those of `around`. What nobody has recorded holds nothing. With `surely`, the
+    interval's lower end has to reach the share.
     """
 
     says: str
@@ -69,6 +93,7 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     when: When | None = None
     first: str | None = None
     last: str | None = None
+    starts: tuple[str, ...] = ()
     some: str | None = None
     never: str | None = None
     order: tuple[str, ...] = ()
@@ -80,6 +105,9 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
     goal: bool | None = None
     never_state: str | None = None
     some_state: str | None = None
+    first_state: str | None = None
+    last_state: str | None = None
+    around: Around | None = None
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -97,6 +125,12 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 def has_check(claim: Claim) -> bool:
     """Whether a claim says anything that could fail."""
     return any(getattr(claim, name) not in (None, ()) for name in _CHECKS)
+
+
+def asking_the_world(claim: Claim, by: str, truth: str) -> Claim:
+    """The same claim, which asks the world whether the goal was reached: a system knows its belief alone."""
+    is_believed = by != "model" and truth and claim.goal and claim.last_state is None
+    return msgspec.structs.replace(claim, last_state=truth) if is_believed else claim
 
 
 def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:
@@ -165,19 +199,47 @@ def _counts(count: Count, trial: Trial) -> bool:
     return count.at_least <= number and (count.at_most is None or number <= count.at_most)
 
 
+def _starts(patterns: Sequence[str], trial: Trial) -> bool:
+    is_long = len(trial.steps) >= len(patterns)
+    return is_long and all(map(matches, patterns, trial.steps))
+
+
 def _never_holds(pattern: str, trial: Trial) -> bool:
     """Without states nothing is known, so that nothing is claimed of them either."""
     return len(trial.states) >= len(trial.actions) and not _somewhere_holds(pattern, trial)
 
 
 def _somewhere_holds(pattern: str, trial: Trial) -> bool:
-    wanted = [each.strip() for each in pattern.split(" | ")]
-    return any(each in state for state in trial.states for each in wanted)
+    return any(_holds(pattern, state) for state in trial.truths.values())
+
+
+def _holds(pattern: str, state: str | None) -> bool:
+    return state is not None and any(each.strip() in state for each in pattern.split(" | "))
+
+
+def _last_holds(pattern: str, trial: Trial) -> bool:
+    truths = trial.truths
+    return bool(truths) and _holds(pattern, truths[max(truths)])
+
+
+def _is_around(around: Around, trial: Trial) -> bool:
+    truths = trial.truths
+    for number, step in enumerate(trial.steps, 1):
+        if not matches(around.step, step):
+            continue
+        known = [earlier for earlier in truths if earlier < number]
+        before = truths[max(known)] if known else None
+        if around.before is not None and not _holds(around.before, before):
+            return False
+        if around.after is not None and not _holds(around.after, truths.get(number)):
+            return False
+    return True
 
 
 _CHECKS: dict[str, Callable[[Any, Trial], bool]] = {
     "first": lambda claim, trial: bool(trial.steps) and matches(claim.first, trial.steps[0]),
     "last": lambda claim, trial: bool(trial.steps) and matches(claim.last, trial.steps[-1]),
+    "starts": lambda claim, trial: _starts(claim.starts, trial),
     "some": lambda claim, trial: _count(claim.some, trial) > 0,
     "never": lambda claim, trial: not _count(claim.never, trial),
     "order": lambda claim, trial: _is_order(claim.order, trial),
@@ -189,4 +251,7 @@ _CHECKS: dict[str, Callable[[Any, Trial], bool]] = {
     "goal": lambda claim, trial: trial.goal == claim.goal,
     "never_state": lambda claim, trial: _never_holds(claim.never_state, trial),
     "some_state": lambda claim, trial: _somewhere_holds(claim.some_state, trial),
+    "first_state": lambda claim, trial: _holds(claim.first_state, trial.truths.get(1)),
+    "last_state": lambda claim, trial: _last_holds(claim.last_state, trial),
+    "around": lambda claim, trial: _is_around(claim.around, trial),
 }

@@ -32,9 +32,14 @@ Seed = Annotated[int, msgspec.Meta(ge=0)]
 
 
 class Part(Setting, frozen=True, kw_only=True):
-    """A setting, and what is claimed of its missions."""
+    """A setting, and what is claimed of its missions.
+
+    `truth` is text that the world's last record has where the goal was reached. Where a system plays, a claim
+    of `goal: true` asks for it, too.
+    """
 
     claims: tuple[Claim, ...] = ()
+    truth: str = ""
 
 
 class MissionTest(Part, frozen=True, kw_only=True):
@@ -70,9 +75,8 @@ class ScriptFile(msgspec.Struct, frozen=True, kw_only=True):
 class Experiment(msgspec.Struct, frozen=True, kw_only=True):
     """An experiment: parts by name, each played by the model and by the whole system.
 
-    `counts` are patterns of steps by the name they have in the report, which counts them. `truth` is text
-    that the world's last record has where the goal was reached. With `optimum` the model's returns are
-    compared with the best that can be had.
+    `counts` are patterns of steps by the name they have in the report, which counts them. `truth` is that of
+    parts which give none. With `optimum` the model's returns are compared with the best that can be had.
     """
 
     aos: Literal[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Sequence
 
@@ -14,7 +15,7 @@ _Z = statistics.NormalDist().inv_cdf(0.5 + CONFIDENCE / 2)
 
 
 class Interval(msgspec.Struct, frozen=True):
-    """An estimate between its two ends."""
+    """An estimate between its two ends, which are infinite (null in JSON) where nothing is known of them."""
 
     value: float
     low: float
@@ -32,10 +33,12 @@ def interval_of_share(hits: int, trials: int) -> Interval:
 
 
 def interval_of_mean(values: Sequence[float]) -> Interval | None:
-    """Student's interval; None for fewer than two values, which say nothing about how far they scatter."""
-    if len(values) < 2:
+    """Student's interval; None without values. One value says nothing about how far they scatter."""
+    if not values:
         return None
     mean = statistics.fmean(values)
+    if len(values) == 1:
+        return Interval(mean, -math.inf, math.inf)
     half = _student(len(values) - 1) * statistics.stdev(values) / len(values) ** 0.5
     return Interval(mean, mean - half, mean + half)
 

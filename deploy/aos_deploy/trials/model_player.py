@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import AsyncExitStack
 
 import msgspec
 
@@ -25,14 +26,18 @@ DEFAULT_SIMULATIONS = 100_000
 
 
 class ModelMissions(msgspec.Struct, frozen=True):
-    """All that missions of the model depend on beside their seeds; it refers to no file."""
+    """All that missions of the model depend on beside their seeds; it refers to no file.
+
+    `world` plays the world where the robot's own documents do not.
+    """
 
     project: Project
     limits: MissionLimits
     search: Search
+    world: Project | None = None
 
     @classmethod
-    def of(cls, deployment: Deployment) -> ModelMissions:
+    def of(cls, deployment: Deployment, world: Deployment | None = None) -> ModelMissions:
         """Those of a deployment; DocumentError with all that is wrong with its documents."""
         mission = deployment.file.mission
         limits = MissionLimits(
@@ -40,20 +45,25 @@ class ModelMissions(msgspec.Struct, frozen=True):
             step_limit=mission.step_limit,
             stop_below_value=mission.stop_below_value,
         )
-        return cls(project_of(deployment), limits, _search(deployment))
+        played = project_of(world) if world is not None else None
+        return cls(project_of(deployment), limits, _search(deployment), played)
 
 
 class ModelPlayer:
     """Plays missions by the model of their documents, which is built once."""
 
-    def __init__(self, missions: ModelMissions, model: BuiltModel) -> None:
+    def __init__(self, missions: ModelMissions, model: BuiltModel, world: BuiltModel | None = None) -> None:
         self.missions = missions
         self.model = model
+        self.world = world
 
     @classmethod
     async def prepared(cls, missions: ModelMissions) -> ModelPlayer:
         """Compiles the model; ModelError if that fails."""
-        return cls(missions, await build_project(missions.project, cache_dir(), lambda remark: None))
+        model = await build_project(missions.project, cache_dir(), lambda remark: None)
+        if missions.world is None:
+            return cls(missions, model)
+        return cls(missions, model, await build_project(missions.world, cache_dir(), lambda remark: None))
 
     async def close(self) -> None:
         """Nothing is left of a mission."""
@@ -62,11 +72,14 @@ class ModelPlayer:
         """One mission. The same seed gives the same mission wherever the budget is one in simulations."""
         start = time.perf_counter()
         search = msgspec.structs.replace(self.missions.search, seed=seed)
-        engine = await Engine.start(self.model, seed=seed)
-        try:
-            run = await simulate_mission(engine, search, self.missions.limits, with_states=True)
-        finally:
-            await engine.close()
+        async with AsyncExitStack() as engines:
+            engine = await Engine.start(self.model, seed=seed)
+            engines.push_async_callback(engine.close)
+            world = None
+            if self.world is not None:
+                world = await Engine.start(self.world, seed=seed, keeps_belief=False)
+                engines.push_async_callback(world.close)
+            run = await simulate_mission(engine, search, self.missions.limits, with_states=True, world=world)
         return Trial(
             seed=seed,
             ending=str(run.ending),
@@ -74,6 +87,7 @@ class ModelPlayer:
             actions=run.actions,
             responses=run.observations,
             states=run.states[1:],
+            world_ending=str(run.world_ending or ""),
             value=run.discounted_return,
             seconds=time.perf_counter() - start,
         )

@@ -73,9 +73,9 @@ class ScriptPlayer:
         fault = ""
         try:
             for step, action in enumerate(self._script, 1):
-                responses.append(await self._response(world, action))
-                truth = {"step": step, **world.truth(), "drawn_faults": list(world.faults.drawn)}
-                states.append(json.dumps(truth))
+                told, fields = await self._response(world, action)
+                responses.append(told)
+                states.append(json.dumps(world.record(step, self._paths[action.skill], fields)))
         except AosError as error:
             fault = str(error)
         finally:
@@ -96,11 +96,12 @@ class ScriptPlayer:
         for evaluator in self._evaluators.values():
             await evaluator.close()
 
-    async def _response(self, world: Any, action: GroundedAction) -> str:
+    async def _response(self, world: Any, action: GroundedAction) -> tuple[str, dict[str, Any]]:
+        """What came back, and the fields that the skill was called with."""
         evaluator = self._evaluators[action.skill]
         fields = await evaluator.begin(action.parameters)
         world.begin()
         answer = self._world_file.kind.skills[self._paths[action.skill]](world, fields)
         world.stop()
         await evaluator.take(list(world.sensors().items()))
-        return (await evaluator.finish(answer)).response or ""
+        return (await evaluator.finish(answer)).response or "", fields

@@ -14,7 +14,7 @@ from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file
 from aos_deploy.played_faults import PlayedFaults
 from aos_protocol.errors import DeployError
 
-__all__ = ["Player", "Setting", "deployment_of"]
+__all__ = ["Player", "Setting", "deployment_of", "world_deployment_of"]
 
 Player = Literal["model", "system", "system-model"]
 """Who plays the skills: the documents' model in this process, or a whole system, by the deploy file's
@@ -24,6 +24,9 @@ adapters or by the model."""
 class Setting(msgspec.Struct, frozen=True, kw_only=True):
     """`bundles` stand in place of the deploy file's; `simulations` and `step_limit` too.
 
+    `world_bundles` are documents that play the world in missions of the model, in place of the ones that the
+    robot plans with, which may be wrong about the world. They have the same actions.
+
     `unconstrained` leaves out the deploy file's constraints. `faults` are values for the world file's
     `faults` in a simulated world, and those of `PlayedFaults` where the model plays in a whole system. With a
     `script` its actions are carried out in the simulated world, one after the other, and nothing is planned.
@@ -32,6 +35,7 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     deploy: str
     by: Player = "model"
     bundles: tuple[str, ...] = ()
+    world_bundles: tuple[str, ...] = ()
     simulations: int | None = None
     step_limit: int | None = None
     unconstrained: bool = False
@@ -56,11 +60,7 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
         file = msgspec.structs.replace(file, mission=msgspec.structs.replace(file.mission, constraints=()))
         deployment = msgspec.structs.replace(deployment, constraints=())
     if setting.bundles:
-        bundles = tuple((folder / bundle).resolve() for bundle in setting.bundles)
-        for bundle in bundles:
-            if not bundle.exists():
-                raise DeployError(f"there is no bundle {bundle}", code="AOS801", hint="Look at `bundles:`")
-        deployment = msgspec.structs.replace(deployment, bundles=bundles)
+        deployment = msgspec.structs.replace(deployment, bundles=_named(setting.bundles, folder))
     deployment = msgspec.structs.replace(deployment, file=file)
     if setting.by == "system-model":
         if setting.faults:
@@ -69,6 +69,21 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
     if setting.faults:
         return _with_faults(deployment, setting, out)
     return deployment
+
+
+def world_deployment_of(setting: Setting, deployment: Deployment, folder: Path) -> Deployment | None:
+    """The deployment whose documents play the world in missions of the model, where it is another one."""
+    if not setting.world_bundles:
+        return None
+    return msgspec.structs.replace(deployment, bundles=_named(setting.world_bundles, folder))
+
+
+def _named(names: tuple[str, ...], folder: Path) -> tuple[Path, ...]:
+    bundles = tuple((folder / bundle).resolve() for bundle in names)
+    for bundle in bundles:
+        if not bundle.exists():
+            raise DeployError(f"there is no bundle {bundle}", code="AOS801", hint="Look at `bundles:`")
+    return bundles
 
 
 def _with_faults(deployment: Deployment, setting: Setting, out: Path) -> Deployment:

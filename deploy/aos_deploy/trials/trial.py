@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import msgspec
 
 __all__ = ["NOTHING_OBSERVED", "Trial"]
@@ -16,7 +18,8 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     `ending` is why it stopped. `goal` says whether the goal was reached: in the model's world where the model
     played it, else as the last belief has it, since nobody tells a robot. A response is empty where an
     activation brought no observation. `states` are texts of the world's truth after each action, where it is
-    known. `value` is the discounted return, which only a model counts. A mission that broke has its `fault`.
+    known; one of a simulated world names its step. `world_ending` is how a model's world has ended, or empty.
+    `value` is the discounted return, which only a model counts. A mission that broke has its `fault`.
     """
 
     seed: int
@@ -25,6 +28,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     actions: tuple[str, ...] = ()
     responses: tuple[str, ...] = ()
     states: tuple[str, ...] = ()
+    world_ending: str = ""
     value: float | None = None
     seconds: float = 0.0
     fault: str = ""
@@ -36,3 +40,20 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
             f"{action} > {told or NOTHING_OBSERVED}"
             for action, told in zip(self.actions, self.responses, strict=True)
         ]
+
+    @property
+    def truths(self) -> dict[int, str]:
+        """The states by the number of their step, from 1; a model's last one says how its world has ended."""
+        told = {_step_of(state, number): state for number, state in enumerate(self.states, 1)}
+        if told and self.world_ending:
+            last = max(told)
+            told[last] += f", world_ending={self.world_ending}"
+        return told
+
+
+def _step_of(state: str, number: int) -> int:
+    """A call that never came to a simulated world has left no line there."""
+    if not state.startswith("{"):
+        return number
+    step: int = json.loads(state).get("step", number)
+    return step

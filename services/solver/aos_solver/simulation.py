@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_protocol.errors import DocumentError
 from aos_solver.child.engine import Engine
 from aos_solver.endings import (
     Ending,
@@ -49,17 +50,28 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
 
 
 async def simulate_mission(
-    engine: Engine, search: Search, limits: MissionLimits, *, with_states: bool = False
+    engine: Engine,
+    search: Search,
+    limits: MissionLimits,
+    *,
+    with_states: bool = False,
+    world: Engine | None = None,
 ) -> SimulatedRun:
-    """Runs one mission from the initial belief; `search.seed` also draws the world."""
+    """Runs one mission from the initial belief; `search.seed` also draws the world.
+
+    `world` plays the world where the robot's model may be wrong about it: the engine of other documents with
+    the same actions. Rewards and endings are then theirs.
+    """
     belief = await engine.reset_belief()
-    world_ending = (await engine.reset_world(search.seed)).ending
+    world = world or engine
+    places = {action.name: index for index, action in enumerate(world.description.actions)}
+    world_ending = (await world.reset_world(search.seed)).ending
     discount = engine.description.discount
     total = discounted = 0.0
     actions: list[str] = []
     observations: list[str] = []
     numbers: list[dict[str, float | list[float | None]]] = []
-    states = [await engine.world_state()] if with_states else []
+    states = [await world.world_state()] if with_states else []
     budget, violations = RiskBudget(engine.bounds), 0
     risked: dict[str, float] = {bound.never: 0.0 for bound in engine.bounds}
     while True:
@@ -91,7 +103,11 @@ async def simulate_mission(
             )
         for spent in budget.spend(risks, plan.index) if risks is not None else ():
             risked[spent.never] += spent.risk
-        step = await engine.step_world(plan.index)
+        if plan.best.action not in places:
+            raise DocumentError(
+                f"the world's documents have no action {plan.best.action}", hint="Name others"
+            )
+        step = await world.step_world(places[plan.best.action])
         violations |= step.violations
         total += step.reward
         discounted += discount ** len(actions) * step.reward
@@ -99,6 +115,6 @@ async def simulate_mission(
         observations.append(step.response)
         numbers.append(step.numbers)
         if with_states:
-            states.append(await engine.world_state())
+            states.append(await world.world_state())
         belief = (await engine.update(plan.best.action, step.response, numbers=step.numbers)).summary
         world_ending = step.ending

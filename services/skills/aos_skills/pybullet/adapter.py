@@ -109,14 +109,8 @@ class PybulletAdapter:
 
     def _record(self, call: Call, processor_s: float) -> None:
         """The truth about the world, and what its simulation took, for reports; the robot is not told."""
-        truth = {
-            "step": call.id.step,
-            "path": call.target,
-            "time_s": round(self._world.scene.time_s, 3),
-            "processor_s": round(processor_s, 3),
-            **self._world.truth(),
-            "drawn_faults": list(self._world.faults.drawn),
-        }
+        truth = self._world.record(call.id.step, call.target, call.fields)
+        truth["processor_s"] = round(processor_s, 3)
         with (self._run_dir / "world.jsonl").open("a", encoding="utf-8") as file:
             file.write(json.dumps(truth) + "\n")
 

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pybullet
-from PIL import Image, ImageOps
+from PIL import Image
 
 from aos_skills.pybullet.parts.scene import Scene, Vector
 
-__all__ = ["Camera", "photograph"]
+__all__ = ["Camera", "photograph", "place_of_pixel"]
 
 PICTURE_SIZE = (480, 360)
-CLOSE_UP_SIZE = (200, 150)
+CLOSE_UP_SIZE = (240, 360)
 FRAME_EVERY_S = 3.0
 FRAME_SHOWN_MS = 300
 FIELD_OF_VIEW_DEG = 50
 SUN = (3.0, -4.0, 7.0)
 BORDER_PX = 2
+"""Of white between a picture and its close-up."""
 
 
 def photograph(
@@ -49,8 +51,33 @@ def photograph(
     return Image.fromarray(rgba[:, :, :3])
 
 
+def place_of_pixel(
+    eye: Vector,
+    looks_at: Vector,
+    size: tuple[int, int],
+    field_of_view_deg: float,
+    pixel: tuple[float, float],
+    height_m: float,
+) -> tuple[float, float]:
+    """Where the ray through a pixel (column and row, with fractions) meets the plane of a height: x, y.
+
+    The software renderer draws in a pixel what is at its lower left corner.
+    """
+    ahead = np.subtract(looks_at, eye)
+    ahead = ahead / np.linalg.norm(ahead)
+    right = np.cross(ahead, (0, 0, 1))
+    right = right / np.linalg.norm(right)
+    width, height = size
+    half = math.tan(math.radians(field_of_view_deg) / 2)
+    across = (2 * pixel[0] / width - 1) * half * width / height
+    down = (2 * (pixel[1] + 1) / height - 1) * half
+    ray = ahead + across * right - down * np.cross(right, ahead)
+    x, y, _ = np.asarray(eye) + ray * (height_m - eye[2]) / ray[2]
+    return float(x), float(y)
+
+
 class Camera:
-    """Looks into a room from its open side, with a close-up in the corner if the world has one to show.
+    """Looks into a room from its open side, with a close-up beside it if the world has one to show.
 
     `close_up` gives the close-up's eye and what it looks at.
     """
@@ -90,6 +117,11 @@ class Camera:
     def _picture(self, *, shadow: bool = True) -> Image.Image:
         picture = photograph(self._scene, self._eye, self._looks_at, PICTURE_SIZE, shadow=shadow)
         if self._close_up is not None:
+            # In a corner of the picture it would sooner or later hide the robot.
             close_up = photograph(self._scene, *self._close_up(), CLOSE_UP_SIZE, shadow=shadow)
-            picture.paste(ImageOps.expand(close_up, BORDER_PX, "white"), (0, 0))
+            left, height = picture.width + BORDER_PX, max(picture.height, close_up.height)
+            both = Image.new("RGB", (left + close_up.width, height), "white")
+            both.paste(picture, (0, 0))
+            both.paste(close_up, (left, 0))
+            return both
         return picture

@@ -11,6 +11,8 @@ __all__ = ["MAX_GAP_M", "Gripper"]
 FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
 MAX_GAP_M = 0.08
 GRIP_FORCE_N = 25.0
+FEELS_GAP_M, FEELS_FORCE_N = 0.0003, 1.0
+"""What is thinner, or presses less, is taken for nothing."""
 
 
 class Gripper:
@@ -39,6 +41,11 @@ class Gripper:
             contacts = self._client.getContactPoints(bodyA=self._body, linkIndexA=finger)
             forces.append(sum(contact[9] for contact in contacts if contact[2] != self._body))
         return forces[0], forces[1]
+
+    @property
+    def feels_something(self) -> bool:
+        """Whether the fingers, by their own sensors, have something between them."""
+        return self.gap_m > FEELS_GAP_M and min(self.forces_n()) > FEELS_FORCE_N
 
     def holds(self, body: int) -> bool:
         """Whether both fingers touch a body."""

@@ -52,6 +52,11 @@ class World(ABC):
     def truth(self) -> Fields:
         """The state of the world, for the record; the robot is not told."""
 
+    def record(self, step: int, path: str, fields: Fields) -> Fields:
+        """A line of the record: what was called at a step, and the world's truth after it."""
+        called = {"step": step, "path": path, "fields": fields, "time_s": round(self.scene.time_s, 3)}
+        return {**called, **self.truth(), "drawn_faults": list(self.faults.drawn)}
+
 
 @dataclass(frozen=True)
 class WorldKind(Generic[AnyFile, AnyWorld]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from aos_skills.pybullet.parts.camera import Camera
@@ -17,6 +18,8 @@ __all__ = ["FOLDED_ELBOW_RAD", "Armadillo"]
 EYE_M = (4.6, -5.6, 4.0)
 FOLDED_ELBOW_RAD = -2.3
 """The elbow's angle is below this when the arm is tucked."""
+BESIDE_M = 1.5
+"""Of a table's or the person's middle from the robot's, where it stands in front of one."""
 LOOKS_AT_M = (1.7, 0.0, 0.3)
 CLOSE_EYE_M = (1.1, -0.9, 0.7)
 """Of the close-up, from the hand."""
@@ -72,6 +75,8 @@ class Armadillo(World):
         room = self.room
         places = {name: self._place_of(name) for name in room.cans}
         state: dict[str, Any] = {f"{name}_can_at": place for name, place in places.items() if place}
+        if robot_at := self._robot_at():
+            state["robot_at"] = robot_at
         is_served = any(room.is_on_tray(name) for name in room.cans)
         if not is_served:
             state["holding_can"] = self.is_holding
@@ -88,6 +93,15 @@ class Armadillo(World):
         if self.robot.gripper.holds(self.room.cans[name]):
             return "RobotHand"
         return f"{name.capitalize()}Table" if self.room.is_to_pick(name) else "Unknown"
+
+    def _robot_at(self) -> str:
+        """Where the robot stands; nothing where that is none of the documents' places."""
+        x, y, _ = self.robot.base.place
+        if math.dist((x, y), (self.file.person.x, self.file.person.y)) < BESIDE_M:
+            return "Corridor"
+        tables = self.file.tables.items()
+        beside = (name for name, table in tables if math.dist((x, y), (table.x, table.y)) < BESIDE_M)
+        return next((f"{name.capitalize()}Table" for name in beside), "")
 
     def _watch_person(self) -> None:
         """Remembers any touch of the person."""

@@ -7,6 +7,7 @@ from typing import Any
 
 from aos_skills.pybullet.parts.arm import TUCKED
 from aos_skills.pybullet.robots.mobile_arm.grasp import grasp_from_above
+from aos_skills.pybullet.worlds.cleanlab.seeing import place_of_cup
 from aos_skills.pybullet.worlds.cleanlab.world import AHEAD_M, TABLE_TOP_M, CleanLab
 
 __all__ = ["pick"]
@@ -18,13 +19,13 @@ LIFT_M = 0.25
 
 
 def pick(world: CleanLab, fields: dict[str, Any]) -> dict[str, Any]:
-    """Takes and answers nothing. Where the robot perceives no cup, it reaches for where one would stand."""
+    """Takes and answers nothing. Where the robot sees no cup, it reaches for where one would stand."""
     robot, faults, noise = world.robot, world.file.faults, world.faults.noise
     x, y, yaw = robot.base.place
     at_x, at_y = x + AHEAD_M * math.cos(yaw), y + AHEAD_M * math.sin(yaw)
-    cup = world.cup_in_reach()
-    if cup is not None:
-        at_x, at_y, _ = world.scene.place(cup)
+    seen = place_of_cup(world)
+    if seen is not None:
+        at_x, at_y = seen
     if world.faults.draw("the cup is seen elsewhere", faults.misplaced):
         at_x, at_y = at_x - MISPLACED_BY_M * math.cos(yaw), at_y - MISPLACED_BY_M * math.sin(yaw)
     at_x, at_y = at_x + noise.gauss(0, faults.pose_noise_m), at_y + noise.gauss(0, faults.pose_noise_m)

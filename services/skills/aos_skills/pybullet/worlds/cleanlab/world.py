@@ -14,7 +14,7 @@ from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
 
-__all__ = ["AHEAD_M", "BIN_TOP_M", "TABLE_TOP_M", "CleanLab", "filled_stations"]
+__all__ = ["AHEAD_M", "BIN_TOP_M", "CUP_HEIGHT_M", "TABLE_TOP_M", "CleanLab", "filled_stations"]
 
 AHEAD_M = 0.8
 """Of a cup, or of a bin's middle, from the middle of the robot that stands in front of it."""
@@ -24,6 +24,9 @@ TABLE_HALF_M = (0.3, 0.22)
 BIN_TOP_M = 0.45
 BIN_HALF_M = 0.2
 BIN_WALL_HALF_M = 0.01
+UPRIGHT = 0.9
+"""The least cosine of a standing cup's tilt."""
+BESIDE_M = 0.15
 CUP_RADIUS_M, CUP_HEIGHT_M, CUP_MASS_KG = 0.032, 0.08, 0.08
 _FLOOR, _TABLE, _BIN, _CUP = (
     (0.75, 0.77, 0.78, 1),
@@ -81,11 +84,23 @@ class CleanLab(World):
         x, y, yaw = self.robot.base.place
         at_hand = (x + AHEAD_M * math.cos(yaw), y + AHEAD_M * math.sin(yaw))
         for cup in self.cups.values():
-            cup_x, cup_y, cup_z = self.scene.place(cup)
-            stands = cup_z > TABLE_TOP_M and self.scene.uprightness(cup) > 0.9
-            if stands and math.dist(at_hand, (cup_x, cup_y)) < 0.2:
+            cup_x, cup_y, _ = self.scene.place(cup)
+            if self._is_standing(cup) and math.dist(at_hand, (cup_x, cup_y)) < 0.2:
                 return cup
         return None
+
+    def _is_standing(self, cup: int) -> bool:
+        """On a table, not in the hand."""
+        _, _, z = self.scene.place(cup)
+        is_upright = z > TABLE_TOP_M and self.scene.uprightness(cup) > UPRIGHT
+        return is_upright and not self.robot.gripper.holds(cup)
+
+    def _at(self) -> str:
+        """The station or the bin that the robot stands in front of, or nothing."""
+        x, y, _ = self.robot.base.place
+        places = {**self.file.stations, **self.file.bins}
+        near = (name for name, place in places.items() if math.dist((x, y), (place.x, place.y)) < BESIDE_M)
+        return next(near, "")
 
     def stop(self) -> None:
         self.robot.stop()
@@ -99,8 +114,10 @@ class CleanLab(World):
         return {
             "base": [round(value, 3) for value in self.robot.base.place],
             "cups": {name: [round(v, 3) for v in self.scene.place(cup)] for name, cup in self.cups.items()},
+            "at": self._at(),
             "held": self.held_cup,
             "binned": self.binned(),
+            "standing": [name for name, cup in self.cups.items() if self._is_standing(cup)],
         }
 
     def _table(self, place: Place) -> None:

@@ -25,11 +25,13 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class TicTacToeFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Who plays against the robot, by which `rules`, and what is on the board at first.
 
-    A person types at a terminal that is connected to `port` of this machine: see `play`. `moves_made` gives
-    numbers of random moves, the person's first, and how likely each is.
+    A person types at a terminal that is connected to `port` of this machine: see `play`. `begins` says who
+    draws first. `moves_made` gives numbers of random moves before that, the person's first, and how likely
+    each is.
     """
 
     opponent: Literal["random", "perfect", "person"] = "random"
+    begins: Literal["robot", "person"] = "robot"
     port: int = 7450
     rules: Rules = "row"
     moves_made: dict[int, float] = {}

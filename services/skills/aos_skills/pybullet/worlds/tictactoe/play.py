@@ -19,7 +19,7 @@ def main() -> None:
     world = connected(options.port)
     if world is None:
         sys.exit(f"play: nobody listens on port {options.port}: start aos-up deploy/tictactoe-person.yaml")
-    sys.stdout.write("Connected. You draw crosses; the robot begins. Cells are 1 to 9, row by row.\n")
+    sys.stdout.write("Connected. You draw crosses. Cells are 1 to 9, row by row; wait until you are asked.\n")
     threading.Thread(target=send_lines, args=(world,), daemon=True).start()
     while heard := world.recv(1000):
         sys.stdout.write(heard.decode())

@@ -48,7 +48,9 @@ class TicTacToe(World):
         self._person = random.Random(f"person {seed}")
         self._opponent = opponent(file, self._person, scene)
         self.marks = EMPTY_BOARD
-        self.is_robots_turn = True
+        self.circled: list[int] = []
+        """The cells that the robot has marked, in this order."""
+        self.is_robots_turn = file.begins == "robot"
         self._inked_steps = 0
         self._is_writing = False
         if file.moves_made:
@@ -70,6 +72,7 @@ class TicTacToe(World):
     def truth(self) -> dict[str, Any]:
         return {
             "board": self.marks,
+            "circled": list(self.circled),
             "winner": winner(self.marks, self.file.rules),
             "is_over": self.is_over,
         }
@@ -80,7 +83,7 @@ class TicTacToe(World):
         return is_over(self.marks, self.file.rules)
 
     def write(self, way: list[Vector]) -> bool:
-        """Leads the pen along a way; whether it has left a line."""
+        """Leads the pen along a way; whether it has left a line: the truth, which the robot has to see."""
         self._inked_steps, self._is_writing = 0, True
         try:
             self.robot.draw(way)

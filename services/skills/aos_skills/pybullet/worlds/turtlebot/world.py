@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -75,7 +76,10 @@ class Turtlebot(World):
             "robot": [round(value, 3) for value in self.robot.true_place],
             "believed": [round(value, 3) for value in self.robot.place],
             "visits": list(self.visits),
+            "stood": dict(sorted(Counter(self.visits).items())),
+            "repeated": [name for name, times in sorted(Counter(self.visits).items()) if times > 1],
             "closed": self.closed,
+            "missed": [name for name in self.file.places if name not in {*self.visits, *self.closed}],
             "way_m": round(self.way_m, 3),
         }
 

@@ -1,0 +1,31 @@
+"""Each claim of a shipped experiment fails on a robot that does otherwise."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from wrong_robots import Wrong, tried_by_model, wrong_robots
+
+WRONG = list(wrong_robots())
+
+
+@pytest.fixture(autouse=True)
+def _cache(cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(os.environ, "AOS_CACHE_DIR", str(cache_dir))
+
+
+def test_no_claim_is_without_a_robot_that_does_otherwise() -> None:
+    assert [f"{wrong.name}: {wrong.claim.says}" for wrong in WRONG if wrong.robot is None] == []
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [wrong for wrong in WRONG if wrong.robot is not None and wrong.claim.only != "system"],
+    ids=lambda wrong: f"{wrong.name}: {wrong.claim.says}",
+)
+async def test_a_claim_fails_on_a_robot_that_does_otherwise(wrong: Wrong) -> None:
+    verdict = await tried_by_model(wrong)
+    assert verdict.missions > 0, "the claim is about none of its missions"
+    assert not verdict.is_seen

@@ -1,0 +1,161 @@
+"""Robots that do otherwise than an experiment claims: `python -m tests.wrong_robots turtlebot` in physics.
+
+`wrong_robots.yaml` has one for each claim of each shipped experiment. The claim has to be about its missions,
+and may not be seen in them. Those of the model are among the unit tests; those in physics take ten minutes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import msgspec
+from ruamel.yaml import YAML
+
+from aos_deploy.shipped import shipped
+from aos_deploy.trials.claims import Claim, Verdict, asking_the_world, judge
+from aos_deploy.trials.files import Experiment, Part, read_experiment
+from aos_deploy.trials.model_player import ModelMissions, ModelPlayer
+from aos_deploy.trials.script_player import ScriptPlayer
+from aos_deploy.trials.setting import deployment_of, world_deployment_of
+from aos_deploy.trials.trial import Trial
+from aos_solver.child.engine import Engine
+
+__all__ = ["Wrong", "WrongRobot", "tried_by_model", "tried_in_physics", "wrong_robots"]
+
+
+class WrongRobot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """See the head of `wrong_robots.yaml`."""
+
+    does: tuple[str, ...] = ()
+    believes: str = "scripted"
+    plans: tuple[str, ...] = ()
+    first_seed: int = 1
+    seeds: int = 20
+    faults: dict[str, float] = {}
+    system_seed: int = 1
+    system: WrongRobot | None = None
+
+    @property
+    def missions(self) -> range:
+        """The seeds of its missions of the model."""
+        return range(self.first_seed, self.first_seed + self.seeds)
+
+
+class Wrong(msgspec.Struct, frozen=True):
+    """A claim of a part of an experiment, and the robot that does otherwise."""
+
+    experiment: Experiment
+    folder: Path
+    name: str
+    part: Part
+    claim: Claim
+    robot: WrongRobot | None
+
+    def verdict(self, trials: list[Trial], by: str) -> Verdict:
+        """What an experiment would say of these missions."""
+        truth = self.part.truth or self.experiment.truth
+        return judge(asking_the_world(self.claim, by, truth), trials, by)
+
+
+def wrong_robots() -> Iterator[Wrong]:
+    """Every claim of every shipped experiment, with its robot if it has one."""
+    yaml = YAML(typ="safe", pure=True)
+    told = yaml.load((Path(__file__).parent / "wrong_robots.yaml").read_text(encoding="utf-8"))
+    robots = msgspec.convert(told, dict[str, dict[str, dict[str, WrongRobot]]])
+    for path in sorted(shipped("deploy/experiments").glob("*.yaml")):
+        experiment = read_experiment(path)
+        for name, part in experiment.parts.items():
+            known = robots.get(path.stem, {}).get(name, {})
+            for claim in part.claims:
+                place = f"{path.stem}/{name}"
+                yield Wrong(experiment, path.parent, place, part, claim, known.get(claim.says))
+
+
+async def tried_by_model(wrong: Wrong) -> Verdict:
+    """The verdict on missions in the world of the documents."""
+    robot = wrong.robot
+    assert robot is not None
+    with tempfile.TemporaryDirectory() as out:
+        own = deployment_of(msgspec.structs.replace(wrong.part, by="model"), wrong.folder, Path(out))
+    world = world_deployment_of(wrong.part, own, wrong.folder) or own
+    if robot.plans:
+        bundles = tuple((wrong.folder / bundle).resolve() for bundle in robot.plans)
+        planned = msgspec.structs.replace(own, bundles=bundles)
+        player = await ModelPlayer.prepared(ModelMissions.of(planned, world))
+        return wrong.verdict([await player.play(seed) for seed in robot.missions], "model")
+    player = await ModelPlayer.prepared(ModelMissions.of(world))
+    engine = await Engine.start(player.model, seed=1, keeps_belief=False)
+    try:
+        trials = [await _scripted(engine, robot, seed) for seed in robot.missions]
+    finally:
+        await engine.close()
+    return wrong.verdict(trials, "model")
+
+
+async def _scripted(engine: Engine, robot: WrongRobot, seed: int) -> Trial:
+    """The robot's actions in the model's world, until that ends."""
+    indices = {action.name: index for index, action in enumerate(engine.description.actions)}
+    ending = (await engine.reset_world(seed)).ending
+    responses: list[str] = []
+    states: list[str] = []
+    for action in robot.does:
+        if ending:
+            break
+        step = await engine.step_world(indices[action])
+        ending = step.ending
+        responses.append(step.response)
+        states.append(await engine.world_state())
+    return Trial(
+        seed=seed,
+        ending=ending or robot.believes,
+        goal=ending == "goal",
+        actions=robot.does[: len(responses)],
+        responses=tuple(responses),
+        states=tuple(states),
+        world_ending=ending,
+    )
+
+
+async def tried_in_physics(wrong: Wrong, out: Path) -> Verdict:
+    """The verdict on a mission in the simulated world."""
+    assert wrong.robot is not None
+    robot = wrong.robot.system or wrong.robot
+    setting = msgspec.structs.replace(wrong.part, by="system", faults=robot.faults)
+    player = await ScriptPlayer.prepared(deployment_of(setting, wrong.folder, out), robot.does, out)
+    try:
+        trial = await player.play(robot.system_seed)
+    finally:
+        await player.close()
+    # It says that it has come to its goal, whatever has become of the world.
+    says = msgspec.structs.replace(trial, ending=robot.believes, goal=robot.believes == "goal")
+    return wrong.verdict([says], "system")
+
+
+def main() -> None:
+    """Tries the robots in physics; the exit code says whether a claim was seen all the same."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("experiments", nargs="*", help="all if none is named")
+    options = parser.parse_args()
+    are_wrong = True
+    with tempfile.TemporaryDirectory() as folder:
+        for wrong in wrong_robots():
+            experiment = wrong.name.partition("/")[0]
+            is_wanted = not options.experiments or experiment in options.experiments
+            has_world = deployment_of(wrong.part, wrong.folder, Path(folder)).world is not None
+            if wrong.claim.only == "model" or not is_wanted or not has_world:
+                continue
+            verdict = asyncio.run(tried_in_physics(wrong, Path(folder)))
+            fails = verdict.missions > 0 and verdict.held == 0
+            are_wrong = are_wrong and fails
+            word = "fails   " if fails else "HOLDS   " if verdict.missions else "NO CASE "
+            print(f"{word} {wrong.name}: {wrong.claim.says}", flush=True)
+    sys.exit(0 if are_wrong else 1)
+
+
+if __name__ == "__main__":
+    main()
