@@ -66,7 +66,7 @@ class TreeReader:
         if node.is_error:
             text = _text(node).strip().splitlines() or [""]
             message = f"unexpected {text[0][:40]!r}"
-            self.faults.append(Fault(FaultKind.SYNTAX, message, self._extent(node)))
+            self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(node)))
         handler = _HANDLERS.get(node.type)
         if handler is None:
             self._push(node.children)
@@ -77,7 +77,7 @@ class TreeReader:
         self._stack += [(node, access) for node in nodes if node is not None]
 
     def _missing(self, node: tree_sitter.Node) -> None:
-        self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self._extent(node)))
+        self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self.extent(node)))
 
     # --- paths -----------------------------------------------------------------------------------------
 
@@ -86,9 +86,9 @@ class TreeReader:
         if root is None:
             return
         if node.type == "qualified_identifier" and _is_type(node):
-            self.types.append((_text(node).split("<")[0], self._extent(node)))
+            self.types.append((_text(node).split("<")[0], self.extent(node)))
         else:
-            extent, root_extent = self._extent(node), self._extent(root)
+            extent, root_extent = self.extent(node), self.extent(root)
             self.mentions.append(Mention(parts, access, extent, root_extent, assigned=assigned))
 
     def _flatten(
@@ -130,7 +130,7 @@ class TreeReader:
         left, right = _child(node, "left"), node.child_by_field_name("right")
         kind = Access.WRITE if is_plain else Access.UPDATE
         if _HANDLERS.get(left.type) is TreeReader._path:
-            self._path(left, kind, self._extent(right) if right is not None else None)
+            self._path(left, kind, self.extent(right) if right is not None else None)
         else:
             self._push([left], kind)
         self._push([right])
@@ -161,7 +161,7 @@ class TreeReader:
         is_changing = gives_place or not _CHANGING_FUNCTIONS.isdisjoint(name)
         self._push(arguments.children, Access.BIND if is_changing else Access.READ)
         self.calls.append(
-            Call(name, self._extent(node), self._extent(function), tuple(map(self._extent, named)))
+            Call(name, self.extent(node), self.extent(function), tuple(map(self.extent, named)))
         )
 
     def _called(self, function: tree_sitter.Node, access: Access) -> tuple[str, ...]:
@@ -171,7 +171,7 @@ class TreeReader:
         if function.type != "field_expression":
             parts, root = self._flatten(function)
             if root is not None:
-                self.mentions.append(Mention(parts, Access.CALL, self._extent(function), self._extent(root)))
+                self.mentions.append(Mention(parts, Access.CALL, self.extent(function), self.extent(root)))
             return parts
         target = _child(function, "argument")
         method = _names(function.child_by_field_name("field"))[-1:]
@@ -179,8 +179,8 @@ class TreeReader:
         if root is not None:
             kind = _method_access("".join(method), access, is_aos=parts == ("AOS",))
             path = (*parts, *method) if kind is Access.CALL else parts
-            extent = self._extent(function if kind is Access.CALL else target)
-            self.mentions.append(Mention(path, kind, extent, self._extent(root), "".join(method)))
+            extent = self.extent(function if kind is Access.CALL else target)
+            self.mentions.append(Mention(path, kind, extent, self.extent(root), "".join(method)))
         return (*parts, *method)
 
     # --- declarations ----------------------------------------------------------------------------------
@@ -218,10 +218,8 @@ class TreeReader:
         names = inner.named_children if inner.type == "structured_binding_declarator" else [inner]
         for name in names:
             if name.type == "identifier":
-                extent = self._extent(initial) if initial is not None else None
-                self.declarations.append(
-                    Declaration(_text(name), type_text, kind, self._extent(name), extent)
-                )
+                extent = self.extent(initial) if initial is not None else None
+                self.declarations.append(Declaration(_text(name), type_text, kind, self.extent(name), extent))
             else:
                 self._push(name.children)
 
@@ -230,26 +228,26 @@ class TreeReader:
         enum_name = _text(name) if name is not None else ""
         if name is not None:
             self._push([name])
-            extent = self._extent(name)
+            extent = self.extent(name)
             self.declarations.append(Declaration(enum_name, "enum", DeclarationKind.ENUM, extent))
         body = node.child_by_field_name("body")
         for enumerator in body.named_children if body is not None else []:
             value_name = enumerator.child_by_field_name("name")
             if enumerator.type == "enumerator" and value_name is not None:
-                extent = self._extent(value_name)
+                extent = self.extent(value_name)
                 declaration = Declaration(_text(value_name), enum_name, DeclarationKind.ENUMERATOR, extent)
                 self.declarations.append(declaration)
                 self._push([enumerator.child_by_field_name("value")])
 
     def _type(self, node: tree_sitter.Node, access: Access) -> None:
-        self.types.append((_text(node), self._extent(node)))
+        self.types.append((_text(node), self.extent(node)))
 
     def _skip(self, node: tree_sitter.Node, access: Access) -> None:
         pass
 
     # --- places ----------------------------------------------------------------------------------------
 
-    def _extent(self, node: tree_sitter.Node) -> Extent:
+    def extent(self, node: tree_sitter.Node) -> Extent:
         start, end = (self._offset(byte) for byte in (node.start_byte, node.end_byte))
         return self._lines.extent(start, end)
 

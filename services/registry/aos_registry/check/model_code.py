@@ -17,6 +17,7 @@ from aos_registry.check.scope import NUMBERS, STATE_COPIES, Scope, ValueType
 from aos_registry.check.subscripts import subscripts_of
 from aos_registry.check.weights import check_weights
 from aos_runtime.cpp_keywords import COMPILER_NAMES, SPECIAL_NAMES
+from aos_runtime.cpp_unset import unset_reads
 from aos_runtime.document_code import absent_skills
 from aos_runtime.snippets import (
     Access,
@@ -150,6 +151,15 @@ class _BlockCheck:
             self._check_mention(mention)
         self._check_calls()
         self._check_lone_name()
+        if not self._block.is_expression:
+            self._check_unset()
+
+    def _check_unset(self) -> None:
+        for each in unset_reads(self._cpp, frozenset(self._scope.enums)):
+            report = self._findings.error if each.never else self._findings.warning
+            which = "has no value" if each.never else "may have no value"
+            hint = f"Declare it with one: `{each.type} {each.name} = ...;`"
+            report("AOS143", f"`{each.name}` {which} here", self._span(each.extent), hint)
 
     def _check_semicolons(self) -> None:
         for offset in self._cpp.missing_semicolons:
