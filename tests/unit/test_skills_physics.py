@@ -16,7 +16,7 @@ from processes import HANG_S
 from aos_skills.pybullet.world_file import load_world_file
 from aos_skills.pybullet.worlds.armadillo import KIND
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile, FaultModel
-from aos_skills.pybullet.worlds.armadillo.pick import STRETCHED, can_in_reach
+from aos_skills.pybullet.worlds.armadillo.pick import STRETCHED, _perceived, can_in_reach
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
 
 pytestmark = pytest.mark.physics
@@ -119,6 +119,22 @@ def test_an_arm_that_stays_out_is_reported_and_hurts_whoever_is_served(make: Mak
     call(world, "/navigate", CORRIDOR)
     call(world, "/serve")
     assert world.has_injured
+
+
+@pytest.mark.parametrize("table", ["easy", "hard"])
+def test_a_can_is_grasped_where_it_is_seen(make: Make, table: str) -> None:
+    world = make(FaultModel())
+    if table == "easy":
+        call(world, "/navigate", EASY_TABLE)
+    can = world.room.cans[table]
+    x, y, z = world.room.can_place(table)
+    for dx, dy in ((0.0, 0.0), (0.04, -0.03), (-0.03, 0.02)):
+        world.scene.client.resetBasePositionAndOrientation(can, (x + dx, y + dy, z), (0, 0, 0, 1))
+        seen = _perceived(world, table)
+        assert seen is not None
+        assert seen[:2] == pytest.approx((x + dx, y + dy), abs=0.001)
+    world.scene.client.changeVisualShape(can, -1, rgbaColor=(1, 1, 1, 1))
+    assert _perceived(world, table) is None
 
 
 def test_the_arm_comes_back_where_the_fingers_feel_nothing(make: Make) -> None:

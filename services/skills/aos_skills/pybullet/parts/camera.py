@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from PIL import Image
 
 from aos_skills.pybullet.parts.scene import Scene, Vector
 
-__all__ = ["Camera", "photograph", "place_of_pixel"]
+__all__ = ["Camera", "photograph"]
 
 PICTURE_SIZE = (480, 360)
 CLOSE_UP_SIZE = (240, 360)
@@ -49,31 +48,6 @@ def photograph(
     )
     rgba = np.reshape(np.asarray(pixels, dtype=np.uint8), (height, width, 4))
     return Image.fromarray(rgba[:, :, :3])
-
-
-def place_of_pixel(
-    eye: Vector,
-    looks_at: Vector,
-    size: tuple[int, int],
-    field_of_view_deg: float,
-    pixel: tuple[float, float],
-    height_m: float,
-) -> tuple[float, float]:
-    """Where the ray through a pixel (column and row, with fractions) meets the plane of a height: x, y.
-
-    The software renderer draws in a pixel what is at its lower left corner.
-    """
-    ahead = np.subtract(looks_at, eye)
-    ahead = ahead / np.linalg.norm(ahead)
-    right = np.cross(ahead, (0, 0, 1))
-    right = right / np.linalg.norm(right)
-    width, height = size
-    half = math.tan(math.radians(field_of_view_deg) / 2)
-    across = (2 * pixel[0] / width - 1) * half * width / height
-    down = (2 * (pixel[1] + 1) / height - 1) * half
-    ray = ahead + across * right - down * np.cross(right, ahead)
-    x, y, _ = np.asarray(eye) + ray * (height_m - eye[2]) / ray[2]
-    return float(x), float(y)
 
 
 class Camera:

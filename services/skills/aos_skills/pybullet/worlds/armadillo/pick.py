@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from aos_skills.pybullet.parts.arm import TUCKED
+from aos_skills.pybullet.parts.boom_camera import Colors, top_seen
 from aos_skills.pybullet.robots.mobile_arm.grasp import SHOULDER_AHEAD_M, grasp_from_above
 from aos_skills.pybullet.worlds.armadillo.room import TABLE_TOP_M
 from aos_skills.pybullet.worlds.armadillo.world import Armadillo
@@ -31,9 +35,10 @@ def pick(world: Armadillo, fields: dict[str, Any]) -> dict[str, Any]:
     robot.gripper.open()
     robot.arm.move(TUCKED)
     can = can_in_reach(world)
-    if can is None:
+    perceived = _perceived(world, can) if can is not None else None
+    if perceived is None:
         return {"success": True}
-    x, y, height = _perceived(world, can)
+    x, y, height = perceived
     above = TABLE_TOP_M + LIFT_M
     grasp = TABLE_TOP_M + max(height, LOWEST_GRASP_M)
     grasp_from_above(robot, (x, y, grasp), above)
@@ -61,12 +66,18 @@ def can_in_reach(world: Armadillo) -> str | None:
     return None
 
 
-def _perceived(world: Armadillo, name: str) -> tuple[float, float, float]:
-    """Where to grasp, as far as the robot can see: x, y, and the height above the table, in metres."""
+def _perceived(world: Armadillo, name: str) -> tuple[float, float, float] | None:
+    """Where to grasp, as far as the robot can see: x, y, and the height above the table, in metres.
+
+    None where nothing in the picture looks like a can.
+    """
     file, noise = world.file, world.faults.noise
     can = file.tables[name].can
-    x, y, z = world.room.can_place(name)
-    height = z - TABLE_TOP_M + GRASP_ABOVE_CENTRE_M
+    top = top_seen(world.scene, world.robot.base.place, TABLE_TOP_M, _is_can)
+    if top is None:
+        return None
+    x, y, top_z = top
+    height = (top_z - TABLE_TOP_M) / 2 + GRASP_ABOVE_CENTRE_M
     if world.faults.draw("the can is seen elsewhere", can.misplaced):
         _, _, yaw = world.robot.base.place
         x -= MISPLACED_BY_M * math.cos(yaw)
@@ -76,3 +87,10 @@ def _perceived(world: Armadillo, name: str) -> tuple[float, float, float]:
         y + noise.gauss(0, file.faults.pose_noise_m),
         height + noise.gauss(0, file.faults.height_noise_m),
     )
+
+
+def _is_can(colors: Colors) -> npt.NDArray[np.bool_]:
+    """Red or orange, which the table is not."""
+    red, _, blue = np.moveaxis(colors, -1, 0)
+    is_can: npt.NDArray[np.bool_] = (blue < 0.35 * red) & (red > 60)
+    return is_can

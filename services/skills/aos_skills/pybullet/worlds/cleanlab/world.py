@@ -14,7 +14,7 @@ from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
 
-__all__ = ["AHEAD_M", "BIN_TOP_M", "CUP_HEIGHT_M", "TABLE_TOP_M", "CleanLab", "filled_stations"]
+__all__ = ["AHEAD_M", "BIN_TOP_M", "TABLE_TOP_M", "CleanLab", "filled_stations"]
 
 AHEAD_M = 0.8
 """Of a cup, or of a bin's middle, from the middle of the robot that stands in front of it."""
