@@ -185,7 +185,10 @@ class SpecialState(msgspec.Struct, frozen=True):
 
 
 class Environment(msgspec.Struct, frozen=True):
-    """The robot's one environment document: state, initial belief, extrinsic changes, rewards."""
+    """The robot's one environment document: state, initial belief, extrinsic changes, rewards.
+
+    `shared_code` are declarations, constants and functions, that all model code of the project sees.
+    """
 
     project: str
     span: Span
@@ -200,6 +203,7 @@ class Environment(msgspec.Struct, frozen=True):
     state_heuristic: tuple[Assignment, ...] = ()
     print_state: tuple[Assignment, ...] = ()
     is_one_state_model: bool = False
+    shared_code: Snippet | None = None
 
 
 # --- skills --------------------------------------------------------------------------------------------

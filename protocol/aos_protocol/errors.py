@@ -84,6 +84,7 @@ CODES: dict[str, str] = {
     "AOS141": "a default that sets another variable",
     "AOS142": "a constraint that cannot be used",
     "AOS143": "a variable of model code that is read without a value",
+    "AOS145": "shared code that is no constant, function, enum or name of a type",
     "AOS201": "the model's C++ does not compile",
     "AOS202": "the compiler hit a limit",
     "AOS203": "no C++ compiler",

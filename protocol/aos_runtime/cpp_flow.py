@@ -59,21 +59,21 @@ class Flows(msgspec.Struct, frozen=True):
     is_opaque: bool = False
 
 
-def flows_of(cpp: Cpp) -> Flows:
-    """The flows of the statements of a function body."""
+def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset()) -> Flows:
+    """The flows of the statements of a function body; `reading` are functions that change nothing."""
     if cpp.is_empty:
         return Flows()
     complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
     root = tree_of(f"void f() {{{complete}\n}}")
     if cpp.faults or root.has_error:
         return Flows(is_opaque=True)
-    reading = _Reading()
-    reading.statement(root.children[0].child_by_field_name("body"), frozenset(), None)
+    walk = _Reading(reading - {declaration.name for declaration in cpp.declarations})
+    walk.statement(root.children[0].child_by_field_name("body"), frozenset(), None)
     draws = sorted(part.start_byte for part in _below(root) if is_draw(part))
     return Flows(
-        tuple(reading.flows),
-        frozenset(reading.used),
-        frozenset(reading.looped),
+        tuple(walk.flows),
+        frozenset(walk.used),
+        frozenset(walk.looped),
         tuple(map(_name_of_draw, draws)),
     )
 
@@ -88,7 +88,8 @@ class _Reading:
     where a `break` would leave one.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, reading: frozenset[str]) -> None:
+        self._reading = READING_FUNCTIONS | reading
         self.flows: list[Flow] = []
         self.used: set[Name] = set()
         self.looped: set[Name] = set()
@@ -214,7 +215,7 @@ class _Reading:
         elif (target := _changed_by_method(node)) is not None:
             arguments = node.child_by_field_name("arguments")
             self._change(node, target, arguments.named_children if arguments is not None else [], control)
-        elif _has_effects(node):
+        elif _has_effects(node, self._reading):
             self.used |= control | names_in(node)
 
     def _change(
@@ -225,7 +226,11 @@ class _Reading:
         control: _Control,
     ) -> None:
         name = _root(target)
-        if name is None or target is None or any(_has_effects(part) for part in (target, *values) if part):
+        if (
+            name is None
+            or target is None
+            or any(_has_effects(part, self._reading) for part in (target, *values) if part)
+        ):
             self.used |= control | names_in(node)
             return
         # The target's own name is a source as well, of an update as of an element among others.
@@ -233,7 +238,7 @@ class _Reading:
 
     def _no_effects(self, node: tree_sitter.Node, control: _Control) -> None:
         """Where a value is expected, an effect on the side is a doubt."""
-        if _has_effects(node):
+        if _has_effects(node, self._reading):
             self.used |= control | names_in(node)
 
 
@@ -327,18 +332,18 @@ def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
     return function.child_by_field_name("argument") if function is not None else None
 
 
-def _has_effects(node: tree_sitter.Node) -> bool:
-    """Whether evaluating it may change anything that is named in it."""
-    return any(_is_effect(part) for part in _below(node))
+def _has_effects(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
+    """Whether evaluating it may change anything that is named in it; calls of `reading` functions do not."""
+    return any(_is_effect(part, reading) for part in _below(node))
 
 
-def _is_effect(node: tree_sitter.Node) -> bool:
+def _is_effect(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
     if node.type == "pointer_expression":
         return node.children[0].type == "&"
-    return node.type in _EFFECTS or (node.type == "call_expression" and _may_change(node))
+    return node.type in _EFFECTS or (node.type == "call_expression" and _may_change(node, reading))
 
 
-def _may_change(call: tree_sitter.Node) -> bool:
+def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
     """Whether a call may change its object or an argument."""
     function = call.child_by_field_name("function")
     if function is None or function.type == "primitive_type":
@@ -347,7 +352,7 @@ def _may_change(call: tree_sitter.Node) -> bool:
         is_draw = _text(function).split(".")[0].strip() == "AOS" and method in _DRAWS
         return not is_draw and method not in READING_METHODS | HANDLE_METHODS
     name = _text(function).split("<")[0].removeprefix("std::")
-    if name in READING_FUNCTIONS or name.removeprefix("AOSUtils::") in _DRAWS:
+    if name in reading or name.removeprefix("AOSUtils::") in _DRAWS:
         return False
     return bool(names_in(call.child_by_field_name("arguments")))
 

@@ -35,24 +35,28 @@ class Marks(msgspec.Struct, frozen=True):
     inside: str
 
 
-def marked(code: str, marks: Marks) -> str | None:
-    """The statements of a function body with their marks; None for code that does not parse."""
-    root = tree_of(f"{_BEFORE}{code}{_AFTER}")
+def marked(code: str, marks: Marks, *, are_declarations: bool = False) -> str | None:
+    """The statements of a function body, or of functions among declarations, with their marks.
+
+    None for code that does not parse. A `constexpr` function stays without marks.
+    """
+    before = _BEFORE_DECLARATIONS if are_declarations else _BEFORE
+    root = tree_of(f"{before}{code}{_AFTER}")
     if root.has_error:
         return None
-    text = (root.text or b"")[len(_BEFORE) : -len(_AFTER)]
+    text = (root.text or b"")[len(before) : -len(_AFTER)]
     marking = _Marking(code, marks)
     marking.mark(root)
     parts: list[bytes] = []
     position = 0
     for at, inserted in marking.in_order():
-        offset = at - len(_BEFORE)
+        offset = at - len(before)
         parts += [text[position:offset], inserted.encode()]
         position = offset
     return b"".join([*parts, text[position:]]).decode()
 
 
-_BEFORE, _AFTER = "void f() {\n", "\n}"
+_BEFORE, _BEFORE_DECLARATIONS, _AFTER = "void f() {\n", "namespace f {\n", "\n}"
 _FUNCTIONS = ("lambda_expression", "function_definition")
 _LOOPS = ("while_statement", "do_statement", "for_statement", "for_range_loop")
 _NO_STATEMENTS = ("comment", "case_statement", "else_clause")
@@ -76,6 +80,8 @@ class _Marking:
         waiting = [(node, False) for node in root.children[0].children]
         while waiting:
             node, is_in_lambda = waiting.pop()
+            if node.type == "function_definition" and _is_of_compile_time(node):
+                continue
             is_body = node.type == "compound_statement" and _parent(node).type in _FUNCTIONS
             if is_body and _parent(_parent(node)).type != "translation_unit":
                 is_in_lambda = True
@@ -114,6 +120,10 @@ class _Marking:
         line, byte = node.start_point
         before = self._lines[line - 1].encode()[:byte]
         return Statement(line, len(before.decode()) + 1, (node.text or b"").decode())
+
+
+def _is_of_compile_time(function: tree_sitter.Node) -> bool:
+    return any((child.text or b"") in (b"constexpr", b"consteval") for child in function.children)
 
 
 def _parent(node: tree_sitter.Node) -> tree_sitter.Node:

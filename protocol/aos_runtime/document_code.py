@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterable, Iterator
 
-from aos_protocol.documents import Assignment, Snippet
+from aos_protocol.documents import Assignment, Environment, Snippet
+from aos_runtime.cpp_shared import NO_SHARED_CODE, SharedCode, shared_code
 from aos_runtime.snippets import Cpp, read_cpp, read_cpp_expression
 
-__all__ = ["absent_skills", "snippets_of"]
+__all__ = ["absent_skills", "shared_code_of", "snippets_of"]
 
 _COMPARED = re.compile(r"\s*[!=]=\s*(?:NULL|nullptr)\b")
 _COMPARED_BEFORE = re.compile(r"(?:NULL|nullptr)\s*[!=]=\s*$")
@@ -28,6 +29,14 @@ def absent_skills(cpp: Cpp, known: Collection[str]) -> frozenset[str]:
             or _COMPARED_BEFORE.search(cpp.code, 0, mention.extent.start)
         )
     )
+
+
+def shared_code_of(environment: Environment) -> SharedCode:
+    """The shared code of an environment, read."""
+    if environment.shared_code is None:
+        return NO_SHARED_CODE
+    compounds = frozenset(compound.name for compound in environment.compounds)
+    return shared_code(environment.shared_code.code, compounds)
 
 
 def snippets_of(assignments: Iterable[Assignment]) -> Iterator[tuple[Snippet, Cpp]]:

@@ -28,6 +28,7 @@ __all__ = [
     "FaultKind",
     "Mention",
     "read_cpp",
+    "read_cpp_declarations",
     "read_cpp_expression",
     "strip_comments",
 ]
@@ -60,6 +61,12 @@ def read_cpp_expression(code: str) -> Cpp:
     is_list = strip_comments(code).lstrip().startswith("{")
     before, after = ("auto x = ", "\n;") if is_list else ("auto x = (", "\n);")
     return _read(code, tokens, before=before, after=after)
+
+
+@lru_cache(maxsize=256)
+def read_cpp_declarations(code: str) -> Cpp:
+    """Declarations, as they stand in a namespace."""
+    return _read(code, cut(code), before="", after="\n")
 
 
 def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:

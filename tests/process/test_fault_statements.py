@@ -15,7 +15,14 @@ WARD = """project: ward
 horizon: 4
 
 define_type: tFault
-enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda
+enum_members: eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared
+
+shared_code:
+int bed_of(const auto& state__, int i) {
+    const int index = i + 2;
+    return state__.beds[index];  // eShared
+}
+constexpr int twice(int n) { return 2 * n; }
 
 state_variable: int rooms
 state_variable: int[] beds
@@ -29,7 +36,7 @@ SLIP = """project: ward
 parameter: tFault fault
 
 available_parameters_code:
-for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda})
+for (tFault fault : {eNone, eNull, eRange, eThrow, eReward, eResponse, eLambda, eShared})
     __possibleParameters.push_back(make_tuple(fault));
 
 dynamic_model:
@@ -50,6 +57,9 @@ switch (fault) {
         throw runtime_error("no way");  // eThrow
     case eLambda:
         state__.rooms = bed(3);
+        break;
+    case eShared:
+        state__.rooms = bed_of(state__, twice(2));
         break;
     default:
         break;
@@ -76,6 +86,7 @@ FAULTS = {
     "eReward": ("AOS214", "the reward is"),
     "eResponse": ("AOS215", "__moduleResponse is 9"),
     "eLambda": ("AOS215", "element 6 of a vector of 3"),
+    "eShared": ("AOS215", "element 6 of a vector of 3"),
 }
 
 
@@ -121,6 +132,7 @@ async def test_a_fault_is_told_at_its_statement(name: str, document: str, cache_
     fault = await fault_of(await built_text(BUNDLE, cache_dir), document.partition(".")[0], name)
     (diagnostic,) = fault.diagnostics
     code, message = FAULTS[name]
-    assert (diagnostic.span.file, diagnostic.span.line) == (document, line_of(DOCUMENTS[document], name))
+    file, text = ("ward.ef", WARD) if name == "eShared" else (document, DOCUMENTS[document])
+    assert (diagnostic.span.file, diagnostic.span.line) == (file, line_of(text, name))
     assert fault.code == code
     assert message in fault.message

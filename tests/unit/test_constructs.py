@@ -145,6 +145,7 @@ MISUSES = {
         "go.json", "if (end == eWell)", "AOS.«SetNul(state__.door.pose); if (end == eWell)", "AOS110"
     ),
     "response rules": Rule("go.json", "? eDone : eLost", "? eDone : «eGone", "AOS116"),
+    "shared code": Rule("room.ef", "horizon: 5", "horizon: 5\nshared_code:\nint «count = 3;", "AOS145"),
     "no mapping": Rule("go glue.json", '"Name": "go"', '"Name": "«goo"', "AOS114"),
     "local variables": Rule("go glue.json", '"oDoor.pose"', '"«oDoor.where"', "AOS110"),
 }

@@ -44,6 +44,11 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
                 "enum_members": "The enum's values between commas, from 0; all enums share one namespace.",
             },
         ),
+        "shared_code": (
+            "Constants and functions in C++ that all model code of the project sees. "
+            "A function may draw with `AOS.Bernoulli(p)` and its like.",
+            {},
+        ),
         "state_variable": (
             "`type name`, or `type name []` for an array: a part of the robot's and the world's state.",
             _VARIABLE_PARTS,

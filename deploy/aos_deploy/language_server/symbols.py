@@ -21,6 +21,7 @@ from aos_registry.documents.document import array_type
 from aos_registry.load import read_bundle_files
 from aos_registry.reading import read_documents
 from aos_runtime.cpp_keywords import CPP_KEYWORDS, SPECIAL_NAMES
+from aos_runtime.document_code import shared_code_of
 from aos_runtime.snippets import Access, Extent, FaultKind, Mention
 
 __all__ = [
@@ -45,6 +46,7 @@ class SymbolKind(StrEnum):
     RESPONSE = "response"
     LOCAL = "local variable"
     SKILL = "skill"
+    SHARED = "shared code"
 
 
 class Symbol(msgspec.Struct, frozen=True):
@@ -156,6 +158,11 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
             for field in compound.fields:
                 yield declared(SymbolKind.FIELD, field.name, field.span, compound.name)
                 yield from typed(field.type, field.type_span if field.type in types else None)
+        if (snippet := environment.shared_code) is not None:
+            shared = shared_code_of(environment)
+            for each in (*shared.names, *shared.functions):
+                extent = each.name_extent
+                yield declared(SymbolKind.SHARED, each.name, snippet.locate(extent.line, extent.column))
         for variable in environment.variables:
             yield declared(SymbolKind.VARIABLE, variable.name, variable.span)
             yield from typed(variable.type, variable.type_span if variable.type in types else None)
@@ -205,6 +212,9 @@ class _BlockNames:
 
     def _of_mention(self, mention: Mention) -> Iterator[Occurrence]:
         root, scope = mention.path[0], self._scope
+        if root in scope.shared.all_names and (self._block.is_declarations or root not in self._own):
+            yield self._at(Symbol(SymbolKind.SHARED, root), mention.root)
+            return
         if root in self._own or (mention.access is Access.CALL and root not in STATE_COPIES):
             return
         if root in STATE_COPIES:

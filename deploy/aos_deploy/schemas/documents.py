@@ -119,6 +119,7 @@ def _environment() -> Schema:
         ExtrinsicChangesDynamicModel=said(
             BLOCK, "What happens by itself in each step, before the skill acts: writes `state_`."
         ),
+        SharedCode=said(CODE, "Ours: constants and functions in C++ that all model code sees."),
         HeuristicStateValue=said(BLOCK, "A state's worth where the search ends: `__heuristicValue`."),
         PrintStateFunc=said(BLOCK, "Writes a state to `ss`, for people."),
         required=("EnvironmentGeneral",),

@@ -24,7 +24,7 @@ from aos_protocol.documents import (
 from aos_protocol.local_types import RESERVED_LOCAL_NAMES
 from aos_runtime.cpp_keywords import SPECIAL_NAMES
 from aos_runtime.cpp_values import value_names
-from aos_runtime.document_code import snippets_of
+from aos_runtime.document_code import shared_code_of, snippets_of
 from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import Cpp, DeclarationKind
 
@@ -113,6 +113,7 @@ def _responses(model: SkillModel, environment: Environment | None) -> dict[str, 
     known = {*SPECIAL_NAMES, *_NO_RESPONSES, *(parameter.name for parameter in model.parameters)}
     if environment is not None:
         known |= {value for enum in environment.enums for value in enum.values}
+        known |= shared_code_of(environment).all_names
     read = list(snippets_of(model.dynamic_model))
     for assignment in model.dynamic_model:
         if (temporary := assignment.temporary) is not None:

@@ -43,6 +43,9 @@ def outline(project: Project) -> str:
 def _environment(environment: Environment) -> Iterator[str]:
     if environment.is_one_state_model:
         yield "one state model: state, state_ and state__ are the same"
+    if environment.shared_code is not None:
+        yield _placed("shared code", environment.shared_code.span)
+        yield from _code(environment.shared_code)
     for enum in environment.enums:
         yield _placed(f"enum {enum.name}: {', '.join(enum.values)}", enum.span)
     for compound in environment.compounds:

@@ -3,7 +3,8 @@
 `declarations` looks at names and types, `defaults` at what variables start with, `model_code` at the C++ of
 environment and skills, `responses` at what the two halves of a skill say to each other, `mapping_code` at the
 Python of the mappings and `python_names` at the names in it, `endings` at what ends a mission,
-`observed_numbers` at numbers beside responses, `unused` at what nothing mentions.
+`observed_numbers` at numbers beside responses, `shared_code` at what all model code shares, `unused` at what
+nothing mentions.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from aos_registry.check.observed_numbers import (
 )
 from aos_registry.check.responses import check_responses
 from aos_registry.check.scope import Scope
+from aos_registry.check.shared_code import check_shared_code, check_shared_names_are_used
 from aos_registry.check.unused import check_unused_locals, check_unused_variables
 from aos_runtime.observed import reported_numbers
 
@@ -41,6 +43,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
     is_whole = not findings.has_errors  # What could not be read may have used a variable.
     if assembly.environment is not None:
         check_environment_names(assembly.environment, scope, findings)
+        check_shared_code(assembly.environment, scope, findings)
         check_environment_code(assembly.environment, scope, findings)
         check_defaults(assembly.environment, findings)
         check_endings(assembly.environment, findings)
@@ -66,6 +69,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
         check_low_level(assembly.low_level, assembly.mappings.values(), scope, findings)
     if is_whole and assembly.environment is not None:
         check_goals(assembly.environment, findings)
+        check_shared_names_are_used(assembly.environment, assembly.models.values(), findings)
         check_unused_variables(assembly.environment, assembly.models.values(), findings)
 
 

@@ -29,19 +29,23 @@ class Role(msgspec.Struct, frozen=True):
 
 
 class Block(msgspec.Struct, frozen=True):
-    """One snippet in its role. `names` are the typed names around it: `constants`, items, temporaries.
+    """One snippet in its role: statements, an expression, or declarations.
 
-    `constants` are the skill's parameters, which no code may write.
+    `names` are the typed names around it: `constants`, items, temporaries. `constants` are the skill's
+    parameters, which no code may write.
     """
 
     role: Role
     snippet: Snippet
     is_expression: bool = False
+    is_declarations: bool = False
     names: Mapping[str, str] = {}
     constants: Mapping[str, str] = {}
 
 
+STATES = ("state", "state_", "state__", "state___")
 DEFAULT = Role("the default of a variable", ("state",), ("state",), may_set_parameter_values=True)
+SHARED = Role("shared code", STATES, STATES)
 INITIAL = Role("the initial belief", ("state",), ("state",))
 SPECIAL = Role("a special state", ("state",))
 EXTRINSIC = Role("the extrinsic changes", ("state", "state_"), ("state_",), sees_chosen_action=True)
@@ -57,6 +61,8 @@ GIVEN_OBSERVATION = Role("the state given the observation", ("state__", "state__
 
 def environment_blocks(environment: Environment) -> Iterator[Block]:
     """All code of the environment, in the order of the document model."""
+    if environment.shared_code is not None:
+        yield Block(SHARED, environment.shared_code, is_declarations=True)
     for compound in environment.compounds:
         for field in compound.fields:
             if field.default is not None:
@@ -119,6 +125,6 @@ def _loop_blocks(
     for loop in loops:
         inner[loop.item] = loop.type
         if loop.condition is not None:
-            yield Block(role, loop.condition, True, dict(inner), constants)
+            yield Block(role, loop.condition, True, names=dict(inner), constants=constants)
         if loop.body is not None:
-            yield Block(role, loop.body, False, dict(inner), constants)
+            yield Block(role, loop.body, names=dict(inner), constants=constants)

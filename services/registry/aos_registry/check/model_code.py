@@ -28,6 +28,7 @@ from aos_runtime.snippets import (
     FaultKind,
     Mention,
     read_cpp,
+    read_cpp_declarations,
     read_cpp_expression,
 )
 
@@ -79,7 +80,16 @@ def check_block(block: Block, scope: Scope, findings: Findings) -> None:
 
 def read_block(block: Block) -> Cpp:
     """A block's snippet, read."""
+    if block.is_declarations:
+        return read_cpp_declarations(block.snippet.code)
     return (read_cpp_expression if block.is_expression else read_cpp)(block.snippet.code)
+
+
+def _enum_sizes(cpp: Cpp) -> dict[str, int]:
+    """The enums that code declares, with how many values they have."""
+    values = [each.type for each in cpp.declarations if each.kind is DeclarationKind.ENUMERATOR]
+    enums = (each.name for each in cpp.declarations if each.kind is DeclarationKind.ENUM)
+    return {name: values.count(name) for name in enums}
 
 
 def _temporary_enums(blocks: Iterable[tuple[Assignment, ...]]) -> dict[str, int]:
@@ -122,8 +132,8 @@ class _BlockCheck:
         self._findings = findings
         self._cpp = read_block(block)
         self._enum_sizes = {name: len(enum.values) for name, enum in scope.enums.items()}
-        self._enum_sizes |= around.enum_sizes
-        self._declared = around.declared
+        self._enum_sizes |= _enum_sizes(scope.shared.cpp) | around.enum_sizes
+        self._declared = around.declared | scope.shared.all_names
         self._reported_absent: set[str] = set()
         self._absent = self._absent_skills()
         self._locals = {declaration.name: declaration.type for declaration in self._cpp.declarations}
@@ -151,11 +161,14 @@ class _BlockCheck:
             self._check_mention(mention)
         self._check_calls()
         self._check_lone_name()
-        if not self._block.is_expression:
-            self._check_unset()
+        if self._block.is_declarations:
+            for body in self._scope.shared.bodies():
+                self._check_unset(read_cpp(body))
+        elif not self._block.is_expression:
+            self._check_unset(self._cpp)
 
-    def _check_unset(self) -> None:
-        for each in unset_reads(self._cpp, frozenset(self._scope.enums)):
+    def _check_unset(self, cpp: Cpp) -> None:
+        for each in unset_reads(cpp, frozenset(self._scope.enums)):
             report = self._findings.error if each.never else self._findings.warning
             which = "has no value" if each.never else "may have no value"
             hint = f"Declare it with one: `{each.type} {each.name} = ...;`"
@@ -170,10 +183,7 @@ class _BlockCheck:
             self._findings.warning("AOS127", "a semicolon is missing here", span, "It is put in", mend)
 
     def _check_calls(self) -> None:
-        for enum in self._cpp.declarations:
-            if enum.kind is DeclarationKind.ENUM:
-                values = [d for d in self._cpp.declarations if d.kind is DeclarationKind.ENUMERATOR]
-                self._enum_sizes[enum.name] = sum(value.type == enum.name for value in values)
+        self._enum_sizes |= _enum_sizes(self._cpp)
         for call in self._cpp.calls:
             declared = self._declared.union(self._locals, self._block.names)
             check_built_in(call, self._cpp.code, declared, self._span, self._findings)
@@ -187,7 +197,7 @@ class _BlockCheck:
             return
         place = call.arguments[0]
         name = self._cpp.code[place.start : place.end].strip()
-        declared = {declaration.name for declaration in self._cpp.declarations}
+        declared = {declaration.name for declaration in self._cpp.declarations} | self._declared
         if name.isidentifier() and name not in self._enum_sizes and name not in declared:
             otherwise = _listing("The enums are", sorted(self._enum_sizes))
             self._unknown(name, self._enum_sizes, f"unknown enum `{name}`", self._span(place), otherwise)
@@ -199,6 +209,7 @@ class _BlockCheck:
             return
         name = mentions[0].path[0]
         known = {*self._scope.enum_values, *self._scope.low_level_names, *self._block.names}
+        known |= self._scope.shared.all_names
         if name == self._block.snippet.code.strip() and not name.startswith("_") and name not in known:
             if name in _LITERAL_NAMES or name.isupper():
                 return
@@ -208,9 +219,17 @@ class _BlockCheck:
 
     def _check_mention(self, mention: Mention) -> None:
         root = mention.path[0]
-        if mention.access is Access.CALL or root in self._locals:
+        is_parameter = self._block.is_declarations and root in STATE_COPIES and root in self._locals
+        if mention.access is Access.CALL or (root in self._locals and not is_parameter):
             return
-        if root in STATE_COPIES:
+        if is_parameter:
+            # Of whatever copy it may be, a `state` in shared code is what a function is given.
+            self._check_state_path(mention)
+        elif self._block.is_declarations and root in STATE_COPIES:
+            hint = f"Give the function a parameter, as `const auto& {root}`, or `auto& {root}` to change it"
+            message = f"there is no `{root}` in shared code by itself"
+            self._findings.error("AOS123", message, self._span(mention.root), hint)
+        elif root in STATE_COPIES:
             self._check_copy(mention, root)
             self._check_state_path(mention)
         elif root in self._block.names:

@@ -150,6 +150,7 @@ def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[st
 
 def _known_names(model: SkillModel, scope: Scope, read: list[tuple[Block, Cpp]]) -> set[str]:
     known = {*SPECIAL_NAMES, *_KNOWN_TO_CPP, *STATE_COPIES, *scope.enum_values, *scope.enums}
+    known |= scope.shared.all_names
     known |= {*scope.low_level_names, *(parameter.name for parameter in model.parameters)}
     blocks = (model.precondition, model.execution_time, model.dynamic_model)
     for assignment in (assignment for block in blocks for assignment in block):

@@ -10,6 +10,8 @@ import msgspec
 from aos_protocol.documents import CompoundType, EnumType, LowLevelDocument, SkillModel, StateVariable
 from aos_registry.assembly import Assembly
 from aos_registry.documents.document import array_type
+from aos_runtime.cpp_shared import NO_SHARED_CODE, SharedCode
+from aos_runtime.document_code import shared_code_of
 
 __all__ = ["NUMBERS", "PRIMITIVES", "STATE_COPIES", "Scope", "ValueType", "names_in_type"]
 
@@ -42,7 +44,7 @@ class ValueType(msgspec.Struct, frozen=True):
 
 
 class Scope(msgspec.Struct, frozen=True):
-    """The environment's names and the skills' parameters."""
+    """The environment's names, those of its shared code, and the skills' parameters."""
 
     enums: Mapping[str, EnumType]
     compounds: Mapping[str, CompoundType]
@@ -54,6 +56,7 @@ class Scope(msgspec.Struct, frozen=True):
     low_level: LowLevelDocument | None
     has_environment: bool
     is_one_state_model: bool
+    shared: SharedCode = NO_SHARED_CODE
 
     @classmethod
     def of(cls, assembly: Assembly) -> Scope:
@@ -72,6 +75,7 @@ class Scope(msgspec.Struct, frozen=True):
             low_level=low_level,
             has_environment=environment is not None,
             is_one_state_model=environment is not None and environment.is_one_state_model,
+            shared=shared_code_of(environment) if environment is not None else NO_SHARED_CODE,
         )
 
     @property

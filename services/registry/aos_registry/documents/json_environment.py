@@ -50,6 +50,7 @@ def read_environment(record: Record, project: str, span: Span) -> Environment:
         state_heuristic=read_block(record, "HeuristicStateValue"),
         print_state=read_block(record, "PrintStateFunc"),
         is_one_state_model=is_one_state,
+        shared_code=record.code("SharedCode"),
     )
 
 

@@ -47,6 +47,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         "state_variable": Word(parts=_VARIABLE_PARTS),
         "action_parameter": Word(parts=_VARIABLE_PARTS),
         "one_state_model": _LINE,
+        "shared_code": _CPP,
         "initial_belief": _BLOCK,
         "reward_code": _BLOCK,
         "special_state": Word(

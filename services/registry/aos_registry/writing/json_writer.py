@@ -70,6 +70,7 @@ def _environment(environment: Environment) -> dict[str, Any]:
             "Discount": environment.discount,
             **_given(OneStateModel=environment.is_one_state_model),
         },
+        **_given(SharedCode=_code(environment.shared_code)),
         "GlobalVariableTypes": [*enums, *map(_compound, environment.compounds)],
         "GlobalVariablesDeclaration": [_variable(variable) for variable in environment.variables],
         "InitialBeliefStateAssignments": _block(environment.initial_belief),

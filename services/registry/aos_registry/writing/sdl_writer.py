@@ -54,6 +54,8 @@ def _environment(environment: Environment) -> Iterator[str]:
     yield f"discount: {environment.discount!r}"
     if environment.is_one_state_model:
         yield "one_state_model: true"
+    if environment.shared_code is not None:
+        yield from ("", *_code("shared_code", environment.shared_code))
     for enum in environment.enums:
         yield from ("", f"define_type: {enum.name}", f"enum_members: {', '.join(enum.values)}")
     for compound in environment.compounds:

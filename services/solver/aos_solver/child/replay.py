@@ -137,7 +137,7 @@ class _Replay:
         return self._spans[min(self._samples) - 1]
 
     def _is_number_in_the_piece(self, number: int) -> bool:
-        return number > 0 and self._trace.pieces[number - 1] == self._piece
+        return number > 0 and self._trace.may_be_in(number, self._piece)
 
     def _is_in_the_piece(self, span: Span) -> bool:
         return self._is_number_in_the_piece(self._spans.index(span) + 1)

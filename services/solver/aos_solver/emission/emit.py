@@ -253,6 +253,7 @@ def _put_inline(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> N
 def _own_names(program: Program) -> dict[str, str]:
     taken = {enum.name for enum in program.enums} | {compound.name for compound in program.compounds}
     taken |= {variable.name for variable in program.variables}
+    taken |= program.shared_names
     taken |= {value for enum in program.enums for value in enum.values} | set(program.low_level_constants)
     names = {}
     for name in _OWN_NAMES:

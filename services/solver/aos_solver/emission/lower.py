@@ -16,7 +16,7 @@ from aos_protocol.documents import Constraint as DocumentedConstraint
 from aos_protocol.findings import Findings
 from aos_protocol.local_types import LocalType, local_type, reported_variables
 from aos_runtime.cpp_flow import STATES
-from aos_runtime.document_code import absent_skills, snippets_of
+from aos_runtime.document_code import absent_skills, shared_code_of, snippets_of
 from aos_runtime.observed import reported_numbers
 from aos_runtime.snippets import read_cpp_expression
 from aos_solver.emission.cpp_library import headers_for
@@ -48,7 +48,7 @@ from aos_solver.emission.lower_state import (
 )
 from aos_solver.emission.lower_types import Types, lower_enum
 from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
-from aos_solver.emission.program import Constraint, Local, Observed, Parameter, Program, SpecialState
+from aos_solver.emission.program import Constraint, Local, Observed, Parameter, Piece, Program, SpecialState
 from aos_solver.emission.program import Skill as LoweredSkill
 
 __all__ = ["lower"]
@@ -84,6 +84,7 @@ class _Lowering:
         environment = project.environment
         self._project = project
         self._findings = findings
+        self._shared = shared_code_of(environment)
         self._changes: Changes = changes_of(project)
         self._types = Types(
             environment.enums, environment.compounds, member_names(project), capacities_of(project), findings
@@ -97,12 +98,14 @@ class _Lowering:
             self._pieces,
             frozenset(self._changes.object_types),
             environment.enums,
+            self._shared,
             findings,
         )
 
     def program(self) -> Program:
         project, environment, code = self._project, self._project.environment, self._code
         enums = tuple(lower_enum(enum) for enum in environment.enums)
+        constants = self._shared_piece(late=False)
         compounds = lower_compounds(environment, self._types, self._pieces, code.outside)
         variables = lower_variables(
             environment,
@@ -113,6 +116,7 @@ class _Lowering:
             irrelevant_variables(project),
             self._findings,
         )
+        functions = self._shared_piece(late=True)
         initial_belief = code.section(BELIEF, environment.initial_belief)
         extrinsic_changes = code.section(EXTRINSIC, environment.extrinsic_changes)
         special_states = self._special_states(environment)
@@ -122,7 +126,7 @@ class _Lowering:
         constraints = tuple(self._constraint(constraint) for constraint in project.constraints)
         names = frozenset(self._pieces.identifiers)
         headers = headers_for(names)
-        constants = project.low_level.constants if project.low_level is not None else ()
+        low_level = project.low_level.constants if project.low_level is not None else ()
         value_types = sorted(self._changes.value_types)
         return Program(
             project=project.name,
@@ -133,7 +137,7 @@ class _Lowering:
             enums=enums,
             compounds=compounds,
             variables=variables,
-            low_level_constants=tuple(dict.fromkeys(constant.name for constant in constants)),
+            low_level_constants=tuple(dict.fromkeys(constant.name for constant in low_level)),
             object_lists=object_lists(environment, self._changes),
             enum_lists=tuple(enum for enum in enums if f"{enum.name}Objects" in names),
             value_lists=tuple(parameter_values(environment.variables, name) for name in value_types),
@@ -148,7 +152,21 @@ class _Lowering:
             standard_headers=headers,
             pieces=tuple(self._pieces.made),
             constraints=constraints,
+            shared_constants=constants,
+            shared_functions=functions,
+            shared_names=self._shared.all_names,
         )
+
+    def _shared_piece(self, *, late: bool) -> Piece | None:
+        snippet = self._project.environment.shared_code
+        if snippet is None:
+            return None
+        if late:
+            self._pieces.check(snippet, self._shared.cpp)
+        for misuse in self._shared.misuses if late else ():
+            span = snippet.locate(misuse.extent.line, misuse.extent.column)
+            self._findings.error("AOS145", misuse.message, span, misuse.hint)
+        return self._pieces.declarations(snippet, self._shared, self._code.outside, late=late)
 
     def _constraint(self, constraint: DocumentedConstraint) -> Constraint:
         mentioned = {mention.path[0] for mention in read_cpp_expression(constraint.never.code).mentions}

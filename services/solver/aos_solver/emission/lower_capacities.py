@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from aos_runtime.snippets import Access, Cpp, Mention, strip_comments
+from aos_runtime.snippets import Access, Call, Cpp, Mention, strip_comments
 
 __all__ = ["Capacities"]
 
@@ -39,7 +39,9 @@ class Capacities:
     a fault at run time, with the document's line.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, filling: frozenset[str] = frozenset()) -> None:
+        """`filling` are functions that may make what they are given longer."""
+        self._filling = filling
         self._known: dict[tuple[str, int], int] = {}
         self._grows: dict[tuple[str, int], int] = {}
         self._reported: set[tuple[str, int]] = set()
@@ -68,9 +70,15 @@ class Capacities:
             code = strip_comments(cpp.code)
             loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(code))
             aliases = dict(_aliases(cpp))
+            filled = [each for call in cpp.calls if self._fills(call) for each in call.arguments]
             for mention in cpp.mentions:
                 path = (*aliases.get(mention.path[0], mention.path[:1]), *mention.path[1:])
                 self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
+                if any(each.start <= mention.extent.start < each.end for each in filled):
+                    self._grow((path[_last_name(path)], path[_last_name(path) + 1 :].count("[]")), loops)
+
+    def _fills(self, call: Call) -> bool:
+        return len(call.name) == 1 and call.name[0] in self._filling
 
     def _take_mention(self, mention: Mention, code: str, loops: int) -> None:
         names = [part for part in mention.path if part != "[]"]

@@ -17,12 +17,14 @@ from aos_protocol.documents import (
     TemporaryVariable,
 )
 from aos_protocol.findings import Findings
+from aos_runtime.cpp_shared import SharedCode
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
     Cpp,
     DeclarationKind,
     FaultKind,
     read_cpp,
+    read_cpp_declarations,
     read_cpp_expression,
     strip_comments,
 )
@@ -88,15 +90,29 @@ class Pieces:
         """One expression."""
         return self._make(snippet, read_cpp_expression(snippet.code), rewriting)
 
+    def declarations(
+        self, snippet: Snippet, shared: SharedCode, rewriting: Rewriting, *, late: bool
+    ) -> Piece | None:
+        """The shared code that is `late`, or stands before the compound types; None for nothing."""
+        if not any(each.is_late == late for each in (*shared.names, *shared.functions)):
+            return None
+        cpp = read_cpp_declarations(shared.without(late=not late))
+        text, edits = rewrite(cpp, rewriting, {}, shared.functions if late else ())
+        text = "\n".join(line if line.strip() else "" for line in text.split("\n"))
+        piece = Piece(len(self.made) + 1, snippet, text, edits, is_declarations=True)
+        self.made.append(piece)
+        return piece
+
     def _make(self, snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> Piece:
-        self._check(snippet, cpp)
+        self.check(snippet, cpp)
         is_safe = all(fault.kind is FaultKind.SYNTAX for fault in cpp.faults)
         text, edits = rewrite(cpp, rewriting, self._told_apart.get(snippet, {})) if is_safe else ("", ())
         piece = Piece(len(self.made) + 1, snippet, text, edits)
         self.made.append(piece)
         return piece
 
-    def _check(self, snippet: Snippet, cpp: Cpp) -> None:
+    def check(self, snippet: Snippet, cpp: Cpp) -> None:
+        """AOS108 and AOS124 for what could leave its function, and what cannot be replayed."""
         for fault in cpp.faults:
             if fault.kind is not FaultKind.SYNTAX:
                 span = snippet.locate(fault.extent.line, fault.extent.column)
@@ -137,14 +153,17 @@ class SectionLowering:
         pieces: Pieces,
         object_types: frozenset[str],
         enums: Iterable[EnumType],
+        shared: SharedCode,
         findings: Findings,
     ) -> None:
         enums = tuple(enums)
         values = frozenset(value for enum in enums for value in enum.values)
+        known = {**{enum.name: None for enum in enums}, **_local_enums([shared.cpp])}
         self._types = types
         self._pieces = pieces
         self._findings = findings
-        self.outside = Rewriting(object_types, {enum.name: None for enum in enums}, values)
+        self._containers = _local_containers([shared.cpp])
+        self.outside = Rewriting(object_types, known, values, self._containers, shared.drawing)
         """What names mean in code that stands alone."""
 
     def section(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
@@ -153,7 +172,7 @@ class SectionLowering:
         if not any(a.temporary for a in assignments) and all(cpp.is_empty for _, cpp in read):
             return None
         enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
-        containers = _local_containers(cpp for _, cpp in read)
+        containers = self._containers | _local_containers(cpp for _, cpp in read)
         rewriting = msgspec.structs.replace(self.outside, enums=enums, containers=containers)
         statements = [part for a in assignments for part in self._assignment(phase, a, rewriting)]
         names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)

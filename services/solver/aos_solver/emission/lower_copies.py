@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from aos_protocol.documents import Assignment, Environment, SkillModel
-from aos_runtime.document_code import snippets_of
+from aos_runtime.document_code import shared_code_of, snippets_of
 from aos_runtime.snippets import Access, Cpp, Extent, Mention, strip_comments
 from aos_solver.emission.lower_writes import LAMBDA
 
@@ -54,24 +54,30 @@ class _Uses(msgspec.Struct, frozen=True):
 def copies_of(model: SkillModel, environment: Environment) -> Copies:
     """What a step of this skill needs; models with one state have no copies."""
     dynamic = model.dynamic_model
+    shared = shared_code_of(environment).changing
     extrinsic = environment.extrinsic_changes
     if all(cpp.is_empty for _, cpp in snippets_of(extrinsic)):
-        return Copies(_reads_changed(dynamic, ("state", "state_"), "state__"), keeps_state_=False)
-    changed_before = {use.variable for use in _uses(extrinsic, ("state",), "state_").writes}
-    read_after = {use.variable for use in _uses(dynamic, ("state",), "state__").reads}
+        return Copies(_reads_changed(dynamic, ("state", "state_"), "state__", shared), keeps_state_=False)
+    changed_before = {use.variable for use in _uses(extrinsic, ("state",), "state_", shared).writes}
+    read_after = {use.variable for use in _uses(dynamic, ("state",), "state__", shared).reads}
     return Copies(
         keeps_state=_overlap(changed_before, read_after)
-        or _reads_changed(extrinsic, ("state",), "state_")
-        or _reads_changed(dynamic, ("state",), "state__"),
-        keeps_state_=_reads_changed(dynamic, ("state_",), "state__"),
+        or _reads_changed(extrinsic, ("state",), "state_", shared)
+        or _reads_changed(dynamic, ("state",), "state__", shared),
+        keeps_state_=_reads_changed(dynamic, ("state_",), "state__", shared),
     )
 
 
-def _reads_changed(section: tuple[Assignment, ...], older: tuple[str, ...], newer: str) -> bool:
-    """Whether the section may read an older copy of a variable after it has changed the newer one."""
+def _reads_changed(
+    section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, shared: frozenset[str]
+) -> bool:
+    """Whether the section may read an older copy of a variable after it has changed the newer one.
+
+    `shared` are functions that may give a handle to what they are given.
+    """
     if any(assignment.over_previous or assignment.over_next for assignment in section):
         return True
-    uses = _uses(section, older, newer)
+    uses = _uses(section, older, newer, shared)
     reads: dict[str, list[_Use]] = {}
     for read in uses.reads:
         reads.setdefault(read.variable, []).append(read)
@@ -99,14 +105,16 @@ def _is_before(read: _Use, write: _Use, unordered: frozenset[int]) -> bool:
     return read.extent.start < write.extent.start or is_in_path or _covers(write.assigned, read.extent)
 
 
-def _uses(section: tuple[Assignment, ...], older: tuple[str, ...], newer: str) -> _Uses:
+def _uses(
+    section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, shared: frozenset[str]
+) -> _Uses:
     reads, writes, unordered = [], [], set()
     for number, (_, cpp) in enumerate(snippets_of(section)):
         code = strip_comments(cpp.code)
         has_lambda = LAMBDA.search(code) is not None
         if has_lambda or _REPEATED.search(code):
             unordered.add(number)
-        bound = list(_bound(cpp))
+        bound = [*_bound(cpp), *_given_to(shared, cpp)]
         for mention in cpp.mentions:
             variable = _variable(mention)
             if mention.path[0] in older:
@@ -134,6 +142,13 @@ def _bound(cpp: Cpp) -> Iterator[Extent]:
     for declaration in cpp.declarations:
         if declaration.initial is not None and declaration.type.endswith(("&", "*", "_view")):
             yield declaration.initial
+
+
+def _given_to(functions: frozenset[str], cpp: Cpp) -> Iterator[Extent]:
+    """The arguments of calls of these functions."""
+    for call in cpp.calls:
+        if call.name[-1:] and call.name[-1] in functions:
+            yield from call.arguments
 
 
 def _only_reads(mention: Mention, cpp: Cpp) -> bool:

@@ -17,10 +17,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from aos_protocol.documents import Assignment, Environment, Project, Snippet
-from aos_runtime.cpp_flow import STATES, Flow, Name, flows_of
-from aos_runtime.document_code import snippets_of
+from aos_runtime.cpp_flow import STATES, Flow, Flows, Name, flows_of
+from aos_runtime.document_code import shared_code_of, snippets_of
 from aos_runtime.observed import is_draw
-from aos_runtime.snippets import read_cpp, read_cpp_expression
+from aos_runtime.snippets import Cpp, read_cpp, read_cpp_expression
+from aos_solver.emission.lower_shared import looked_through
 
 __all__ = ["certain_rewards", "irrelevant_variables", "sensing_draws", "skills_alike"]
 
@@ -55,7 +56,7 @@ def sensing_draws(project: Project) -> Mapping[Snippet, frozenset[int]]:
             continue
         for snippet, cpp in snippets_of(code):
             calls = sorted(call.function.start for call in cpp.calls if is_draw(call))
-            draws = flows_of(cpp).draws
+            draws = reading.flows(cpp).draws
             if len(calls) == len(draws):
                 shaping = {
                     at for at, draw in zip(calls, draws, strict=True) if (section, draw) not in influential
@@ -68,12 +69,13 @@ def certain_rewards(project: Project, sensing: Mapping[Snippet, frozenset[int]])
     """The skills whose reward follows from state and parameters: all their draws are `sensing_draws`."""
     environment = project.environment
     around = (environment.extrinsic_changes, *(special.code for special in environment.special_states))
-    if _is_opaque(project) or any(_draws_of(code) for code in around):
+    drawing = shared_code_of(environment).drawing
+    if _is_opaque(project) or any(_draws_of(code, drawing) for code in around):
         return frozenset()
     certain = set()
     for skill in project.skills:
         parts = (skill.model.precondition, skill.model.execution_time, skill.model.dynamic_model)
-        draws = [draw for code in parts for draw in _draws_of(code)]
+        draws = [draw for code in parts for draw in _draws_of(code, drawing)]
         if all(start in sensing.get(snippet, ()) for snippet, start in draws):
             certain.add(skill.name)
     return frozenset(certain)
@@ -121,13 +123,13 @@ def _is_opaque(project: Project) -> bool:
     return any(flows_of(cpp).is_opaque for code in _sections(project) for _, cpp in snippets_of(code))
 
 
-def _draws_of(code: tuple[Assignment, ...]) -> list[tuple[Snippet, int]]:
-    """The draws of a section, each by its snippet and where its call starts."""
+def _draws_of(code: tuple[Assignment, ...], drawing: frozenset[str]) -> list[tuple[Snippet, int]]:
+    """The draws of a section and its calls of `drawing` functions, each by its snippet and its start."""
     return [
         (snippet, call.function.start)
         for snippet, cpp in snippets_of(code)
         for call in cpp.calls
-        if is_draw(call)
+        if is_draw(call) or call.name[-1:] in {(name,) for name in drawing}
     ]
 
 
@@ -152,6 +154,7 @@ class _Influence:
 
     def __init__(self, environment: Environment, *, observations_matter: bool = True) -> None:
         self._observations_matter = observations_matter
+        self._shared = shared_code_of(environment)
         self._variables = frozenset(variable.name for variable in environment.variables)
         self._types = {variable.name: variable.type for variable in environment.variables}
         self._sources: dict[tuple[int, Name], set[tuple[int, Name]]] = {}
@@ -197,10 +200,14 @@ class _Influence:
                     waiting.append(source)
         return found
 
+    def flows(self, cpp: Cpp) -> Flows:
+        """What flows where in a snippet; shared functions that only read are looked through."""
+        return flows_of(read_cpp(looked_through(cpp, self._shared)), self._shared.reading)
+
     # --- one snippet -----------------------------------------------------------------------------------
 
     def _read_snippet(self, code: str) -> None:
-        flows = flows_of(read_cpp(code))
+        flows = self.flows(read_cpp(code))
         if flows.is_opaque:
             self._use(Name(name, is_of_state=True) for name in self._variables)
         self._use(flows.used)
@@ -220,7 +227,7 @@ class _Influence:
 
     def use_expression(self, code: str) -> None:
         """All that an expression mentions matters."""
-        cpp = read_cpp_expression(code)
+        cpp = read_cpp_expression(looked_through(read_cpp_expression(code), self._shared))
         if cpp.faults:
             self._use(Name(name, is_of_state=True) for name in self._variables)
         for mention in cpp.mentions:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from aos_protocol.documents import Environment, Project, StateVariable
 from aos_protocol.findings import Findings
 from aos_protocol.local_types import reported_variables
-from aos_runtime.document_code import snippets_of
+from aos_runtime.document_code import shared_code_of, snippets_of
 from aos_runtime.snippets import read_cpp
 from aos_solver.emission.lower_capacities import Capacities
 from aos_solver.emission.lower_code import Pieces, sections_of
@@ -28,8 +28,10 @@ __all__ = [
 
 def capacities_of(project: Project) -> Capacities:
     """The capacity of every vector, from all code of the project."""
-    capacities = Capacities()
     environment = project.environment
+    shared = shared_code_of(environment)
+    capacities = Capacities(shared.changing)
+    capacities.read_code([shared.cpp])
     for compound in environment.compounds:
         for field in compound.fields:
             if field.default is not None:

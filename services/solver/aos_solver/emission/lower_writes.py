@@ -13,7 +13,8 @@ from aos_protocol.documents import Environment, Project
 from aos_protocol.local_types import reported_variables
 from aos_runtime.cpp_facts import READING_FUNCTIONS
 from aos_runtime.cpp_flow import STATES
-from aos_runtime.document_code import snippets_of
+from aos_runtime.cpp_shared import SharedFunction
+from aos_runtime.document_code import shared_code_of, snippets_of
 from aos_runtime.snippets import (
     Access,
     Cpp,
@@ -43,11 +44,16 @@ class Changes:
         self.object_types: set[str] = set()
         self.value_types: set[str] = set()
         self._compounds = frozenset(compound.name for compound in environment.compounds)
+        self._shared = shared_code_of(environment)
+        self._inside = list(_passed_to_functions(self._shared.cpp, self._shared.reading))
+        for mention in self._shared.cpp.mentions:
+            if len(mention.path) > 1:
+                self._read_list(mention.path[1])
 
     def read(self, cpp: Cpp, copies: frozenset[str]) -> None:
         """Takes in a snippet that may change these copies of the state."""
-        passed_on = list(_passed_to_functions(cpp))
-        changed_by_lambda = _changed_by_lambdas(cpp, passed_on)
+        passed_on = list(_passed_to_functions(cpp, self._shared.reading))
+        changed_by_lambda = _changed_by_lambdas(cpp, passed_on) | self._changed_by_shared_code(cpp)
         for mention in cpp.mentions:
             if mention.path[0] not in STATES:
                 continue
@@ -65,6 +71,30 @@ class Changes:
         """The variables of this type are walked over."""
         if type_name in self._compounds:
             self.object_types.add(type_name)
+
+    def _changed_by_shared_code(self, cpp: Cpp) -> dict[int, set[str]]:
+        """The members that a shared function changes, for each place where it is given the whole state."""
+        found: dict[int, set[str]] = {}
+        own = {declaration.name for declaration in cpp.declarations}
+        for call in cpp.calls:
+            functions = [each for each in self._shared.functions if call.name == (each.name,)]
+            for index, argument in enumerate(call.arguments if own.isdisjoint(call.name) else ()):
+                changed = [self._changed_in(each, index) for each in functions]
+                if changed and None not in changed:
+                    found[argument.start] = set().union(*(each or () for each in changed))
+        whole = {mention.extent.start for mention in cpp.mentions if len(mention.path) == 1}
+        return {start: names for start, names in found.items() if start in whole}
+
+    def _changed_in(self, function: SharedFunction, index: int) -> set[str] | None:
+        """What the function changes of a parameter; None where that cannot be told."""
+        if function.only_reads:
+            return set()
+        parameter = function.takes[index] if index < len(function.takes) else ""
+        return (
+            _changed_members(self._shared.cpp, function.extent, parameter, self._inside)
+            if parameter
+            else None
+        )
 
     def _read_list(self, name: str) -> None:
         self.walk(name.removesuffix("Objects"))
@@ -112,20 +142,22 @@ def changes_of(project: Project) -> Changes:
 
 def drawing_defaults(environment: Environment) -> Iterator[str]:
     """The variables whose default is drawn at random."""
+    sources = {"AOS", "AOSUtils"} | shared_code_of(environment).drawing
     for variable in environment.variables:
         for snippet in (variable.default_code, variable.default_value):
             if snippet is None:
                 continue
             mentions = read_cpp(snippet.code).mentions or read_cpp_expression(snippet.code).mentions
-            if any(mention.path[0] in ("AOS", "AOSUtils") for mention in mentions):
+            if any(mention.path[0] in sources for mention in mentions):
                 yield variable.name
 
 
-def _passed_to_functions(cpp: Cpp) -> Iterator[range]:
-    """The arguments of calls to functions that may take them by reference."""
+def _passed_to_functions(cpp: Cpp, reading: frozenset[str]) -> Iterator[range]:
+    """The arguments of calls to functions that may take them by reference; `reading` are some that do not."""
+    own = {declaration.name for declaration in cpp.declarations}
     for call in cpp.calls:
         is_function = len(call.name) == 1 or call.name[:1] == ("std",)
-        if is_function and call.name[-1] not in READING_FUNCTIONS:
+        if is_function and call.name[-1] not in READING_FUNCTIONS | (reading - own):
             yield from (range(argument.start, argument.end) for argument in call.arguments)
 
 
@@ -170,10 +202,13 @@ def _changed_members(
     """The members of the parameter that the lambda changes; None where it uses the parameter as a whole."""
     if body is None:
         return None
+    names = {declaration.extent.start for declaration in cpp.declarations}
     uses = [
         mention
         for mention in cpp.mentions
-        if mention.path[0] == parameter and mention.extent.start in range(body.start, body.end)
+        if mention.path[0] == parameter
+        and mention.extent.start in range(body.start, body.end)
+        and mention.extent.start not in names
     ]
     if any(len(mention.path) == 1 for mention in uses):
         return None

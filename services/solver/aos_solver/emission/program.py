@@ -49,13 +49,15 @@ class Edit(msgspec.Struct, frozen=True):
 class Piece(msgspec.Struct, frozen=True):
     """A snippet as it stands in the emitted file: `text` has the snippet's lines, with few edits.
 
-    `number`, from 1, is what blame.hpp stores while the piece runs.
+    `number`, from 1, is what blame.hpp stores while the piece runs. Declarations stand in a namespace, and
+    whoever calls them is what runs.
     """
 
     number: int
     snippet: Snippet
     text: str
     edits: tuple[Edit, ...] = ()
+    is_declarations: bool = False
 
     def locate(self, line: int, column: int) -> Span:
         """The document place of a line and column of `text`, both from 1."""
@@ -292,7 +294,10 @@ class Constraint(msgspec.Struct, frozen=True):
 
 
 class Program(msgspec.Struct, frozen=True):
-    """A whole model. `pieces[n - 1]` is the piece of number n; `digest` is that of the documents."""
+    """A whole model. `pieces[n - 1]` is the piece of number n; `digest` is that of the documents.
+
+    `shared_constants` is the shared code before the compound types, `shared_functions` that behind the state.
+    """
 
     project: str
     digest: str
@@ -317,6 +322,9 @@ class Program(msgspec.Struct, frozen=True):
     standard_headers: tuple[str, ...]
     pieces: tuple[Piece, ...]
     constraints: tuple[Constraint, ...] = ()
+    shared_constants: Piece | None = None
+    shared_functions: Piece | None = None
+    shared_names: frozenset[str] = frozenset()
 
     @property
     def particle(self) -> tuple[Variable, ...]:

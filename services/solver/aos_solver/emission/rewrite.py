@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 import msgspec
 
 from aos_runtime.cpp_flow import STATES
+from aos_runtime.cpp_shared import SharedFunction
 from aos_runtime.observed import reports_in
 from aos_runtime.snippets import Call, Cpp, Extent
 from aos_solver.emission.program import Edit
@@ -26,16 +27,23 @@ class Rewriting(msgspec.Struct, frozen=True):
     """What names mean in a section.
 
     `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
-    constants that every section sees, `containers` the lists of values that the section's code declares.
+    constants that every section sees, `containers` the lists of values that the section's code declares,
+    `drawing` the shared functions that have a source of draws as their first parameter.
     """
 
     object_types: frozenset[str]
     enums: Mapping[str, EnumValues]
     values: frozenset[str] = frozenset()
     containers: frozenset[str] = frozenset()
+    drawing: frozenset[str] = frozenset()
 
 
-def rewrite(cpp: Cpp, rewriting: Rewriting, told_apart: Mapping[int, str]) -> tuple[str, tuple[Edit, ...]]:
+def rewrite(
+    cpp: Cpp,
+    rewriting: Rewriting,
+    told_apart: Mapping[int, str],
+    functions: Iterable[SharedFunction] = (),
+) -> tuple[str, tuple[Edit, ...]]:
     """The text to emit, and what was edited. `told_apart`: the starts of draws of a kind, with its word.
 
     - a missing last `;` is put in
@@ -46,6 +54,8 @@ def rewrite(cpp: Cpp, rewriting: Rewriting, told_apart: Mapping[int, str]) -> tu
     - such a draw says so: `AOS.sensing().Bernoulli(p)`, `AOS.averaged().SampleNormal(mean, deviation)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
+    - a call of a shared function that draws, `slips(0.1)`, becomes `slips(AOS, 0.1)`, and its definition, one
+      of `functions`, `bool slips(auto& AOS, double p) {`
     - objects and containers: see `rewrite_objects` and `rewrite_containers`
     """
     reported = [report.draw for report in reports_in(cpp)]
@@ -55,7 +65,12 @@ def rewrite(cpp: Cpp, rewriting: Rewriting, told_apart: Mapping[int, str]) -> tu
     unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
     for start, end, text in unnamed:
         edits.append((_extent(cpp.code, start, end) if end > start else start, text))
+    edits += _of_definitions(cpp, functions)
+    own = {declaration.name for declaration in cpp.declarations}
     for call in cpp.calls:
+        if len(call.name) == 1 and call.name[0] in rewriting.drawing - own:
+            at = cpp.code.index("(", call.function.end) + 1
+            edits.append((at, "AOS, " if call.arguments else "AOS"))
         if call not in reported:
             edits += _of_call(call, cpp.code, rewriting)
             if kind := told_apart.get(call.function.start):
@@ -65,6 +80,15 @@ def rewrite(cpp: Cpp, rewriting: Rewriting, told_apart: Mapping[int, str]) -> tu
     edits += [(offset, ";") for offset in cpp.missing_semicolons]
     unique = list(dict.fromkeys(edits))
     return cpp.replace(unique), tuple(sorted(_placed(unique, cpp.code), key=lambda e: (e.line, e.column)))
+
+
+def _of_definitions(cpp: Cpp, functions: Iterable[SharedFunction]) -> Iterator[tuple[Extent | int, str]]:
+    for function in functions:
+        if function.draws:
+            yield function.parameters, "auto& AOS, " if function.has_parameters else "auto& AOS"
+        body = cpp.code[function.body : function.extent.end]
+        if function.draws and re.search(r"\bAOSUtils\b", body):
+            yield function.body, " auto& AOSUtils = AOS; "
 
 
 def _of_mentions(

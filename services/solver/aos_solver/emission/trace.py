@@ -30,8 +30,16 @@ class TracedModel(msgspec.Struct, frozen=True):
     emitted: EmittedModel
     pieces: tuple[int, ...]
 
+    def may_be_in(self, place: int, piece: int) -> bool:
+        """Whether a place is in the piece, or in a function that it may call."""
+        return (
+            self.pieces[place - 1] == piece or self.emitted.pieces[self.pieces[place - 1] - 1].is_declarations
+        )
+
     def has_later_statements(self, piece: int) -> bool:
-        """Whether a statement of the piece stands on another line than the piece's first."""
+        """Whether a statement that runs with the piece stands on another line than the piece's first."""
+        if any(each.is_declarations for each in self.emitted.pieces):
+            return True
         first = self.emitted.snippets[piece - 1]
         places = zip(self.pieces, self.emitted.snippets, strict=True)
         return any(number == piece and span.line != first.line for number, span in places)
@@ -44,7 +52,9 @@ def traced(emitted: EmittedModel) -> TracedModel:
     pieces = list(range(1, len(spans) + 1))
     for piece in emitted.pieces:
         tracing = _Tracing(piece, len(spans))
-        text = marked(piece.text, tracing.marks) if _is_statements(piece, emitted, lines) else None
+        text = None
+        if piece.is_declarations or _is_statements(piece, emitted, lines):
+            text = marked(piece.text, tracing.marks, are_declarations=piece.is_declarations)
         if text is None:
             continue
         spans += tracing.spans.values()

@@ -1,0 +1,228 @@
+"""Constants and functions that all model code of a project shares."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from scripted_models import ScriptedModel, scripted, text_project
+
+from aos_deploy.language_server.symbols import read_bundle
+from aos_protocol.diagnostics import Diagnostic
+from aos_registry.convert import Dialect, convert, without_origins
+from aos_registry.load import load_files
+from aos_registry.outline import outline
+from aos_runtime.cpp_shared import shared_code
+from aos_solver.emission.emit import emit
+from aos_solver.emission.lower import lower
+from aos_solver.emission.program import Program
+
+SHARED = """const double slip_probability = 0.1;
+constexpr int start = 2;
+enum Grip { Loose, Firm };
+const Tool spade = {7};
+
+bool slips(int times) {
+    for (int i = 0; i < times; i++) {
+        if (AOS.Bernoulli(slip_probability)) return true;
+    }
+    return false;
+}
+bool slips() { return slips(1); }
+Grip grip_of(const auto& state, Plot plot) { return state.is_dug[plot] ? Firm : Loose; }
+int depth(const Tool& tool) { return tool.length + spade.length; }
+void dig(auto& state__, Plot plot) { state__.is_dug[plot] = true; }
+void add(auto& list, int item) { list.push_back(item); }"""
+ENVIRONMENT = f"""project: garden
+horizon: 4
+shared_code:
+{SHARED}
+define_type: Plot
+enum_members: North, South
+define_type: Tool
+variable: int length start
+state_variable: bool is_dug [Plot]
+state_variable: Tool tool
+state_variable: int log []
+code:
+state.log = {{0}};
+state_variable: int size
+default_value: start
+state_variable: Plot best
+action_parameter: Plot north
+code:
+state.north = North;
+initial_belief:
+state.best = slips() ? North : South;
+reward_code:
+if (grip_of(state, South) == Firm) __reward = 1;
+"""
+WORK = """project: garden
+parameter: Plot plot
+dynamic_model:
+if (!slips(2)) dig(state__, plot);
+if (grip_of(state__, plot) == Firm) add(state__.log, depth(state.tool) + state.size);
+Grip drawn = AOS.SampleDiscrete(Grip, {0.5, 0.5});
+__moduleResponse = drawn == Firm ? firm : loose;
+"""
+FILES = {"garden.ef": ENVIRONMENT, "work.sd": WORK}
+
+
+def files(*changes: str) -> dict[str, bytes]:
+    """The bundle; each `OLD -> NEW` replaces a text in it."""
+    texts = dict(FILES)
+    for change in changes:
+        old, _, new = change.partition(" -> ")
+        assert any(old in text for text in texts.values())
+        texts = {name: text.replace(old, new, 1) for name, text in texts.items()}
+    return {name: text.encode() for name, text in texts.items()}
+
+
+def found(*changes: str) -> list[Diagnostic]:
+    bundle = load_files(files(*changes))
+    told = [each for each in bundle.diagnostics if each.code != "AOS139"]
+    return told + (list(lower(bundle.project)[1]) if bundle.project is not None else [])
+
+
+def program(*changes: str) -> Program:
+    bundle = load_files(files(*changes))
+    assert bundle.project is not None, bundle.diagnostics
+    lowered, findings = lower(bundle.project)
+    assert lowered is not None, findings
+    return lowered
+
+
+@pytest.fixture(scope="module")
+def model(cache_dir: Path) -> ScriptedModel:
+    return scripted(text_project(FILES), cache_dir)
+
+
+def test_all_code_sees_the_constants_and_calls_the_functions(model: ScriptedModel) -> None:
+    assert found() == []
+    # The draws: of the belief, twice whether the hand slips, and the grip.
+    played = model.play("work(plot=north)|0 0 1", initial="1")
+    state = played.initial["state"]
+    assert (state["best"], state["is_dug[North]"]) == ("North", "false")
+    step = played.steps[0]
+    assert step["state"]["is_dug[North]"] == "true"
+    assert step["state"]["log[1]"] == str(2 + 7 + 2)
+    assert step["observation"] == "firm"
+
+
+def test_a_function_that_draws_ends_where_its_draws_say(model: ScriptedModel) -> None:
+    played = model.play("work(plot=north)|1 0", initial="0")
+    assert played.initial["state"]["best"] == "South"
+    assert played.steps[0]["state"]["is_dug[North]"] == "false"
+    assert played.observations == ["loose"]
+
+
+def test_all_dialects_say_the_same(tmp_path: Path) -> None:
+    project = load_files(files()).project
+    assert project is not None
+    assert "  | bool slips() { return slips(1); }" in outline(project)
+    texts, findings = convert(files(), Dialect.JSON)
+    assert findings == ()
+    assert json.loads(texts["environment.ef.json"])["SharedCode"] == SHARED.split("\n")
+    as_json = {name: text.encode() for name, text in texts.items()}
+    back, _ = convert(as_json, Dialect.SDL)
+    papers = {
+        name: data.replace(b'"PlpMain"', b'"GsdlMain"').replace(b'"PLP"', b'"GSDL"')
+        for name, data in as_json.items()
+    }
+    for other in (as_json, papers, {name: text.encode() for name, text in back.items()}):
+        read = load_files(other).project
+        assert read is not None
+        assert without_origins(read) == without_origins(project)
+    for name, data in files().items():
+        (tmp_path / name).write_bytes(data)
+    bundle = read_bundle(tmp_path, {})
+    called = bundle.at("work.sd", 4, 6)
+    assert called is not None
+    definition = bundle.definition(called.symbol)
+    assert definition is not None
+    assert str(definition.span) == "garden.ef:9:6"
+
+
+# --- what analyses make of it ----------------------------------------------------------------------------
+
+
+def test_what_a_function_draws_and_changes_is_known() -> None:
+    shared = shared_code(SHARED, frozenset({"Tool"}))
+    assert shared.drawing == {"slips"}
+    assert shared.reading == {"grip_of", "depth"}
+    assert shared.changing == {"slips", "dig", "add"}
+    assert [each.name for each in shared.names if each.is_late] == ["spade"]
+
+
+def test_only_what_functions_may_change_is_part_of_a_particle() -> None:
+    changed = {variable.name for variable in program().particle}
+    assert changed == {"is_dug", "log", "best"}
+    by_whole = program(
+        "{ state__.is_dug[plot] = true; } -> { auto& all = state__; all.is_dug[plot] = true; }"
+    )
+    assert {variable.name for variable in by_whole.constants} == set()
+
+
+def test_a_vector_that_a_function_fills_has_room() -> None:
+    types = {variable.name: variable.type for variable in program().variables}
+    assert types["log"] == "aos::Vector<int, 64>"
+
+
+def test_a_reward_is_certain_only_where_no_function_draws() -> None:
+    assert not program().skills[0].has_certain_rewards
+    assert program("if (!slips(2)) dig -> if (depth(state.tool) > 1) dig").skills[0].has_certain_rewards
+
+
+def test_a_default_may_be_drawn_by_a_function() -> None:
+    assert not program().draws_defaults
+    assert program("default_value: start -> default_value: slips() ? 1 : 2").draws_defaults
+
+
+def test_a_variable_that_only_shapes_what_a_function_reads_matters() -> None:
+    alone = "dig(state__, plot); -> state__.is_dug[plot] = true;", "void dig( -> void digs("
+    assert [variable.name for variable in program(*alone).irrelevant] == ["best"]
+    whole = "return state.is_dug[plot] ? Firm -> auto& all = state; return all.is_dug[plot] ? Firm"
+    assert program(*alone, whole).irrelevant == ()
+
+
+def test_the_emitted_functions_stand_at_the_documents_lines() -> None:
+    emitted = emit(program())
+    line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "bool slips(auto& AOS, int" in text)
+    assert (
+        str(emitted.locate(line, emitted.cpp.split("\n")[line - 1].index("int times") + 1))
+        == "garden.ef:9:12"
+    )
+    assert "slips(AOS, 2)" in emitted.cpp
+    assert "bool slips(auto& AOS) { return slips(AOS, 1); }" in emitted.cpp
+
+
+# --- mistakes --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "place"),
+    [
+        ("constexpr int start -> int start", "AOS145", "garden.ef:5:5"),
+        ("probability = 0.1 -> probability = AOS.Bernoulli(0.1)", "AOS145", "garden.ef:4:14"),
+        ("enum Grip { Loose, Firm }; -> struct Grip { int force; };", "AOS145", "garden.ef:6:1"),
+        ("bool slips(int times) -> bool slips(auto& AOS, int times)", "AOS145", "garden.ef:9:18"),
+        ("int depth( -> int max(", "AOS145", "garden.ef:17:5"),
+        ("Grip grip_of( -> Grip Firm(", "AOS126", "garden.ef:16:6"),
+        ("constexpr int start -> constexpr int North", "AOS126", "garden.ef:5:15"),
+        ("{ return slips(1); } -> { return slips(1); }}", "AOS108", "garden.ef:15:34"),
+        ("constexpr int start -> #define later 3\nconstexpr int start", "AOS108", "garden.ef:5:1"),
+        ("    for (int i -> static int n = 0;\n    for (int i", "AOS124", "garden.ef:10:1"),
+        ("    return false; -> int lost; return lost > 0;", "AOS143", "garden.ef:13:18"),
+        ("AOS.Bernoulli(slip_probability) -> rand() % 2 > slip_probability", "AOS124", "garden.ef:11:13"),
+        ("AOS.Bernoulli(slip_probability) -> AOS.Bernouli(slip_probability)", "AOS110", "garden.ef:11:17"),
+        ("state.is_dug[plot] ? -> state.is_dugg[plot] ?", "AOS110", "garden.ef:16:59"),
+        ("const auto& state, Plot -> const auto& s, Plot", "AOS123", "garden.ef:16:49"),
+        ("enum Grip -> const int depth_m = 3;\nenum Grip", "AOS133", "garden.ef:6:11"),
+        ("void add( -> int twice(int n) { return 2 * n; }\nvoid add(", "AOS133", "garden.ef:19:5"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_told_at_its_place(change: str, code: str, place: str) -> None:
+    told = [(each.code, str(each.span)) for each in found(change)]
+    assert (code, place) in told
+    assert len(set(told)) == 1 or code in ("AOS145", "AOS126"), told
