@@ -23,6 +23,7 @@ parts:
     deploy: {DEPLOY}/armadillo.yaml
     simulations: 500
     step_limit: 8
+    faults: {{arm_stays_out: 0.5}}
     claims:
       - {{says: it goes to the easy table, first: navigate(destination=easy_table)}}
       - {{says: it never picks, CHECK}}

@@ -93,7 +93,8 @@ def run(
         for by, number in wanted.items():
             for key, each in parts.items() if number else ():
                 task = bar.add_task(f"{key}, {by}", total=number)
-                setting = msgspec.structs.replace(each, by=by)
+                # Faults are the simulated world's; the model's world has none.
+                setting = msgspec.structs.replace(each, by=by, faults={} if by == "model" else each.faults)
                 played = asyncio.run(
                     play_campaign(
                         setting,
