@@ -210,6 +210,8 @@ class MissionRun:
 
     def _summary(self, ending: str, remark: str, code: ExitCode) -> Summary:
         steps = [self._steps[number] for number in sorted(self._steps)]
+        belief = steps[-1].belief if steps else None
+        cautious = None if belief is None else belief.cautious or belief
         return Summary(
             robot=self._deployment.file.robot,
             deploy_file=str(self._deployment.path),
@@ -219,9 +221,10 @@ class MissionRun:
             remark=remark,
             exit_code=int(code),
             steps=len(steps),
-            goal_probability=steps[-1].belief.goal_probability if steps else 0.0,
-            over_probability=steps[-1].belief.over_probability if steps else 0.0,
-            failure_probability=steps[-1].belief.failure_probability if steps else 0.0,
+            goal_probability=belief.goal_probability if belief else 0.0,
+            cautious_goal_probability=cautious.goal_probability if cautious else 0.0,
+            over_probability=belief.over_probability if belief else 0.0,
+            failure_probability=belief.failure_probability if belief else 0.0,
             actions=tuple(step.action for step in steps),
             responses=tuple(step.outcome.response if step.outcome else "" for step in steps),
             services_ready_s=self._services_ready_s,

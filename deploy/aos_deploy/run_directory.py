@@ -44,6 +44,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file.
 
     The ending and its probabilities are those of the last belief: nobody tells a robot how its world ended.
+    `cautious_goal_probability` is that of the goal if nothing ran that was not observed.
     """
 
     robot: str
@@ -55,6 +56,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     exit_code: int
     steps: int
     goal_probability: float
+    cautious_goal_probability: float
     over_probability: float
     failure_probability: float
     actions: tuple[str, ...]

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from models import built_bundle, engine_of
+from models import built_bundle
+from scripted_missions import Surroundings, jammed, observed, run_mission, timed_out
 
-from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, MissionState, Outcome
-from aos_runtime.clock import SystemClock
+from aos_protocol.messages import Activate, Fault, Outcome
 from aos_solver.building.build import BuiltModel
 from aos_solver.endings import MissionLimits
-from aos_solver.failures import FailureRules, Failures, SkillRule
-from aos_solver.hot_plug import RunningModel
-from aos_solver.mission import Mission
-from aos_solver.search import Search
+from aos_solver.failures import FailureRules, SkillRule
 
 ANSWERS = {
     "navigate": "arrived",
@@ -25,84 +21,14 @@ ANSWERS = {
     "serve": "delivered",
 }
 
-Robot = Callable[[Activate], Outcome]
-
-
-class Surroundings:
-    """What the loop is given: a journal that the test can read, and a robot."""
-
-    clock = SystemClock()
-
-    def __init__(self, robot: Robot) -> None:
-        self._robot = robot
-        self.unavailable: dict[str, str] = {}
-        self.announced: dict[str, int] = {}
-        self.states: list[MissionState] = []
-        self.on_hold: Callable[[], None] = lambda: None
-        self.journalled: list[tuple[str, Message]] = []
-        self.records: list[DecisionRecord] = []
-
-    mission: Mission
-
-    def journal(self, kind: str, payload: Message) -> None:
-        self.journalled.append((kind, payload))
-
-    def publish_record(self, record: DecisionRecord) -> None:
-        self.records.append(record)
-
-    def publish_state(self, state: MissionState) -> None:
-        self.states.append(state)
-
-    async def until_changed(self, timeout_s: float) -> None:
-        self.on_hold()
-
-    async def activate(self, request: Activate) -> Outcome:
-        assert self.journalled[-1] == ("intended", request)
-        return self._robot(request)
-
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        return running
-
-
-def observed(request: Activate, response: str) -> Outcome:
-    return Outcome(request.id, request.skill, "observed", response)
-
-
-def timed_out(request: Activate) -> Outcome:
-    return Outcome(
-        request.id, request.skill, "timed_out", fault=Fault("AOS503", "the skill took longer than it may")
-    )
-
 
 @pytest.fixture
 async def finer(bundles: Path, cache_dir: Path) -> BuiltModel:
     return await built_bundle(bundles / "armadillo-finer", cache_dir)
 
 
-async def run_mission(
-    built: BuiltModel,
-    robot: Robot,
-    *,
-    step_limit: int = 30,
-    rules: dict[str, SkillRule] | None = None,
-    around: Surroundings | None = None,
-    hold_s: float = 600.0,
-) -> tuple[MissionState, Surroundings]:
-    around = around or Surroundings(robot)
-    limits = MissionLimits(step_limit=step_limit)
-    search = Search(simulations=100_000, seed=1)
-    async with engine_of(built) as engine:
-        model = RunningModel(1, built, engine)
-        failures = Failures(FailureRules(skills=rules or {}))
-        mission = Mission(
-            "m", 1, model, limits, search, around, activation_timeout_s=1.0, failures=failures, hold_s=hold_s
-        )
-        around.mission = mission
-        return await mission.run(), around
-
-
 async def test_after_a_lost_activation_the_belief_is_that_it_ran_or_did_not(finer: BuiltModel) -> None:
-    _, around = await run_mission(finer, timed_out, step_limit=1)
+    _, around = await run_mission(finer, timed_out, limits=MissionLimits(step_limit=1))
     decision, outcome = around.records
     assert decision.action == "navigate(destination=easy_table)"
     assert outcome.outcome is not None
@@ -142,10 +68,6 @@ def good(request: Activate) -> Outcome:
     return observed(request, ANSWERS[request.skill])
 
 
-def jammed(request: Activate) -> Outcome:
-    return Outcome(request.id, request.skill, "failed", fault=Fault("AOS510", "gripper jammed"))
-
-
 def statuses(around: Surroundings) -> list[str]:
     return [record.outcome.status for record in around.records if record.outcome]
 
@@ -154,7 +76,7 @@ async def test_a_skill_that_fails_is_tried_again_as_often_as_the_deploy_file_say
     def robot(request: Activate) -> Outcome:
         return jammed(request) if request.skill == "pick" and request.id.step < 4 else good(request)
 
-    rules = {"pick": SkillRule(on_failure="retry", retries=2)}
+    rules = FailureRules(skills={"pick": SkillRule(on_failure="retry", retries=2)})
     state, around = await run_mission(finer, robot, rules=rules)
     decisions = [record for record in around.records if record.outcome is None]
     assert [each.skill for each in decisions[1:4]] == ["pick", "pick", "pick"]
@@ -167,7 +89,9 @@ async def test_a_skill_that_may_not_fail_ends_the_mission_and_is_named(finer: Bu
     def robot(request: Activate) -> Outcome:
         return jammed(request) if request.skill == "pick" else good(request)
 
-    state, _ = await run_mission(finer, robot, rules={"pick": SkillRule(on_failure="end")})
+    state, _ = await run_mission(
+        finer, robot, rules=FailureRules(skills={"pick": SkillRule(on_failure="end")})
+    )
     assert state.ending == "skills_failed"
     assert state.remark.startswith(
         "the deploy file ends the mission when pick fails; pick: failed, AOS510: gr"
@@ -180,7 +104,8 @@ async def test_a_mission_holds_until_somebody_lets_it_go_on(finer: BuiltModel) -
 
     around = Surroundings(robot)
     around.on_hold = lambda: around.mission.resume()
-    state, _ = await run_mission(finer, robot, rules={"pick": SkillRule(on_failure="hold")}, around=around)
+    rules = FailureRules(skills={"pick": SkillRule(on_failure="hold")})
+    state, _ = await run_mission(finer, robot, rules=rules, around=around)
     (held,) = [each for each in around.states if each.phase == "holding"]
     assert held.remark == "the mission holds: pick: failed, AOS510: gripper jammed"
     assert state.ending == "goal"
@@ -191,7 +116,7 @@ async def test_a_refused_activation_changes_nothing_in_the_belief(finer: BuiltMo
         fault = Fault("AOS505", "nobody is there")
         return Outcome(request.id, request.skill, "refused", fault=fault)
 
-    _, around = await run_mission(finer, robot, step_limit=1)
+    _, around = await run_mission(finer, robot, limits=MissionLimits(step_limit=1))
     decision, outcome = around.records
     assert outcome.belief.marginals == decision.belief.marginals
 
@@ -199,7 +124,7 @@ async def test_a_refused_activation_changes_nothing_in_the_belief(finer: BuiltMo
 async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: BuiltModel) -> None:
     around = Surroundings(good)
     around.unavailable = {"navigate": "its adapter has left"}
-    await run_mission(finer, good, step_limit=2, around=around)
+    await run_mission(finer, good, limits=MissionLimits(step_limit=2), around=around)
     assert {record.skill for record in around.records} <= ANSWERS.keys() - {"navigate"}
     # All actions are valued all the same: the belief and the model have not changed.
     assert "navigate(destination=easy_table)" in {each.action for each in around.records[0].actions}

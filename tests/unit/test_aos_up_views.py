@@ -23,6 +23,7 @@ from aos_protocol.messages import (
     BeliefSummary,
     BundleReport,
     DecisionRecord,
+    EndingOdds,
     Fault,
     Marginal,
     MissionState,
@@ -96,6 +97,14 @@ def test_endings_other_than_the_goal_are_told_where_they_may_be(capsys: pytest.C
     worse = msgspec.structs.replace(BELIEF, failure_probability=0.25, over_probability=0.0004)
     PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
     assert "goal 0.100  failure 0.250\n" in capsys.readouterr().out
+
+
+def test_the_goal_without_what_nobody_observed_is_told_where_it_differs(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    worse = msgspec.structs.replace(BELIEF, cautious=EndingOdds(0.0, 0.0, 0.0))
+    PlainView()(msgspec.structs.replace(OBSERVED, belief=worse))
+    assert "goal 0.100 (cautious 0.000)\n" in capsys.readouterr().out
 
 
 def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
 import pytest
 from scripted_models import ScriptedModel, mapping_text, scripted, text_project
 
 from aos_deploy.exit_codes import exit_code_of_mission
 from aos_protocol.documents import Environment
-from aos_protocol.messages import BeliefSummary, MissionState
+from aos_protocol.messages import BeliefSummary, EndingOdds, MissionState
 from aos_registry.convert import Dialect, convert, without_origins
 from aos_registry.load import load_files
-from aos_solver.endings import Ending, MissionLimits, believed_ending, remark_of
+from aos_solver.endings import Ending, MissionLimits, believed_ending, is_held_back, remark_of
 
 RUNNING, GOAL, FAILURE, OVER = range(4)
 
@@ -148,6 +149,25 @@ def test_a_mission_that_is_surely_over_counts_as_what_it_is_at_least(
     goal: float, over: float, failure: float, ending: Ending | None
 ) -> None:
     assert believed_ending(belief(goal, over, failure), MissionLimits(goal_probability=0.9)) is ending
+
+
+@pytest.mark.parametrize(
+    ("cautious", "ending", "is_kept"),
+    [
+        ((0.95, 0.0, 0.0), Ending.GOAL, False),
+        ((0.85, 0.0, 0.0), None, True),
+        ((0.0, 0.0, 0.95), Ending.FAILURE, False),
+        ((0.5, 0.45, 0.0), Ending.OVER, False),
+    ],
+)
+def test_an_ending_is_no_better_than_where_nothing_ran_that_was_not_observed(
+    cautious: tuple[float, float, float], ending: Ending | None, is_kept: bool
+) -> None:
+    goal, over, failure = cautious
+    state = msgspec.structs.replace(belief(0.95, 0.0, 0.0), cautious=EndingOdds(goal, failure, over))
+    limits = MissionLimits(goal_probability=0.9)
+    assert believed_ending(state, limits) is ending
+    assert is_held_back(state, limits) is is_kept
 
 
 @pytest.mark.parametrize(

@@ -111,11 +111,14 @@ def risk_text(constraint: ConstraintRisk) -> str:
 
 
 def endings_text(belief: BeliefSummary) -> str:
-    """How probable the goal is, and each other ending that is likelier than one in two thousand."""
+    """How probable the goal is, and each other ending that is likelier than one in two thousand.
+
+    In brackets stands how probable the goal is if nothing ran that was not observed, where that differs.
+    """
     others = {"over": belief.over_probability, "failure": belief.failure_probability}
-    shown = {name: probability for name, probability in others.items() if probability >= 0.0005}
-    endings = {"goal": belief.goal_probability, **shown}
-    return "  ".join(f"{name} {probability:.3f}" for name, probability in endings.items())
+    shown = [f"{name} {probability:.3f}" for name, probability in others.items() if probability >= 0.0005]
+    cautious = "" if belief.cautious is None else f" (cautious {belief.cautious.goal_probability:.3f})"
+    return "  ".join([f"goal {belief.goal_probability:.3f}{cautious}", *shown])
 
 
 def _report_lines(report: BundleReport) -> list[str]:

@@ -155,7 +155,8 @@ class Failures:
 def _said(outcome: Outcome, is_excluded: bool) -> str:
     if is_excluded:
         return f"{outcome.response}, which the model excludes"
+    what = outcome.response or outcome.status
     if outcome.fault is None:
-        return outcome.status
+        return what
     hint = f". {outcome.fault.hint}" if outcome.fault.hint else ""
-    return f"{outcome.status}, {outcome.fault.code}: {outcome.fault.message}{hint}"
+    return f"{what}, {outcome.fault.code}: {outcome.fault.message}{hint}"

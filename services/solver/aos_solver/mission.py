@@ -150,7 +150,9 @@ class Mission:
 
     def _decide(self, step: int, choice: Choice, belief: BeliefSummary) -> DecisionRecord:
         plan, risks = choice.plan, choice.risks
-        chosen = self._model.engine.description.actions[plan.index]
+        actions = self._model.engine.description.actions
+        chosen = actions[plan.index]
+        told = [number for number, each in enumerate(actions) if each.skill not in choice.set_aside]
         record = DecisionRecord(
             sequence=len(self.records),
             stamp_ns=self._ports.clock.now_ns(),
@@ -172,7 +174,7 @@ class Mission:
             planner=plan.planner,
             why=plan.why,
             threads=plan.threads,
-            constraints=self._budget.spend(risks, plan.index) if risks is not None else (),
+            constraints=self._budget.spend(risks, plan.index, told) if risks is not None else (),
             set_aside=choice.set_aside,
             is_cautious=choice.is_cautious,
         )

@@ -39,15 +39,21 @@ class RiskBudget:
             if any(risk > left + _ROUNDING for risk, left in zip(probabilities, self._left, strict=True))
         )
 
-    def spend(self, risks: Risks, index: int) -> tuple[ConstraintRisk, ...]:
-        """Takes what the action of this number risks from the budget, and says how the decision stands."""
+    def spend(
+        self, risks: Risks, index: int, told: Sequence[int] | None = None
+    ) -> tuple[ConstraintRisk, ...]:
+        """Takes what the action of this number risks from the budget, and says how the decision stands.
+
+        The risks of the actions with the numbers `told` are told, by default of all.
+        """
+        told = range(len(risks.actions)) if told is None else told
         spent = tuple(
             ConstraintRisk(
                 never=bound.never,
                 probability=bound.probability,
                 left=left,
                 risk=risk,
-                risks=tuple(probabilities[number] for probabilities in risks.actions),
+                risks=tuple(risks.actions[each][number] for each in told),
                 is_sampled=risks.is_sampled,
             )
             for number, (bound, left, risk) in enumerate(

@@ -1,0 +1,91 @@
+"""Whole systems of the tutorial's project whose robots are broken: docs/when-a-skill-fails.md."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from processes import HANG_S
+from walk import steps_of
+
+from aos_deploy.run_directory import RunDirectory, Summary
+
+BIN = Path(sys.executable).parent
+
+ROBOT = """
+def broken(call, **fields):
+    raise RuntimeError("it does not move")
+
+
+def look(call):
+    return {"bearing_rad": 0.4}
+
+
+def ask(call):
+    return {"response": "said_left"}
+
+
+def take(call, side):
+    return {"success": side == "Left"}
+"""
+
+DEPLOY = """\
+aos: 1
+robot: fetch
+bundles: [fetch]
+bus: {listen: "tcp/127.0.0.1:0"}
+solver: {simulations: 10_000}
+bind:
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path, cache_dir: Path) -> Path:
+    """The tutorial's project with its skill `ask`."""
+    run(["aos", "new", "project", "fetch"], tmp_path, cache_dir)
+    (asks,) = (step.text for step in steps_of() if step.kind == "file: fetch/ask.sd")
+    (tmp_path / "fetch" / "ask.sd").write_text(asks)
+    (tmp_path / "robot.py").write_text(ROBOT)
+    return tmp_path
+
+
+def run(command: list[str], folder: Path, cache_dir: Path) -> int:
+    environment = os.environ | {"AOS_CACHE_DIR": str(cache_dir)}
+    program = [str(BIN / command[0]), *command[1:]]
+    return subprocess.run(
+        program, cwd=folder, env=environment, capture_output=True, timeout=HANG_S, check=False
+    ).returncode
+
+
+def mission(project: Path, cache_dir: Path, text: str = "", **functions: str) -> tuple[int, Summary]:
+    """Exit code and summary of a mission in which these functions play the skills."""
+    binding = "".join(
+        f"  /{skill}: {{python: robot.py:{function}}}\n" for skill, function in functions.items()
+    )
+    (project / "fetch.yaml").write_text(DEPLOY + binding + text)
+    code = run(["aos-up", "fetch.yaml", "--plain"], project, cache_dir)
+    summary = RunDirectory.latest(project / "runs").read_summary()
+    assert summary is not None
+    return code, summary
+
+
+def test_with_a_broken_arm_the_goal_is_never_claimed(project: Path, cache_dir: Path) -> None:
+    look = project / "fetch" / "look.sd"
+    look.write_text(look.read_text().replace("__reward = -1", "__reward = -0.3"))
+    code, summary = mission(project, cache_dir, look="look", take="broken", ask="ask")
+    assert (code, summary.ending, summary.goal_probability) == (9, "skills_failed", 0.0)
+    why = "take is set aside for 300 s after 3 failures in a row, the last "
+    assert why in summary.remark
+    assert summary.responses.count("stuck") == 3
+    assert [action.partition("(")[0] for action in summary.actions].count("take") == 3
+
+
+def test_beside_a_broken_camera_the_robot_asks_and_reaches_its_goal(project: Path, cache_dir: Path) -> None:
+    look = project / "fetch" / "look.sd"
+    look.write_text(look.read_text().replace("0.85", "0.98"))
+    code, summary = mission(project, cache_dir, look="broken", take="take", ask="ask")
+    assert (code, summary.ending) == (0, "goal")
+    assert summary.actions == ("look", "look", "look", "ask", "take(side=left_side)")

@@ -1,0 +1,120 @@
+"""Missions of the loop with a real engine, and a robot that the test scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from models import engine_of
+
+from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, MissionState, Outcome
+from aos_runtime.clock import SystemClock
+from aos_solver.building.build import BuiltModel
+from aos_solver.endings import MissionLimits
+from aos_solver.failures import FailureRules, Failures
+from aos_solver.hot_plug import RunningModel
+from aos_solver.mission import Mission
+from aos_solver.search import Search
+
+__all__ = ["Clock", "Robot", "Surroundings", "jammed", "observed", "run_mission", "timed_out"]
+
+Robot = Callable[[Activate], Outcome]
+
+
+class Clock(SystemClock):
+    """Goes on when the test says so."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.now_s = 0.0
+
+    def monotonic_s(self) -> float:
+        return self.now_s
+
+
+class Surroundings:
+    """What the loop is given: a journal that the test can read, and a robot."""
+
+    clock: SystemClock = SystemClock()
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self.unavailable: dict[str, str] = {}
+        self.announced: dict[str, int] = {}
+        self.states: list[MissionState] = []
+        self.on_hold: Callable[[], None] = lambda: None
+        self.journalled: list[tuple[str, Message]] = []
+        self.records: list[DecisionRecord] = []
+
+    mission: Mission
+
+    @property
+    def decisions(self) -> Sequence[DecisionRecord]:
+        """The records of decisions."""
+        return [record for record in self.records if record.outcome is None]
+
+    @property
+    def outcomes(self) -> Sequence[DecisionRecord]:
+        """The records of what came of them."""
+        return [record for record in self.records if record.outcome is not None]
+
+    def journal(self, kind: str, payload: Message) -> None:
+        self.journalled.append((kind, payload))
+
+    def publish_record(self, record: DecisionRecord) -> None:
+        self.records.append(record)
+
+    def publish_state(self, state: MissionState) -> None:
+        self.states.append(state)
+
+    async def until_changed(self, timeout_s: float) -> None:
+        self.on_hold()
+
+    async def activate(self, request: Activate) -> Outcome:
+        assert self.journalled[-1] == ("intended", request)
+        return self._robot(request)
+
+    async def newest_model(self, running: RunningModel) -> RunningModel:
+        return running
+
+
+def observed(request: Activate, response: str) -> Outcome:
+    return Outcome(request.id, request.skill, "observed", response)
+
+
+def timed_out(request: Activate) -> Outcome:
+    return Outcome(
+        request.id, request.skill, "timed_out", fault=Fault("AOS503", "the skill took longer than it may")
+    )
+
+
+def jammed(request: Activate) -> Outcome:
+    return Outcome(request.id, request.skill, "failed", fault=Fault("AOS510", "gripper jammed"))
+
+
+async def run_mission(
+    built: BuiltModel,
+    robot: Robot,
+    *,
+    limits: MissionLimits | None = None,
+    rules: FailureRules | None = None,
+    around: Surroundings | None = None,
+    hold_s: float = 600.0,
+    simulations: int = 100_000,
+) -> tuple[MissionState, Surroundings]:
+    """A whole mission; its end, and all that was told of it."""
+    around = around or Surroundings(robot)
+    search = Search(simulations=simulations, seed=1)
+    async with engine_of(built) as engine:
+        mission = Mission(
+            "m",
+            1,
+            RunningModel(1, built, engine),
+            limits or MissionLimits(),
+            search,
+            around,
+            activation_timeout_s=1.0,
+            failures=Failures(rules),
+            hold_s=hold_s,
+        )
+        around.mission = mission
+        return await mission.run(), around
