@@ -89,6 +89,17 @@ class SharedCode(msgspec.Struct, frozen=True):
             return frozenset(re.findall(r"[A-Za-z_]\w*", self.cpp.code))
         return frozenset(each.name for each in (*self.names, *self.functions) if each.name)
 
+    @property
+    def whole_numbers(self) -> dict[str, str]:
+        """The constants that are whole numbers, as they are written."""
+        constants = {each.name for each in self.names if each.kind == "constant"}
+        values = {
+            each.name: self.cpp.code[each.initial.start : each.initial.end]
+            for each in self.cpp.declarations
+            if each.name in constants and each.initial is not None
+        }
+        return {name: value for name, value in values.items() if value.isdecimal()}
+
     def bodies(self) -> Iterator[str]:
         """The bodies of the functions, each at its lines and columns with blanks around it."""
         code = self.cpp.code

@@ -97,6 +97,7 @@ def test_responses_are_the_names_that_can_become_the_response() -> None:
     assert responses("auto told = missed;\nif (state.at == Left) told = hit;\n__moduleResponse = told;") == [
         "missed", "hit",
     ]  # fmt: skip
+    assert responses("int told[] = {left, right};\n__moduleResponse = told[state.at];") == ["left", "right"]
     assert responses("if (state.at == Left) __moduleResponse = here; else __moduleResponse = gone;") == [
         "here", "gone",
     ]  # fmt: skip

@@ -169,6 +169,19 @@ def test_a_vector_that_a_function_fills_has_room() -> None:
     assert types["log"] == "aos::Vector<int, 64>"
 
 
+def test_constants_say_how_long_vectors_are() -> None:
+    changes = (
+        "state.log = {0}; -> state.log.assign(start, 0);",
+        "add(state__.log, -> twice(",
+        "void add( -> void adds(",
+    )
+    types = {
+        v.name: v.type
+        for v in program(*changes, "void dig( -> int twice(int n) { return n; }\nvoid dig(").variables
+    }
+    assert types["log"] == "aos::Vector<int, 2>"
+
+
 def test_a_reward_is_certain_only_where_no_function_draws() -> None:
     assert not program().skills[0].has_certain_rewards
     assert program("if (!slips(2)) dig -> if (depth(state.tool) > 1) dig").skills[0].has_certain_rewards

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
@@ -39,9 +39,13 @@ class Capacities:
     a fault at run time, with the document's line.
     """
 
-    def __init__(self, filling: frozenset[str] = frozenset()) -> None:
-        """`filling` are functions that may make what they are given longer."""
+    def __init__(
+        self, filling: frozenset[str] = frozenset(), numbers: Mapping[str, str] | None = None
+    ) -> None:
+        """`filling` are functions that may make what they are given longer, `numbers` constants by name."""
         self._filling = filling
+        self._numbers = dict(numbers or {})
+        self._constant = re.compile(rf"\b(?:{'|'.join(self._numbers)})\b") if self._numbers else None
         self._known: dict[tuple[str, int], int] = {}
         self._grows: dict[tuple[str, int], int] = {}
         self._reported: set[tuple[str, int]] = set()
@@ -68,7 +72,7 @@ class Capacities:
         """Takes in statements."""
         for cpp in snippets:
             code = strip_comments(cpp.code)
-            loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(code))
+            loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(self._in_numbers(code)))
             aliases = dict(_aliases(cpp))
             filled = [each for call in cpp.calls if self._fills(call) for each in call.arguments]
             for mention in cpp.mentions:
@@ -77,6 +81,10 @@ class Capacities:
                 if any(each.start <= mention.extent.start < each.end for each in filled):
                     self._grow((path[_last_name(path)], path[_last_name(path) + 1 :].count("[]")), loops)
 
+    def _in_numbers(self, code: str) -> str:
+        """The code with the constants' values in place of their names."""
+        return self._constant.sub(lambda name: self._numbers[name[0]], code) if self._constant else code
+
     def _fills(self, call: Call) -> bool:
         return len(call.name) == 1 and call.name[0] in self._filling
 
@@ -84,7 +92,7 @@ class Capacities:
         names = [part for part in mention.path if part != "[]"]
         level = len(mention.path) - len(mention.path[: _last_name(mention.path) + 1])
         key = (names[-1], level)
-        rest = code[mention.extent.end :].lstrip()
+        rest = self._in_numbers(code[mention.extent.end :].lstrip())
         if mention.access is Access.WRITE and rest.startswith("="):
             self._take_value(key, rest[1:].lstrip(), loops)
         elif mention.method in _GROWING:

@@ -30,7 +30,7 @@ def capacities_of(project: Project) -> Capacities:
     """The capacity of every vector, from all code of the project."""
     environment = project.environment
     shared = shared_code_of(environment)
-    capacities = Capacities(shared.changing)
+    capacities = Capacities(shared.changing, shared.whole_numbers)
     capacities.read_code([shared.cpp])
     for compound in environment.compounds:
         for field in compound.fields:
