@@ -17,13 +17,14 @@ from aos_protocol.findings import Findings
 from aos_runtime.adapters import Binding
 from aos_runtime.adapters.expressions import check_expression
 
-__all__ = ["EVERYTHING_ELSE", "AdapterPlan", "played_by_model", "read_adapters"]
+__all__ = ["EVERYTHING_ELSE", "TAKEN", "AdapterPlan", "played_by_model", "read_adapters"]
 
 EVERYTHING_ELSE = "*"
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
-_TAKEN = ("router", "registry", "middleware", "solver", "aos-up")
+TAKEN = ("router", "registry", "middleware", "solver", "aos-up")
+"""The names of our own processes."""
 _BINDING_KEYS = ("fields", "result")
 
 
@@ -97,7 +98,7 @@ def _named(node: YamlNode | None, findings: Findings) -> dict[str, AdapterPlan]:
     for name, item in node.entries.items() if isinstance(node, YamlMap) else ():
         assert isinstance(node, YamlMap)
         where = node.keys[name]
-        if not _NAME.fullmatch(name) or name in _TAKEN:
+        if not _NAME.fullmatch(name) or name in TAKEN:
             findings.error(
                 "AOS126", f"{name!r} is no name for an adapter", where, "Use letters, digits, - and _"
             )

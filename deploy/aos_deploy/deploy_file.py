@@ -7,14 +7,15 @@ its line and column. Paths in it are relative to its own folder.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import msgspec
 
-from aos_deploy.adapters import AdapterPlan, read_adapters
+from aos_deploy.adapters import TAKEN, AdapterPlan, played_by_model, read_adapters
 from aos_deploy.constraints import snippet_of
+from aos_deploy.own_programs import ProgramPart, check_programs
 from aos_deploy.typed import known_names, read_structure
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
 from aos_protocol.diagnostics import Span
@@ -35,6 +36,7 @@ __all__ = [
     "SolverPart",
     "check_endpoint",
     "read_deploy_file",
+    "without_a_robot",
 ]
 
 Probability = Annotated[float, msgspec.Meta(gt=0, le=1)]
@@ -128,7 +130,8 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     the registry takes as bundles, by default `drop` in the run directory. `skills` says what follows when a
     skill fails. `adapters` gives adapters a name and options. `bind` says which adapter serves which
     activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `serve`
-    says how `aos-up --serve` shows them to others. `runs` is where run directories go.
+    says how `aos-up --serve` shows them to others. `programs` run beside the adapters. `runs` is where run
+    directories go.
     """
 
     aos: Literal[1]
@@ -145,6 +148,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     adapters: dict[str, Any] = {}
     bind: dict[str, Any] = {}
     serve: dict[str, Any] = {}
+    programs: dict[str, ProgramPart] = {}
     runs: str = "runs"
 
 
@@ -181,6 +185,12 @@ def read_deploy_file(path: Path) -> Deployment:
     return deployment
 
 
+def without_a_robot(deployment: Deployment, faults: Mapping[str, float] | None = None) -> Deployment:
+    """The deployment with every skill played by its document. What runs beside a robot is left out, too."""
+    file = msgspec.structs.replace(deployment.file, programs={})
+    return msgspec.structs.replace(deployment, file=file, adapters=played_by_model(faults))
+
+
 def check_endpoint(endpoint: str) -> None:
     """DeployError AOS801 unless it is one of this machine alone: everything else needs protection first."""
     if not _ENDPOINT.fullmatch(endpoint):
@@ -213,13 +223,15 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
     if policy is not None and not policy.is_file():
         hint = "Write it with aos solve"
         findings.error("AOS101", f"there is no policy file {policy}", _place(node, "solver", "policy"), hint)
+    adapters = read_adapters(node, findings, str(world) if world else "")
+    check_programs(file.programs, node, findings, (*TAKEN, *file.adapters, *(each.name for each in adapters)))
     return Deployment(
         path=path,
         file=file,
         project=file.project or file.robot,
         bundles=bundles,
         world=world,
-        adapters=read_adapters(node, findings, str(world) if world else ""),
+        adapters=adapters,
         policy=policy,
         constraints=_constraints(path, file, node),
         watch=folder / file.watch if file.watch is not None else None,

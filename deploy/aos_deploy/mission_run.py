@@ -5,7 +5,9 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+from collections.abc import Callable
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -115,9 +117,10 @@ class MissionRun:
                 self._supervisor = supervisor
                 await supervisor.start()
                 self._write_record(run, endpoint, supervisor)
+                write_again = partial(self._write_record, run, endpoint, supervisor)
                 async with asyncio.TaskGroup() as tasks:
                     tasks.create_task(self._follow(supervisor))
-                    await self._start_mission(supervisor)
+                    await self._start_mission(supervisor, write_again)
                 if not self._has_ended:
                     # The solver's process ends in a moment, and the supervision with the reason.
                     await supervisor.until_one_ended(timeout_s=_END_NOTICE_S)
@@ -130,10 +133,11 @@ class MissionRun:
             raise DeployError("the solver left before the mission ended", code="AOS804")
         return self._state
 
-    async def _start_mission(self, supervisor: Supervisor) -> None:
+    async def _start_mission(self, supervisor: Supervisor, write_record: Callable[[], None]) -> None:
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self._push_bundles(supervisor))
             await supervisor.until_ready()
+            write_record()  # Now all processes have an id.
             self._services_ready_s = self._elapsed_s()
         await until_skills_can_run(supervisor, self._deployment)
         await supervisor.bus.ask(
@@ -230,6 +234,7 @@ class MissionRun:
             services_ready_s=self._services_ready_s,
             first_decision_s=self._first_decision_s,
             duration_s=self._elapsed_s(),
+            process_ends=tuple(self._supervisor.ends) if self._supervisor is not None else (),
         )
 
     def _elapsed_s(self) -> float:

@@ -12,10 +12,11 @@ import msgspec
 from aos_deploy.adapter_kinds import MODEL
 from aos_deploy.adapters import AdapterPlan
 from aos_deploy.deploy_file import Deployment
-from aos_runtime.children import guarded
+from aos_deploy.own_programs import ProgramPart, ReadyPart
+from aos_runtime.children import Limits, guarded
 from aos_runtime.service_settings import ServiceSettings
 
-__all__ = ["Program", "cache_dir", "programs_of_deployment", "settings_of"]
+__all__ = ["Program", "cache_dir", "programs_of_deployment", "settings_of", "words_of"]
 
 
 class Program(msgspec.Struct, frozen=True, kw_only=True):
@@ -27,6 +28,9 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     user's own: it gets its settings in the environment, is ready when it serves one of the `paths` that are
     bound to it, and may be started again before that, too. The word `python` stands for the Python that this
     runs in. With a `host` it runs there, in a `folder` of that host. Others may go on without an adapter.
+
+    A program with an `on_exit` is none of the bus: the adapters start once it is `ready`, and `on_exit` says
+    what follows when it ends by itself.
     """
 
     name: str
@@ -40,13 +44,30 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     host: str = ""
     paths: tuple[str, ...] = ()
     is_adapter: bool = False
+    ready: ReadyPart | None = None
+    on_exit: str = ""
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is one of the deploy file's `programs:`."""
+        return bool(self.on_exit)
+
+    @property
+    def ending_s(self) -> float:
+        """How long the process may take to end: a command, then what it leaves behind, are asked first."""
+        return 2 * self.stop_s + 1.0 if self.command else self.stop_s
 
     def argv(self, settings: Path) -> list[str]:
         """The command line."""
         if self.command:
-            program, *arguments = self.command
-            return guarded([sys.executable if program == "python" else program, *arguments])
+            return guarded(words_of(self.command), Limits(grace_s=self.stop_s))
         return [sys.executable, "-m", self.module, str(settings)]
+
+
+def words_of(command: tuple[str, ...]) -> list[str]:
+    """A command of the deploy file as it is carried out here: `python` is the Python that this runs in."""
+    program, *arguments = command
+    return [sys.executable if program == "python" else program, *arguments]
 
 
 def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
@@ -60,8 +81,24 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
     return (
         Program(name="registry", module="aos_registry", settings=registry),
         Program(name="middleware", module="aos_middleware", settings=middleware),
+        *(_own(deployment, name, part) for name, part in file.programs.items()),
         *adapters,
         Program(name="solver", module="aos_solver", settings=_solver_settings(deployment), stop_s=5.0),
+    )
+
+
+def _own(deployment: Deployment, name: str, part: ProgramPart) -> Program:
+    """A program of the deploy file's `programs:`."""
+    return Program(
+        name=name,
+        start_s=part.start_s,
+        stop_s=part.stop_s,
+        restarts=3 if part.on_exit == "restart" else 0,
+        command=part.command,
+        folder=part.folder if part.host else str(deployment.path.parent),
+        host=part.host,
+        ready=part.ready,
+        on_exit=part.on_exit,
     )
 
 

@@ -12,8 +12,12 @@ import shlex
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from aos_protocol.errors import DeployError
+
+if TYPE_CHECKING:
+    from aos_deploy.program import Program  # which imports what knows this module
 
 __all__ = ["HOST", "check_ssh", "remote_command", "why_it_failed"]
 
@@ -22,7 +26,6 @@ HOST = re.compile(r"(ssh://)?([A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9\[][A-Za-z0-9_.:\]
 
 _SSH_FAILED = 255
 _NOT_FOUND = 127
-_GRACE_S = 5
 _PORTS = (20_000, 32_000)
 _OPTIONS = (
     "BatchMode=yes",  # It asks nothing: nobody is there to answer.
@@ -73,31 +76,24 @@ def check_ssh(adapter: str, host: str) -> None:
         )
 
 
-def remote_command(
-    command: tuple[str, ...],
-    host: str,
-    folder: str,
-    endpoint: str,
-    told: Mapping[str, str],
-    settings: Path,
-) -> list[str]:
-    """The ssh that runs a command on a host until its input ends.
+def remote_command(program: Program, endpoint: str, told: Mapping[str, str], settings: Path) -> list[str]:
+    """The ssh that runs a program on its host until its input ends.
 
     The command finds the environment `told`, with the bus's port on its own side, and the settings in a file.
     """
     port = random.SystemRandom().randrange(*_PORTS)
     environment = {**told, "AOS_ENDPOINT": f"tcp/127.0.0.1:{port}"}
-    del environment["AOS_SETTINGS"]
-    program, *arguments = command
-    program = "python3" if program == "python" else program
+    environment.pop("AOS_SETTINGS", None)
+    first, *arguments = program.command
+    first = "python3" if first == "python" else first
     script = _SCRIPT.format(
-        folder=shlex.quote(folder) if folder else '"$HOME"',
-        program=shlex.quote(program),
+        folder=shlex.quote(program.folder) if program.folder else '"$HOME"',
+        program=shlex.quote(first),
         not_found=_NOT_FOUND,
         settings=shlex.quote(settings.read_text(encoding="utf-8")),
         environment=" ".join(f"{name}={shlex.quote(value)}" for name, value in environment.items()),
-        command=shlex.join([program, *arguments]),
-        grace=_GRACE_S,
+        command=shlex.join([first, *arguments]),
+        grace=max(1, round(program.stop_s)),
     )
     options = [word for option in _OPTIONS for word in ("-o", option)]
     here = endpoint.partition("/")[2]
@@ -107,7 +103,7 @@ def remote_command(
         *options,
         "-R",
         f"127.0.0.1:{port}:{here}",
-        host,
+        program.host,
         f"exec sh -c {shlex.quote(script)}",
     ]
 

@@ -23,7 +23,7 @@ from aos_protocol.errors import BusError, DeployError
 from aos_protocol.messages import Fault
 from aos_runtime.service_settings import fault_path
 
-__all__ = ["RunDirectory", "RunRecord", "Summary"]
+__all__ = ["ProcessEnd", "RunDirectory", "RunRecord", "Summary"]
 
 _LATEST = "latest"
 
@@ -40,11 +40,21 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     pids: dict[str, int] = {}
 
 
+class ProcessEnd(msgspec.Struct, frozen=True):
+    """A process that ended though nobody stopped it: when, by which status or signal, and what followed."""
+
+    name: str
+    after_s: float
+    how: str
+    then: str
+
+
 class Summary(msgspec.Struct, frozen=True, kw_only=True):
     """`summary.json`: how a run ended. Times in seconds since aos-up had read the deploy file.
 
     The ending and its probabilities are those of the last belief: nobody tells a robot how its world ended.
     `cautious_goal_probability` is that of the goal if nothing ran that was not observed.
+    `process_ends` are the processes that ended by themselves, in this order.
     """
 
     robot: str
@@ -64,6 +74,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     services_ready_s: float | None
     first_decision_s: float | None
     duration_s: float
+    process_ends: tuple[ProcessEnd, ...] = ()
 
 
 class RunDirectory:
@@ -137,8 +148,12 @@ class RunDirectory:
         fault_path(self.path, service).unlink(missing_ok=True)
 
     def write_record(self, record: RunRecord) -> None:
-        """From now on the run can be found, and `latest` names it."""
-        (self.path / "run.json").write_bytes(_pretty(record))
+        """From now on the run can be found, and `latest` names it. The record may be written anew."""
+        path = self.path / "run.json"
+        is_known = path.exists()
+        path.write_bytes(_pretty(record))
+        if is_known:
+            return
         link = self.path.with_name(f".{_LATEST}-{self.path.name}")
         link.symlink_to(self.path.name)
         link.replace(self.path.with_name(_LATEST))

@@ -70,8 +70,7 @@ class ServeRun:
         deployment = self._deployment
         robot = deployment.file.robot
         base = ServiceSettings(robot=robot, service="", endpoint=endpoint, run_dir=str(run.path))
-        adapters = {plan.name for plan in deployment.adapters}
-        programs = [one for one in programs_of_deployment(deployment) if one.name in adapters]
+        programs = [one for one in programs_of_deployment(deployment) if one.is_adapter or one.is_own]
         try:
             async with supervised((*programs, self._server), base, run, self._report, self._clock) as all_of:
                 self._supervisor = all_of

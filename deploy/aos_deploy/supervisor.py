@@ -12,19 +12,22 @@ that it may be started again. `_watch` is the only place that sees a service end
 from __future__ import annotations
 
 import asyncio
-import signal
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Coroutine
 from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
 
 from aos_deploy.events import Report, ServiceChanged
-from aos_deploy.program import Program, settings_of
-from aos_deploy.remote import check_ssh, remote_command, why_it_failed
-from aos_deploy.run_directory import RunDirectory
-from aos_protocol.errors import AosError, DeployError, error_from_code
+from aos_deploy.process_end import end_of, look_at_log, status_text
+from aos_deploy.process_start import start_process
+from aos_deploy.program import Program
+from aos_deploy.program_ready import check_port_is_free, until_seen_ready
+from aos_deploy.run_directory import ProcessEnd, RunDirectory
+from aos_protocol.errors import AosError, DeployError
 from aos_protocol.keys import Keys, Serving
 from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Bus
-from aos_runtime.children import PIPE, Child, guarded
+from aos_runtime.children import Child
 from aos_runtime.clock import Clock
 from aos_runtime.guard import NOT_STARTED
 from aos_runtime.lifecycle import ROUTER_S, ServiceSettings
@@ -32,9 +35,14 @@ from aos_runtime.subscription import merged
 
 __all__ = ["ROUTER", "Supervisor", "supervised"]
 
+STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
+"""What follows when a process ends by itself."""
+
 ROUTER = Program(name="router", module="aos_runtime.router", start_s=ROUTER_S)
 
 _CANCEL_TIMEOUT_S = 2.5
+_HOST_S = 2.0
+"""What a program on another host may take longer to end than one here."""
 _RESTART_S = 0.2
 """Before the first restart of a program; each further one waits twice as long."""
 
@@ -42,12 +50,15 @@ _RESTART_S = 0.2
 class _Running:
     """A program's process. `starts` counts how often it was started, `ready` is set once it was ready."""
 
-    def __init__(self, program: Program, child: Child) -> None:
+    child: Child
+
+    def __init__(self, program: Program) -> None:
         self.program = program
-        self.child = child
         self.starts = 1
+        self.started_s = 0.0
         self.ready = asyncio.Event()
         self.is_ready = False
+        self.seeking: asyncio.Task[None] | None = None
 
 
 @asynccontextmanager
@@ -72,7 +83,7 @@ async def supervised(
 
 
 class Supervisor:
-    """The processes of one system; `bus` is there once `start` has returned."""
+    """The processes of one system. `bus` is there after `start`. `ends` are those by themselves."""
 
     bus: Bus
 
@@ -98,7 +109,9 @@ class Supervisor:
         self._is_stopping = False
         self._bus: Bus | None = None
         self._serving: set[str] = set()
-        self._presence: asyncio.Task[None] | None = None
+        self._besides: list[asyncio.Task[None]] = []
+        self._have_started = asyncio.Event()
+        self.ends: list[ProcessEnd] = []
 
     @property
     def pids(self) -> dict[str, int]:
@@ -108,33 +121,53 @@ class Supervisor:
     # --- starting ------------------------------------------------------------------------------------------
 
     async def start(self) -> None:
-        """Starts every process and connects to the bus; does not wait until the services are ready.
+        """Starts our services and connects to the bus, and begins to start the others; does not wait until
+        they are ready.
 
         DeployError AOS802 if a process cannot be started. Nobody else may listen at the endpoint.
         """
+        later = [each for each in self._programs if each.command]
+        if any(each.is_own for each in later):
+            later = [each for each in self._programs if each.command or each.is_adapter]
         for program in (ROUTER, *self._programs):
-            if not program.command:
+            if program not in later:
                 await self._spawn(program)
         self.bus = self._bus = await Bus.open(
             self._base.endpoint, sender="aos-up", connect_timeout_s=ROUTER.start_s
         )
         self._is_ready(self._running[ROUTER.name])
-        self._presence = self._tasks.create_task(self._follow_presence(self.bus))
-        for program in self._programs:
-            if program.command:
-                await self._spawn(program)
+        self._beside(self._follow_presence(self.bus))
+        self._beside(self._start_in_order(later))
+
+    async def _start_in_order(self, programs: list[Program]) -> None:
+        """Each program of the user's own when those before it are ready, then the adapters."""
+        for program in sorted(programs, key=lambda each: not each.is_own):
+            if program.is_own:
+                await check_port_is_free(program.name, program.ready)
+            await self._spawn(program)
+            if program.is_own:
+                await self._running[program.name].ready.wait()
+        self._have_started.set()
+
+    def _beside(self, work: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
+        """A task that ends at the latest when the system is stopped."""
+        task = self._tasks.create_task(work)
+        self._besides.append(task)
+        return task
 
     async def until_ready(self, *names: str) -> None:
         """Returns when these services are ready, or all if none is named.
 
         Commands are not awaited here: which of their paths are needed, the documents say. DeployError AOS802
-        if a service takes longer than it may, counted from the start.
+        if a service takes longer than it may, counted from its start.
         """
         for program in self._programs:
             if program.command or (names and program.name not in names):
                 continue
+            if program.name not in self._running:
+                await self._have_started.wait()
             running = self._running[program.name]
-            elapsed_s = self._clock.monotonic_s() - self._started_s
+            elapsed_s = self._clock.monotonic_s() - running.started_s
             try:
                 async with asyncio.timeout(program.start_s - elapsed_s):
                     await running.ready.wait()
@@ -150,43 +183,38 @@ class Supervisor:
         await asyncio.wait(self._watches, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
 
     async def _spawn(self, program: Program) -> None:
-        running = _Running(program, await self._process(program))
-        self._running[program.name] = running
+        running = self._running[program.name] = _Running(program)
+        await self._launch(running)
         self._changed(program.name, "starting")
         self._watches.append(self._tasks.create_task(self._watch(running)))
 
-    async def _process(self, program: Program) -> Child:
-        base = ServiceSettings(
-            robot=self._base.robot,
-            service=program.name,
-            endpoint=self._base.endpoint,
-            run_dir=self._base.run_dir,
-        )
-        settings = self._run.write_settings(program.name, settings_of(program, base))
-        told = {
-            "AOS_SETTINGS": str(settings),
-            "AOS_ENDPOINT": base.endpoint,
-            "AOS_ROBOT": base.robot,
-            "AOS_ADAPTER": program.name,
-        }
-        with self._run.log(program.name).open("ab") as log:
-            if program.host:
-                check_ssh(program.name, program.host)
-                command = remote_command(
-                    program.command, program.host, program.folder or "", base.endpoint, told, settings
-                )
-                # Its input stays open: when that ends, so does the program over there.
-                return await Child.start(
-                    guarded(command), name=program.name, stdin=PIPE, stdout=log, stderr=log
-                )
-            return await Child.start(
-                program.argv(settings),
-                name=program.name,
-                cwd=program.folder,
-                env=told if program.command else None,
-                stdout=log,
-                stderr=log,
-            )
+    async def _launch(self, running: _Running) -> None:
+        program = running.program
+        running.started_s = self._clock.monotonic_s()
+        log = self._run.log(program.name)
+        log_start = log.stat().st_size if log.exists() else 0
+        running.child = await start_process(program, self._base, self._run)
+        if program.is_own:
+            running.seeking = self._beside(self._seek_ready(running, log_start))
+
+    async def _seek_ready(self, running: _Running, log_start: int) -> None:
+        """Looks whether a program of the user's own is ready; DeployError AOS802 if it takes too long."""
+        program, ready = running.program, running.program.ready
+        try:
+            async with asyncio.timeout(program.start_s):
+                if ready is not None and ready.exit is not None:
+                    await running.ready.wait()  # Its end is seen by `_watch`.
+                    return
+                if ready is not None:
+                    folder = Path() if program.host else Path(program.folder or "")
+                    await until_seen_ready(ready, self._run.log(program.name), log_start, folder)
+        except TimeoutError:
+            raise DeployError(
+                f"{program.name} was not ready within {program.start_s:g} s: {ready}",
+                code="AOS802",
+                hint=f"See `ready` and `start_s` in the deploy file. {self.look_at_log(program.name)}",
+            ) from None
+        self._is_ready(running)
 
     async def _follow_presence(self, bus: Bus) -> None:
         keys = self.keys
@@ -203,44 +231,57 @@ class Supervisor:
 
     def _command_behind(self, serving: Serving) -> _Running | None:
         """The command that serves a path, by its name in the token or by what is bound to it."""
-        commands = (each for each in self._running.values() if each.program.command)
-        return next(
-            (
-                each
-                for each in commands
-                if each.program.name == serving.adapter or serving.path in each.program.paths
-            ),
-            None,
-        )
+        for running in self._running.values():
+            program = running.program
+            is_meant = program.name == serving.adapter or serving.path in program.paths
+            if is_meant and program.command and program.is_adapter:
+                return running
+        return None
 
-    def _is_ready(self, running: _Running) -> None:
+    def _is_ready(self, running: _Running, state: str = "ready") -> None:
         running.is_ready = True
         running.ready.set()
-        self._changed(running.program.name, "ready")
+        self._changed(running.program.name, state)
 
     async def _watch(self, running: _Running) -> None:
-        """Raises when the process ends though nobody stopped it, and may not be started again."""
+        """Raises when the process ends though nobody stopped it, and neither starts again nor is given up."""
         program = running.program
         while True:
             status = await running.child.wait()
             if self._is_stopping:
                 return
+            if running.seeking is not None:
+                running.seeking.cancel()
+            if program.ready is not None and program.ready.exit == status:
+                self._is_ready(running, "done")
+                return
             running.is_ready = False
-            self._changed(program.name, "ended", _status_text(status))
-            may_start_again = running.ready.is_set() or (program.command and status != NOT_STARTED)
-            if not may_start_again or running.starts > program.restarts:
-                if running.ready.is_set() and self._has_other_adapters(running):
-                    # What it served is unavailable; the mission goes on with the rest.
-                    self._changed(program.name, "given up", self._end_of(running, status).message)
-                    return
+            then = self._what_follows(running, status)
+            self._changed(program.name, "ended", f"{status_text(status)}; {then}")
+            after_s = round(self._clock.monotonic_s() - self._started_s, 3)
+            self.ends.append(ProcessEnd(program.name, after_s, status_text(status), then))
+            if then == THE_RUN_ENDS:
                 raise self._end_of(running, status)
+            if then != STARTED_AGAIN:
+                return
             await asyncio.sleep(_RESTART_S * 2 ** (running.starts - 1))
             if self._is_stopping:
                 return
             running.starts += 1
             self._run.forget_fault(program.name)
-            running.child = await self._process(program)
+            await self._launch(running)
             self._changed(program.name, "starting", f"for the {running.starts}. time")
+
+    def _what_follows(self, running: _Running, status: int) -> str:
+        """What becomes of a program that ended by itself."""
+        program, was_ready = running.program, running.ready.is_set()
+        if program.on_exit == "ignore" and was_ready:
+            return IGNORED
+        may_start_again = was_ready or (program.command and status != NOT_STARTED)
+        if may_start_again and running.starts <= program.restarts:
+            return STARTED_AGAIN
+        # What an adapter served is unavailable; the mission goes on with the rest.
+        return GIVEN_UP if was_ready and self._has_other_adapters(running) else THE_RUN_ENDS
 
     def _has_other_adapters(self, running: _Running) -> bool:
         others = (each for each in self._running.values() if each is not running)
@@ -249,36 +290,20 @@ class Supervisor:
         )
 
     def _end_of(self, running: _Running, status: int) -> AosError:
-        name = running.program.name
-        fault = self._run.fault(name)
-        if fault is not None:
-            return error_from_code(
-                fault.code,
-                f"{name}: {fault.message}",
-                hint=fault.hint,
-                diagnostics=fault.diagnostics,
-            )
-        host = running.program.host
-        if host and (failed := why_it_failed(name, host, status, self._run.last_log_lines(name))):
-            return failed
-        code = "AOS804" if running.ready.is_set() else "AOS802"
-        return DeployError(
-            f"{name} ended unexpectedly: {_status_text(status)}", code=code, hint=self.look_at_log(name)
-        )
+        return end_of(running.program, self._run, status, was_ready=running.ready.is_set())
 
     def look_at_log(self, name: str) -> str:
         """Where a service's log is, and how it ends."""
-        lines = self._run.last_log_lines(name)
-        where = f"Its log is {self._run.log(name)}"
-        return "\n    ".join([f"{where}; it ends:", *lines]) if lines else where
+        return look_at_log(self._run, name)
 
     # --- stopping ------------------------------------------------------------------------------------------
 
     async def stop(self) -> None:
         """Stops the solver, then whatever the robot still does, then the rest in reverse order."""
         self._is_stopping = True
-        if self._presence is not None:
-            self._presence.cancel()
+        for task in self._besides:
+            task.cancel()
+        await asyncio.gather(*self._besides, return_exceptions=True)
         await self._stop_one("solver")
         await self._cancel_skills()
         for program in reversed(self._programs):
@@ -291,7 +316,7 @@ class Supervisor:
         """Ends every process at once; what they have started ends with them."""
         self._is_stopping = True
         for running in self._running.values():
-            running.child.kill()
+            (running.child.end_at_once if running.program.command else running.child.kill)()
 
     async def _stop_one(self, name: str) -> None:
         running = self._running.get(name)
@@ -299,8 +324,8 @@ class Supervisor:
             self._changed(name, "stopping")
             if running.program.host:
                 running.child.stdin.close()
-                await running.child.wait_for(running.program.stop_s)
-            await running.child.stop(running.program.stop_s)
+                await running.child.wait_for(running.program.stop_s + _HOST_S)
+            await running.child.stop(running.program.ending_s)
             self._changed(name, "ended")
 
     async def _cancel_skills(self) -> None:
@@ -318,9 +343,3 @@ class Supervisor:
     def _changed(self, service: str, state: str, detail: str = "") -> None:
         after_s = self._clock.monotonic_s() - self._started_s
         self._report(ServiceChanged(service, state, round(after_s, 3), detail))
-
-
-def _status_text(status: int) -> str:
-    if status >= 0:
-        return f"exit status {status}"
-    return f"killed by {signal.Signals(-status).name}"

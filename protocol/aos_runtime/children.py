@@ -150,6 +150,10 @@ class Child:
         """SIGKILL to its group, now."""
         self._signal(signal.SIGKILL)
 
+    def end_at_once(self) -> None:
+        """Has the guard of a guarded command end all of it, now; killed, a guard would leave some behind."""
+        self._signal(signal.SIGQUIT)
+
     def _signal(self, number: signal.Signals) -> None:
         if self.returncode is not None:
             return

@@ -6,8 +6,8 @@ r"""A small process around a command that must leave nothing behind: compilers, 
 The command runs in a process group of its own, under the limits, on the guard's own stdin, stdout and
 stderr. When it ends, when the guard is told to stop (SIGTERM, SIGINT, SIGHUP), or when the guard's parent
 ends, every descendant of the guard is ended, those that left the group too: SIGTERM, and after the grace
-SIGKILL. The guard then ends the way the command did, by the same signal or with the same status; with 127 if
-the command cannot be started.
+SIGKILL; after SIGQUIT, SIGKILL at once. The guard then ends the way the command did, by the same signal or
+with the same status; with 127 if the command cannot be started.
 
 If the guard itself is killed with SIGKILL, the command dies with it, but not what the command has started.
 Write command lines with `children.guarded`. The module imports little and no site packages: it starts in
@@ -37,6 +37,7 @@ NOT_STARTED = 127
 """The status of a guard whose command cannot be started."""
 _GRACE_S = 0.5
 
+_AT_ONCE = signal.SIGQUIT
 _NICENESS = "--niceness"
 _LIMITS = {
     "--address-space-bytes": resource.RLIMIT_AS,
@@ -48,7 +49,7 @@ _LIMITS = {
 def main(arguments: list[str]) -> NoReturn:
     """Runs the command named in the arguments and ends as it ends."""
     grace_s, niceness, limits, command = _parse(arguments)
-    signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, signal.SIGCHLD})
+    signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
     die_with_parent(signal.SIGTERM)
     adopt_orphans()
     guard_pid = os.getpid()
@@ -128,15 +129,19 @@ def _wait(pid: int, grace_s: float) -> int:
         if ended:
             return status
         if kill_at_s is None:
-            received = signal.sigwait({*_STOP_SIGNALS, signal.SIGCHLD})
-            if received in _STOP_SIGNALS:
+            received = signal.sigwait({*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
+            if received == _AT_ONCE:
+                kill_at_s = 0.0
+                os.kill(os.getpid(), _AT_ONCE)  # What the command leaves behind ends as quickly.
+            elif received in _STOP_SIGNALS:
                 _signal_group(pid, signal.SIGTERM)
                 kill_at_s = time.monotonic() + grace_s
         elif time.monotonic() >= kill_at_s:
             _signal_group(pid, signal.SIGKILL)
             return os.waitpid(pid, 0)[1]
-        else:
-            signal.sigtimedwait({signal.SIGCHLD}, kill_at_s - time.monotonic())
+        elif _is_told_at_once(signal.sigtimedwait({signal.SIGCHLD, _AT_ONCE}, kill_at_s - time.monotonic())):
+            kill_at_s = 0.0
+            os.kill(os.getpid(), _AT_ONCE)
 
 
 def _end_descendants(grace_s: float) -> None:
@@ -146,8 +151,13 @@ def _end_descendants(grace_s: float) -> None:
         is_late = time.monotonic() >= kill_at_s
         for child in children:
             os.kill(child, signal.SIGKILL if is_late else signal.SIGTERM)
-        signal.sigtimedwait({signal.SIGCHLD}, 0.05)
+        if _is_told_at_once(signal.sigtimedwait({signal.SIGCHLD, _AT_ONCE}, 0.05)):
+            kill_at_s = 0.0
         _reap()
+
+
+def _is_told_at_once(received: signal.struct_siginfo | None) -> bool:
+    return received is not None and received.si_signo == _AT_ONCE
 
 
 def _children() -> list[int]:

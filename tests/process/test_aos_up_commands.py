@@ -80,6 +80,21 @@ def test_the_doctor_says_what_is_there() -> None:
     assert "C++ compiler" in findings
 
 
+def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path, root: Path) -> None:
+    deploy = tmp_path / "room.yaml"
+    deploy.write_text(
+        f"aos: 1\nrobot: armadillo\nbundles: [{root / 'deploy/bundles/armadillo-finer'}]\n"
+        "programs: {nav: {command: [./nav]}, ls: {command: [ls]}}\nbind: {'*': model}\n"
+    )
+    done = run("aos", "doctor", str(deploy), "--json")
+    findings = {each["subject"]: each for each in json.loads(done.stdout)}
+    assert done.returncode == 3
+    assert (findings["ls"]["state"], findings["ls"]["found"]) == ("ok", "program ls")
+    assert findings["model"]["state"] == "ok"
+    assert findings["nav"]["state"] == "missing"
+    assert f"there is no program ./nav in {tmp_path}" in findings["nav"]["found"]
+
+
 def test_the_doctor_says_what_to_do_about_a_cache_that_cannot_be_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

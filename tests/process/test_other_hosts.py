@@ -67,7 +67,7 @@ def left_behind(folder: Path) -> list[str]:
                 found.append((process / "cmdline").read_bytes().replace(b"\0", b" ").decode())
         except OSError:
             continue
-    return [command for command in found if "fetch_robot" in command]
+    return [command for command in found if "fetch_robot" in command or "sleep 1000" in command]
 
 
 def test_a_program_on_another_host_runs_a_mission_and_nothing_of_it_stays(ssh: str, tmp_path: Path) -> None:
@@ -96,3 +96,18 @@ def test_a_host_that_is_not_reached_ends_the_start(tmp_path: Path) -> None:
     assert status == 3
     assert f"robot@arm cannot be reached by ssh: {text}" in said
     assert "See that it works by hand, without a password: ssh robot@arm true" in said
+
+
+def test_a_program_on_another_host_is_ready_by_what_it_prints_and_ends_with_the_run(
+    ssh: str, tmp_path: Path
+) -> None:
+    (tmp_path / "fetch_robot_sim.sh").write_text("echo over there is $AOS_ROBOT; sleep 1000 & wait\n")
+    with Path("fetch.yaml").open("a") as deploy:
+        deploy.write(
+            f"programs:\n  sim: {{command: [sh, fetch_robot_sim.sh], host: robot@arm, folder: {tmp_path},"
+            " ready: {line: over there is fetch}}\n"
+        )
+    status, said = up(ssh, f"[{sys.executable}, fetch_robot.py]", tmp_path)
+    assert status == 0, said
+    assert said.index("sim ready") < said.index("robot starting")
+    assert left_behind(tmp_path) == []

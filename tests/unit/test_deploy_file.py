@@ -9,7 +9,9 @@ import msgspec
 import pytest
 
 from aos_deploy.bundle_files import files_of_bundle
-from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file
+from aos_deploy.deploy_file import Deployment, check_endpoint, read_deploy_file, without_a_robot
+from aos_deploy.needed_here import check_needed_here
+from aos_deploy.own_programs import ReadyPart
 from aos_deploy.program import programs_of_deployment
 from aos_protocol.errors import DeployError
 from aos_runtime.adapters import AdapterSettings, Binding
@@ -89,6 +91,106 @@ runs: ../elsewhere
 @pytest.mark.parametrize("name", ["armadillo", "armadillo-rough", "armadillo-hotplug"])
 def test_the_shipped_deploy_files_are_good(root: Path, name: str) -> None:
     assert read_deploy_file(root / "deploy" / f"{name}.yaml").file.robot == "armadillo"
+
+
+def test_programs_stand_between_the_services_and_the_adapters(folder: Path) -> None:
+    deployment = read(
+        folder,
+        HEAD
+        + """\
+adapters: {arm: {command: [./arm]}}
+bind: {/drive: arm}
+programs:
+  sim: {command: [python, sim.py], ready: {port: 5555}, start_s: 5, stop_s: 7, on_exit: restart}
+  nav: {command: [./nav], host: robot@arm, folder: /opt/nav, ready: {line: up}}
+""",
+    )
+    programs = programs_of_deployment(deployment)
+    assert [program.name for program in programs] == [
+        "registry",
+        "middleware",
+        "sim",
+        "nav",
+        "arm",
+        "solver",
+    ]
+    sim, nav = programs[2:4]
+    assert (sim.command, sim.folder, sim.ready) == (("python", "sim.py"), str(folder), ReadyPart(port=5555))
+    assert (sim.start_s, sim.stop_s, sim.on_exit, sim.restarts) == (5, 7, "restart", 3)
+    assert (nav.host, nav.folder, nav.on_exit, nav.restarts) == ("robot@arm", "/opt/nav", "fault", 0)
+    assert [each.name for each in programs_of_deployment(without_a_robot(deployment))] == [
+        "registry",
+        "middleware",
+        "model",
+        "solver",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("part", "found"),
+    [
+        ("{ready: {port: 1}}", "AOS105 the key programs.nav.command is missing"),
+        ("{command: []}", "AOS106 programs.nav.command names no program"),
+        ("{command: ./nav}", "AOS106 programs.nav.command is not a list"),
+        ("{command: [a], wait: 3}", "AOS102 unknown key programs.nav.wait"),
+        (
+            "{command: [a], on_exit: stop}",
+            "AOS106 programs.nav.on_exit is stop, not fault or",
+        ),
+        ("{command: [a], ready: up}", "AOS106 programs.nav.ready is not a mapping of keys to values"),
+        (
+            "{command: [a], ready: {prot: 1}}",
+            "AOS102 unknown key programs.nav.ready.prot. Did you mean",
+        ),
+        ("{command: [a], ready: {port: 0}}", "AOS106 programs.nav.ready.port is 0"),
+        ("{command: [a], ready: {}}", "AOS106 programs.nav.ready says nothing. Give it one of port, line,"),
+        ("{command: [a], ready: {port: 1, line: up}}", "AOS106 programs.nav.ready says port and line."),
+        ("{command: [a], ready: {line: '(up'}}", "AOS106 programs.nav.ready.line is no regular expression"),
+        (
+            "{command: [a], ready: {exit: 0}, on_exit: ignore}",
+            "AOS106 programs.nav is to end, and on_exit",
+        ),
+        ("{command: [a], host: -oProxy}", "AOS106 programs.nav.host is no host"),
+        ("{command: [a], folder: x}", "AOS106 programs.nav.folder is given without a host"),
+        (
+            "{command: [a], host: arm, ready: {file: x}}",
+            "AOS106 programs.nav.ready.file is looked for",
+        ),
+        (
+            "{command: [a], host: arm, ready: {port: 1}}",
+            "AOS106 programs.nav.ready.port is looked for",
+        ),
+    ],
+)
+def test_mistakes_about_programs_are_told_at_their_place(folder: Path, part: str, found: str) -> None:
+    (finding,) = findings(folder, f"{HEAD}programs:\n  nav: {part}\n")
+    line, _, said = finding.partition(" ")
+    assert line.startswith("5:")
+    assert said.startswith(found)
+
+
+@pytest.mark.parametrize("name", ["solver", "arm", "two words"])
+def test_a_program_has_a_name_of_its_own(folder: Path, name: str) -> None:
+    text = f"{HEAD}adapters: {{arm: {{command: [./arm]}}}}\nbind: {{/drive: arm}}\n"
+    (finding,) = findings(folder, f"{text}programs: {{{name}: {{command: [a]}}}}\n")
+    assert f"AOS126 {name!r} is no name for a program" in finding
+
+
+def test_what_a_deploy_file_starts_is_looked_for_before_it_is_started(folder: Path) -> None:
+    def missing(command: str) -> str:
+        with pytest.raises(DeployError) as caught:
+            check_needed_here(read(folder, f"{HEAD}programs: {{nav: {{command: {command}}}}}\n"))
+        assert caught.value.code == "AOS802"
+        return str(caught.value)
+
+    (folder / "nav").write_text("#!/bin/sh\n")
+    assert f"there is no program ./nac in {folder}" in missing("[./nac]")
+    assert f"there is no file nav.py in {folder}" in missing("[python, nav.py]")
+    assert f"Write ./nav for the one in {folder}" in missing("[nav]")
+    assert f"Run chmod +x {folder / 'nav'}" in missing("[./nav]")
+    (folder / "nav").chmod(0o755)
+    for command in ("[./nav]", "[python, -m, x]", "[sh, -c, ls]", f"[{folder / 'nav'}]"):
+        check_needed_here(read(folder, f"{HEAD}programs: {{nav: {{command: {command}}}}}\n"))
 
 
 def test_the_hot_plug_file_leaves_out_the_sensing_skills(root: Path) -> None:

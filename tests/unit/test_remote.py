@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from aos_deploy.program import Program
 from aos_deploy.remote import HOST, remote_command, why_it_failed
 
 
@@ -55,9 +56,9 @@ def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Pa
     settings = tmp_path / "arm.json"
     settings.write_text('{"it": "isn\'t $HOME"}')
     told = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "r", "AOS_SETTINGS": str(settings)}
-    command = remote_command(
-        ("./arm", "two words", "$(reboot)"), "arm", "/opt/the arm", "tcp/127.0.0.1:7447", told, settings
-    )
+    words = ("./arm", "two words", "$(reboot)")
+    program = Program(name="arm", command=words, host="arm", folder="/opt/the arm")
+    command = remote_command(program, "tcp/127.0.0.1:7447", told, settings)
     forward = command[command.index("-R") + 1]
     assert forward.startswith("127.0.0.1:")
     assert forward.endswith(":127.0.0.1:7447")

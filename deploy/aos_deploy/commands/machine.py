@@ -20,8 +20,9 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.program import cache_dir
 from aos_protocol import __version__
 from aos_protocol.distribution import DISTRIBUTION, pip_install
+from aos_protocol.errors import AosError
 
-__all__ = ["Finding", "examine_machine", "register"]
+__all__ = ["Finding", "examine_machine", "examine_needs", "register"]
 
 _PACKAGES = ("eclipse-zenoh", "msgspec", "numpy", "tree-sitter", "rich")
 _SIMULATOR = "pybullet"
@@ -40,18 +41,23 @@ class Finding(msgspec.Struct, frozen=True):
 
 def register(app: typer.Typer) -> None:
     """Adds the commands to `aos`."""
-    app.command(epilog="Example: aos doctor")(doctor)
+    app.command(epilog="Example: aos doctor; aos doctor deploy/armadillo.yaml")(doctor)
     app.command(epilog="Example: aos version")(version)
 
 
 def doctor(
+    deploy: Annotated[
+        Path | None, typer.Argument(metavar="DEPLOY", help="A deploy file, whose needs are looked at, too")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
-    """Say what this machine has and lacks, and what to do.
+    """Say what this machine has and lacks, for AOS and for a deploy file, and what to do.
 
     Exit code 0: a mission can run here. 3: something is missing.
     """
     findings = examine_machine()
+    if deploy is not None:
+        findings += examine_needs(deploy)
     if as_json:
         typer.echo(msgspec.json.format(msgspec.json.encode(findings), indent=2))
     else:
@@ -85,6 +91,22 @@ def examine_machine() -> list[Finding]:
         _cache(),
         _sandbox(),
     ]
+
+
+def examine_needs(deploy: Path) -> list[Finding]:
+    """What each adapter and program of a deploy file needs here; DeployError AOS801 if it has errors."""
+    from aos_deploy.deploy_file import read_deploy_file
+    from aos_deploy.needed_here import needs_of
+
+    findings = []
+    for name, what, check in needs_of(read_deploy_file(deploy)):
+        try:
+            check()
+        except AosError as error:
+            findings.append(Finding(name, "missing", error.message, error.hint))
+        else:
+            findings.append(Finding(name, "ok", what))
+    return findings
 
 
 def _python() -> Finding:

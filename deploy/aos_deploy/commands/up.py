@@ -61,10 +61,9 @@ def up(
     # For --help, and for a word about a wrong option, none of this is needed.
     import asyncio
 
-    from aos_deploy.adapter_kinds import check_installed
-    from aos_deploy.adapters import played_by_model
-    from aos_deploy.deploy_file import check_endpoint, read_deploy_file
+    from aos_deploy.deploy_file import check_endpoint, read_deploy_file, without_a_robot
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
+    from aos_deploy.needed_here import check_needed_here
     from aos_deploy.serve_run import ServeRun
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
@@ -80,9 +79,8 @@ def up(
         deployment, file=file, runs=runs.resolve() if runs is not None else deployment.runs
     )
     if model:
-        deployment = msgspec.structs.replace(deployment, adapters=played_by_model())
-    for adapter in deployment.adapters:
-        check_installed(adapter.name, adapter.kind)
+        deployment = without_a_robot(deployment)
+    check_needed_here(deployment)
     title = f"{file.robot} · {deploy.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
     mission: MissionRun | ServeRun = (

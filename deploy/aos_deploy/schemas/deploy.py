@@ -22,6 +22,9 @@ def deploy_schema() -> dict[str, Any]:
         part["description"] = " ".join(part["description"].split())
     parts["SolverPart"]["not"] = {"required": ["simulations", "time_s"]}
     parts["DeployFile"]["properties"]["bundles"]["minItems"] = 1
+    parts["ProgramPart"]["properties"]["command"]["minItems"] = 1
+    kinds = ("port", "line", "file", "command", "seconds", "exit")
+    parts["ReadyPart"]["oneOf"] = [{"required": [kind]} for kind in kinds]
     properties = parts["DeployFile"]["properties"]
     expressions = {"type": "object", "additionalProperties": {"type": ["string", "number", "boolean"]}}
     bound = {

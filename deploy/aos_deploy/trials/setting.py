@@ -8,9 +8,8 @@ from typing import Any, Literal
 import msgspec
 from ruamel.yaml import YAML
 
-from aos_deploy.adapters import played_by_model
 from aos_deploy.bundle_files import project_of
-from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file
+from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file, without_a_robot
 from aos_deploy.played_faults import PlayedFaults
 from aos_protocol.errors import DeployError
 
@@ -65,7 +64,7 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
     if setting.by == "system-model":
         if setting.faults:
             PlayedFaults(setting.faults).check(skill.name for skill in project_of(deployment).skills)
-        return msgspec.structs.replace(deployment, adapters=played_by_model(setting.faults))
+        return without_a_robot(deployment, setting.faults)
     if setting.faults:
         return _with_faults(deployment, setting, out)
     return deployment

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.adapter_kinds import check_installed
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.mission_run import MissionRun
+from aos_deploy.needed_here import check_needed_here
 from aos_deploy.run_directory import RunDirectory, Summary
 from aos_deploy.trials.trial import Trial
 from aos_protocol.errors import AosError
@@ -28,8 +28,7 @@ class SystemPlayer:
     """Plays missions of a deployment by its adapters; their run directories go below `runs`."""
 
     def __init__(self, deployment: Deployment, runs: Path) -> None:
-        for adapter in deployment.adapters:
-            check_installed(adapter.name, adapter.kind)
+        check_needed_here(deployment)
         self.deployment = deployment
         self._runs = runs
 

@@ -51,6 +51,7 @@ class Screen:
         """Brings the screen up to date."""
         match event:
             case ServiceChanged():
+                # A process that ended by itself is printed above the screen, too.
                 self.services[event.service] = event.state
                 waiting = [name for name, state in self.services.items() if state == "starting"]
                 if event.state == "stopping":
@@ -175,7 +176,8 @@ class LiveView:
         self.screen.take(event)
         if isinstance(event, SkillProgress):
             return  # It can come many times a second.
-        if isinstance(event, BundleReport):
+        is_end = isinstance(event, ServiceChanged) and event.state == "ended" and event.detail
+        if isinstance(event, BundleReport) or is_end:
             self._live.console.print("\n".join(lines_of(event)), markup=False, highlight=False)
         self._live.refresh()
 

@@ -1,0 +1,36 @@
+"""Whether what a deploy file starts is on this machine: looked at before anything is started."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from aos_deploy.adapter_kinds import check_installed
+from aos_deploy.deploy_file import Deployment
+from aos_deploy.process_start import check_command
+from aos_deploy.program import programs_of_deployment
+from aos_deploy.remote import check_ssh
+
+__all__ = ["check_needed_here", "needs_of"]
+
+
+def check_needed_here(deployment: Deployment) -> None:
+    """DeployError AOS805 for a package or ssh that is missing, AOS802 for a program that is not there."""
+    for _, _, check in needs_of(deployment):
+        check()
+
+
+def needs_of(deployment: Deployment) -> Iterator[tuple[str, str, Callable[[], None]]]:
+    """Each adapter and program by its name, what it is, and what raises if it cannot be started here."""
+    for adapter in deployment.adapters:
+        if not adapter.is_command:
+            kind = f"adapter of the kind {adapter.kind_name}"
+            yield adapter.name, kind, partial(check_installed, adapter.name, adapter.kind)
+    for program in programs_of_deployment(deployment):
+        what = f"{'program' if program.is_own else 'adapter'} {' '.join(program.command)}"
+        if program.host:
+            where = f"{what} on {program.host}, which is not looked at"
+            yield program.name, where, partial(check_ssh, program.name, program.host)
+        elif program.command:
+            folder = deployment.path.parent
+            yield program.name, what, partial(check_command, program.name, program.command, folder)

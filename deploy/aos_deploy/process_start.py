@@ -1,0 +1,71 @@
+"""A program of the system as a process: its settings written, its output in the run's log."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.program import Program, settings_of
+from aos_deploy.remote import check_ssh, remote_command
+from aos_deploy.run_directory import RunDirectory
+from aos_protocol.errors import DeployError
+from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.service_settings import ServiceSettings
+
+__all__ = ["check_command", "start_process"]
+
+
+async def start_process(program: Program, base: ServiceSettings, run: RunDirectory) -> Child:
+    """The process. `base` says robot, endpoint, run directory. DeployError AOS802 if it cannot be started."""
+    own = msgspec.structs.replace(base, service=program.name)
+    settings = run.write_settings(program.name, settings_of(program, own))
+    told = {"AOS_ENDPOINT": base.endpoint, "AOS_ROBOT": base.robot, "PYTHONUNBUFFERED": "1"}
+    if not program.is_own:
+        told |= {"AOS_SETTINGS": str(settings), "AOS_ADAPTER": program.name}
+    with run.log(program.name).open("ab") as log:
+        if program.host:
+            check_ssh(program.name, program.host)
+            command = remote_command(program, base.endpoint, told, settings)
+            # Its input stays open: when that ends, so does the program over there.
+            return await Child.start(
+                guarded(command, Limits(grace_s=program.stop_s)),
+                name=program.name,
+                stdin=PIPE,
+                stdout=log,
+                stderr=log,
+            )
+        return await Child.start(
+            program.argv(settings),
+            name=program.name,
+            cwd=program.folder,
+            env=told if program.command else None,
+            stdout=log,
+            stderr=log,
+        )
+
+
+_WHERE = "Paths of commands are relative to the deploy file's folder"
+
+
+def check_command(name: str, command: tuple[str, ...], folder: Path) -> None:
+    """DeployError AOS802 if the first word of a command names nothing that can be started in the folder."""
+    program = command[0]
+    is_python = re.fullmatch(r"python[0-9.]*", Path(program).name)
+    if is_python and command[1:] and command[1].endswith(".py") and not (folder / command[1]).is_file():
+        raise DeployError(f"{name}: there is no file {command[1]} in {folder}", code="AOS802", hint=_WHERE)
+    if program == "python":
+        return
+    path = folder / program
+    if "/" not in program:
+        if shutil.which(program) is None:
+            near = f"Write ./{program} for the one in {folder}" if path.is_file() else "Name it by its path"
+            raise DeployError(f"{name}: there is no program {program} on the PATH", code="AOS802", hint=near)
+    elif not path.is_file():
+        raise DeployError(f"{name}: there is no program {program} in {folder}", code="AOS802", hint=_WHERE)
+    elif not os.access(path, os.X_OK):
+        hint = f"Run chmod +x {path}, or name the interpreter first: [python, {program}]"
+        raise DeployError(f"{name}: the program {path} may not be executed", code="AOS802", hint=hint)

@@ -1,0 +1,296 @@
+"""Programs that are no adapters: ready before the adapters, watched, gone with all that they started."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from processes import HANG_S, descendants, kill, until_ended
+from supervised_system import System, command, small
+
+from aos_deploy.own_programs import ReadyPart
+from aos_deploy.program import Program
+from aos_protocol.errors import AosError
+
+BIN = Path(sys.executable).parent
+
+SERVES_A_PORT = """
+import socket, sys, time
+with socket.create_server(("127.0.0.1", int(sys.argv[1]))) as server:
+    while True:
+        server.accept()[0].close()
+"""
+ADAPTER = command("python", "small_command.py")
+
+
+def own(
+    *words: str, name: str = "nav", ready: ReadyPart | None = None, folder: Path | None = None, **more: Any
+) -> Program:
+    values: dict[str, Any] = {"on_exit": "fault", "start_s": HANG_S, **more}
+    where = str(folder) if folder is not None else None
+    return Program(name=name, command=words, ready=ready, folder=where, **values)
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return int(server.getsockname()[1])
+
+
+async def test_the_adapters_start_when_the_programs_are_ready_and_stop_before_them(system: System) -> None:
+    script = "read line <go; echo navigation is up; sleep 1000"
+    nav = own("sh", "-c", script, folder=system.folder, ready=ReadyPart(line="^nav.* up$"))
+    os.mkfifo(system.folder / "go")
+    skills = small("skills", is_adapter=True)
+    async with asyncio.timeout(HANG_S), system.up(small("registry"), nav, ADAPTER, skills):
+        await system.until("registry", "ready")
+        await system.until("nav", "starting")
+        assert {"robot", "skills"}.isdisjoint(system.order("starting"))
+        await asyncio.to_thread((system.folder / "go").write_text, "go\n")
+        await system.until("robot", "ready")
+        await system.until("skills", "ready")
+    assert system.order("ready").index("nav") < system.order("ready").index("robot")
+    stopping = system.order("stopping")
+    assert stopping.index("robot") < stopping.index("nav") < stopping.index("registry")
+    assert "navigation is up" in system.run.log("nav").read_text()
+
+
+async def test_each_program_waits_for_the_one_before_it(system: System) -> None:
+    first = own("sh", "-c", "echo one; exec sleep 1000", name="first", ready=ReadyPart(line="one"))
+    second = own("sh", "-c", "exec sleep 1000", name="second")
+    async with asyncio.timeout(HANG_S), system.up(first, second):
+        await system.until("second", "ready")
+    changes = [(each.service, each.state) for each in system.events]
+    assert changes.index(("first", "ready")) < changes.index(("second", "starting"))
+
+
+@pytest.mark.parametrize("kind", ["port", "line", "file", "command", "seconds", "nothing"])
+async def test_a_program_is_seen_to_be_ready(system: System, kind: str) -> None:
+    port = free_port()
+    program, part = {
+        "port": ([sys.executable, "-c", SERVES_A_PORT, str(port)], {"port": port}),
+        "line": (["sh", "-c", "echo is it; echo it is up; sleep 1000"], {"line": "^it is [a-z]+$"}),
+        "file": (["sh", "-c", "echo $$ >pid; sleep 1000"], {"file": "pid"}),
+        "command": (["sh", "-c", "touch there; sleep 1000"], {"command": ("test", "-e", "there")}),
+        "seconds": (["sleep", "1000"], {"seconds": 0.2}),
+        "nothing": (["sleep", "1000"], {}),
+    }[kind]
+    ready = ReadyPart(**part) if part else None
+    (system.folder / "pid").touch()  # of an earlier run
+    await asyncio.sleep(0.05)
+    async with asyncio.timeout(HANG_S), system.up(own(*program, ready=ready, folder=system.folder)):
+        await system.until("nav", "ready")
+
+
+async def test_a_set_up_program_ends_before_the_adapters_start(system: System) -> None:
+    setup = own("sh", "-c", "echo homed", name="homing", ready=ReadyPart(exit=0))
+    async with asyncio.timeout(HANG_S), system.up(setup, ADAPTER):
+        await system.until("robot", "ready")
+    changes = [(each.service, each.state) for each in system.events]
+    assert changes.index(("homing", "done")) < changes.index(("robot", "starting"))
+    assert system.ends == []
+
+
+async def failing(system: System, *programs: Program) -> AosError:
+    error = await system.error(*programs)
+    assert "robot" not in system.order("starting")
+    return error
+
+
+async def test_a_set_up_program_that_fails_ends_the_run(system: System) -> None:
+    setup = own("sh", "-c", "echo no motor; exit 3", name="homing", ready=ReadyPart(exit=0))
+    error = await failing(system, setup, ADAPTER)
+    assert (error.code, error.message) == ("AOS802", "homing ended with exit status 3, and is to end with 0")
+    assert "no motor" in error.hint
+
+
+async def test_a_program_that_is_not_ready_in_time_is_told_with_what_was_awaited(system: System) -> None:
+    nav = own("sh", "-c", "echo waiting for the map; sleep 1000", ready=ReadyPart(line="up"), start_s=0.5)
+    error = await failing(system, nav, ADAPTER)
+    assert error.code == "AOS802"
+    assert error.message == "nav was not ready within 0.5 s: it has printed no line that matches up"
+    assert "waiting for the map" in error.hint
+
+
+async def test_a_port_that_somebody_else_serves_is_told(system: System) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+        error = await failing(system, own("sleep", "1000", ready=ReadyPart(port=port)), ADAPTER)
+    assert error.message == f"nav is to serve localhost:{port}, where something listens before it is started"
+    assert "an earlier run" in error.hint
+
+
+async def test_a_program_that_goes_into_the_background_is_told_to_stay(system: System) -> None:
+    error = await failing(system, own("sh", "-c", "sleep 1000 &", ready=ReadyPart(line="up")), ADAPTER)
+    assert error.message == "nav ended unexpectedly: exit status 0"
+    assert "keep it in the foreground" in error.hint
+
+
+@pytest.mark.parametrize(
+    ("on_exit", "then"),
+    [("fault", "the run ends"), ("restart", "it is started again"), ("ignore", "ignored")],
+)
+async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(
+    system: System, on_exit: str, then: str
+) -> None:
+    restarts = 3 if on_exit == "restart" else 0
+    nav = own(
+        "sh", "-c", "echo up; sleep 1000", ready=ReadyPart(line="up"), on_exit=on_exit, restarts=restarts
+    )
+
+    async def work() -> None:
+        async with asyncio.timeout(HANG_S), system.up(nav, ADAPTER) as supervisor:
+            await system.until("robot", "ready")
+            kill(descendants(supervisor.pids["nav"])[0])
+            await system.until("nav", "ended")
+            if on_exit == "fault":
+                await asyncio.Event().wait()
+            if on_exit == "restart":
+                await system.until("nav", "ready", times=2)
+
+    if on_exit == "fault":
+        with pytest.raises(AosError, match="nav ended unexpectedly: killed by SIGKILL") as raised:
+            await work()
+        assert raised.value.code == "AOS804"
+    else:
+        await work()
+    (end,) = system.ends
+    assert (end.name, end.how, end.then) == ("nav", "killed by SIGKILL", then)
+    told = next(each.detail for each in system.events if (each.service, each.state) == ("nav", "ended"))
+    assert told == f"killed by SIGKILL; {then}"
+
+
+DEAF = "trap : TERM; while :; do sleep 1; done"
+TREE = f"setsid sh -c '{DEAF}' & echo up; {DEAF}"
+"""A shell and a grandchild in another session; neither ends by SIGTERM."""
+
+
+@pytest.mark.parametrize("how", ["stopped", "at once"])
+async def test_all_that_a_program_has_started_ends_with_the_run(system: System, how: str) -> None:
+    nav = own("sh", "-c", TREE, ready=ReadyPart(line="up"), stop_s=0.3 if how == "stopped" else HANG_S)
+    async with asyncio.timeout(HANG_S), system.up(nav) as supervisor:
+        await system.until("nav", "ready")
+        pids = descendants(supervisor.pids["nav"])
+        if how == "at once":
+            supervisor.kill()
+    assert len(pids) >= 2
+    await until_ended(pids)
+
+
+PUTS_DOWN = """
+import signal, time
+def end(*_):
+    time.sleep(1)
+    print("put down")
+    raise SystemExit
+signal.signal(signal.SIGTERM, end)
+print("up")
+while True:
+    time.sleep(0.1)
+"""
+
+
+async def test_a_program_that_catches_sigterm_has_its_time_to_end(system: System) -> None:
+    nav = own(sys.executable, "-c", PUTS_DOWN, ready=ReadyPart(line="up"), stop_s=HANG_S)
+    async with asyncio.timeout(HANG_S), system.up(nav):
+        await system.until("nav", "ready")
+    assert "put down" in system.run.log("nav").read_text()
+
+
+# --- whole missions -------------------------------------------------------------------------------------
+
+PROGRAMS = """programs:
+  sim: {command: [python, sim.py], ready: {line: listening}}
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A robot that is a command, with a simulator that it can only be started after."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    for words in (["new", "project", "fetch"], ["new", "adapter", "command", "--in", "fetch"]):
+        subprocess.run([BIN / "aos", *words], check=True, capture_output=True, timeout=HANG_S)
+    (tmp_path / "sim.py").write_text(SIMULATOR)
+    robot = tmp_path / "fetch_robot.py"
+    robot.write_text(
+        'import socket\nsim = socket.create_connection(("127.0.0.1", int(open("port").read())))\n'
+        + robot.read_text()
+    )
+    deploy = tmp_path / "fetch.yaml"
+    deploy.write_text(deploy.read_text() + PROGRAMS)
+    return tmp_path
+
+
+SIMULATOR = """
+import socket, threading
+with socket.create_server(("127.0.0.1", 0)) as server:
+    with open("port", "w") as port:
+        port.write(str(server.getsockname()[1]))
+    print("listening", flush=True)
+    robot, _ = server.accept()
+    threading.Event().wait()
+"""
+
+
+def up(*options: str) -> subprocess.CompletedProcess[str]:
+    words = [BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0", *options]
+    return subprocess.run(words, capture_output=True, text=True, timeout=HANG_S)
+
+
+def test_a_robot_finds_its_simulator(project: Path) -> None:
+    done = up()
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.index("sim ready") < done.stdout.index("robot starting")
+    assert "listening" in Path("runs/latest/logs/sim.log").read_text()
+    assert set(json.loads(Path("runs/latest/run.json").read_text())["pids"]) >= {"sim", "robot", "solver"}
+
+
+def test_nothing_runs_beside_a_robot_that_is_played_by_its_documents(project: Path) -> None:
+    done = up("--model")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert " sim " not in done.stdout
+    assert not (project / "port").exists()
+
+
+def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path) -> None:
+    robot = project / "fetch_robot.py"
+    text = robot.read_text()
+    hanging = "tell(f\"progress/{path.strip('/')}\""
+    assert hanging in text
+    robot.write_text(text.replace(hanging, "sim.send(b'x'); sim.recv(1)\n        " + hanging))
+    simulator = project / "sim.py"
+    simulator.write_text(
+        SIMULATOR.replace("threading.Event().wait()", "robot.recv(1)\n    raise SystemExit(5)")
+    )
+    done = up()
+    assert done.returncode == 7, done.stdout + done.stderr
+    assert "sim ended: exit status 5; the run ends" in done.stdout
+    assert "AOS804: sim ended unexpectedly: exit status 5" in done.stderr
+    summary = json.loads(Path("runs/latest/summary.json").read_text())
+    assert (summary["ending"], summary["exit_code"]) == ("fault", 7)
+    assert [(each["name"], each["how"]) for each in summary["process_ends"]] == [("sim", "exit status 5")]
+
+
+def test_what_a_program_has_started_ends_with_a_killed_aos_up(project: Path) -> None:
+    (project / "sim.py").write_text(f"import os\nos.execvp('sh', ['sh', '-c', {TREE!r}])\n")
+    deploy = project / "fetch.yaml"
+    deploy.write_text(deploy.read_text().replace("{line: listening}", "{line: up}, stop_s: 0.3"))
+    words = [BIN / "aos-up", "fetch.yaml", "--plain", "--listen", "tcp/127.0.0.1:0"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as running:
+        assert running.stdout is not None
+        for line in running.stdout:
+            if re.search("sim ready", line):
+                break
+        pids = descendants(running.pid)
+        running.send_signal(signal.SIGKILL)
+    assert len(pids) > 5
+    asyncio.run(until_ended(pids))

@@ -1,0 +1,113 @@
+"""A supervised system of small real processes on a real bus."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+from processes import kill
+
+from aos_deploy.endpoint import hold_endpoint
+from aos_deploy.events import Event, ServiceChanged
+from aos_deploy.program import Program
+from aos_deploy.run_directory import ProcessEnd, RunDirectory
+from aos_deploy.supervisor import Supervisor, supervised
+from aos_protocol.errors import AosError
+from aos_runtime.clock import SystemClock
+from aos_runtime.lifecycle import root_cause
+from aos_runtime.service_settings import ServiceSettings
+
+__all__ = ["TESTS", "System", "command", "small"]
+
+TESTS = Path(__file__).parent
+
+
+def small(
+    name: str,
+    mood: str = "good",
+    *,
+    start_s: float = 20.0,
+    stop_s: float = 5.0,
+    is_adapter: bool = False,
+) -> Program:
+    """A service that behaves as its mood says; see `small_service`."""
+    return Program(
+        name=name,
+        module="small_service",
+        settings={"mood": mood},
+        start_s=start_s,
+        stop_s=stop_s,
+        is_adapter=is_adapter,
+    )
+
+
+def command(*words: str, restarts: int = 0) -> Program:
+    """An adapter `robot` that is a program of the user's own."""
+    return Program(
+        name="robot",
+        command=words,
+        folder=str(TESTS),
+        paths=("/sense",),
+        restarts=restarts,
+        is_adapter=True,
+    )
+
+
+class System:
+    """A supervised system of small services in its own run directory."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.run = RunDirectory.create(folder / "runs", "test", 0)
+        with hold_endpoint("tcp/127.0.0.1:0") as endpoint:
+            self.endpoint = endpoint
+        self.events: list[ServiceChanged] = []
+        self.pids: list[int] = []
+        self.ends: list[ProcessEnd] = []
+        self._news = asyncio.Event()
+
+    @property
+    def port(self) -> int:
+        return int(self.endpoint.rpartition(":")[2])
+
+    @asynccontextmanager
+    async def up(self, *programs: Program) -> AsyncIterator[Supervisor]:
+        base = ServiceSettings(robot="test", service="", endpoint=self.endpoint, run_dir=str(self.run.path))
+        try:
+            async with supervised(programs, base, self.run, self._note, SystemClock()) as supervisor:
+                self.ends = supervisor.ends
+                await supervisor.start()
+                yield supervisor
+        except BaseExceptionGroup as group:
+            raise root_cause(group) from group
+
+    async def error(self, *programs: Program, victim: str = "") -> AosError:
+        """What a system of these programs fails with, after the victim is killed if there is one."""
+        try:
+            async with self.up(*programs) as supervisor:
+                await supervisor.until_ready()
+                self.pids = list(supervisor.pids.values())
+                if victim:
+                    kill(supervisor.pids[victim])
+                await asyncio.Event().wait()
+        except AosError as error:
+            return error
+        pytest.fail("the system did not fail")
+
+    def order(self, state: str) -> list[str]:
+        """The services that came into a state, in this order."""
+        return [event.service for event in self.events if event.state == state]
+
+    async def until(self, service: str, state: str, times: int = 1) -> None:
+        """Returns when a service has come into a state so many times."""
+        while sum((each.service, each.state) == (service, state) for each in self.events) < times:
+            self._news.clear()
+            await self._news.wait()
+
+    def _note(self, event: Event) -> None:
+        assert isinstance(event, ServiceChanged)
+        self.events.append(event)
+        self._news.set()
