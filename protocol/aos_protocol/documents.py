@@ -187,7 +187,8 @@ class SpecialState(msgspec.Struct, frozen=True):
 class Environment(msgspec.Struct, frozen=True):
     """The robot's one environment document: state, initial belief, extrinsic changes, rewards.
 
-    `shared_code` are declarations, constants and functions, that all model code of the project sees.
+    `shared_code` are declarations, constants and functions, that all model code of the project sees;
+    `shared_mapping_code` is Python that all mappings see.
     """
 
     project: str
@@ -204,6 +205,7 @@ class Environment(msgspec.Struct, frozen=True):
     print_state: tuple[Assignment, ...] = ()
     is_one_state_model: bool = False
     shared_code: Snippet | None = None
+    shared_mapping_code: Snippet | None = None
 
 
 # --- skills --------------------------------------------------------------------------------------------

@@ -146,6 +146,9 @@ MISUSES = {
     ),
     "response rules": Rule("go.json", "? eDone : eLost", "? eDone : «eGone", "AOS116"),
     "shared code": Rule("room.ef", "horizon: 5", "horizon: 5\nshared_code:\nint «count = 3;", "AOS145"),
+    "shared code of mappings": Rule(
+        "room.ef", "horizon: 5", "horizon: 5\nshared_mapping_code:\ndef far(x) «return x", "AOS121"
+    ),
     "no mapping": Rule("go glue.json", '"Name": "go"', '"Name": "«goo"', "AOS114"),
     "local variables": Rule("go glue.json", '"oDoor.pose"', '"«oDoor.where"', "AOS110"),
 }

@@ -159,7 +159,8 @@ def _python_modules(project: Project, only: str) -> str:
     if only and only not in names:
         raise typer.BadParameter(f"the skills are {', '.join(names)}", param_hint="--skill")
     chosen = [skill for skill in project.skills if only in ("", skill.name)]
-    return "\n\n".join(emit_mapping(skill, project.low_level).python for skill in chosen)
+    shared = project.environment.shared_mapping_code
+    return "\n\n".join(emit_mapping(each, project.low_level, shared=shared).python for each in chosen)
 
 
 def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:

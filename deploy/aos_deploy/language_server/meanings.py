@@ -49,6 +49,10 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             "A function may draw with `AOS.Bernoulli(p)` and its like.",
             {},
         ),
+        "shared_mapping_code": (
+            "Constants and functions in Python that all mappings of the project see.",
+            {},
+        ),
         "state_variable": (
             "`type name`, or `type name []` for an array: a part of the robot's and the world's state.",
             _VARIABLE_PARTS,

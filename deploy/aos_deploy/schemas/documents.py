@@ -120,6 +120,7 @@ def _environment() -> Schema:
             BLOCK, "What happens by itself in each step, before the skill acts: writes `state_`."
         ),
         SharedCode=said(CODE, "Ours: constants and functions in C++ that all model code sees."),
+        SharedMappingCode=said(CODE, "Ours: constants and functions in Python that all mappings see."),
         HeuristicStateValue=said(BLOCK, "A state's worth where the search ends: `__heuristicValue`."),
         PrintStateFunc=said(BLOCK, "Writes a state to `ss`, for people."),
         required=("EnvironmentGeneral",),

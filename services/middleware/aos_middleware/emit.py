@@ -19,7 +19,7 @@ from aos_middleware.generated_lines import word
 from aos_middleware.python_code import LineOrigin, python_fault
 from aos_middleware.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
-from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill
+from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, Snippet
 from aos_protocol.errors import DocumentError
 from aos_runtime.observed import reported_numbers
 
@@ -69,16 +69,22 @@ class EmittedMapping(msgspec.Struct, frozen=True):
 
 
 def emit_mapping(
-    skill: Skill, low_level: LowLevelDocument | None = None, constants: Mapping[str, str] | None = None
+    skill: Skill,
+    low_level: LowLevelDocument | None = None,
+    constants: Mapping[str, str] | None = None,
+    shared: Snippet | None = None,
 ) -> EmittedMapping:
     """The Python module of a skill's abstraction mapping; `constants` are `low_level.default_constants`.
+
+    `shared` is the environment's `shared_mapping_code`.
 
     DocumentError AOS121 with a diagnostic for each mistake if the documents' Python is not valid.
     """
     mapping = skill.mapping
-    sections = Sections(mapping, low_level)
+    sections = Sections(mapping, low_level, shared)
     request, functions, observe = sections.request(), sections.variable_functions(), sections.observe()
     start_values = sections.start_values()
+    shared_lines = sections.shared_code()
     constant_code = sections.constants()
     types = sections.low_level_types()
     whole, parts, by_star = sections.imports()
@@ -99,6 +105,7 @@ def emit_mapping(
         star_imports=by_star,
         low_level_types=types,
         constants=constant_code,
+        shared_code=shared_lines,
         start_values=start_values,
         request=request,
         functions=functions,

@@ -34,7 +34,8 @@ def emit_project(project: Project) -> tuple[EmittedMapping, ...]:
     constants = default_constants(project)
     for skill in project.skills:
         try:
-            emitted.append(emit_mapping(skill, project.low_level, constants))
+            shared = project.environment.shared_mapping_code
+            emitted.append(emit_mapping(skill, project.low_level, constants, shared))
         except DocumentError as error:
             diagnostics += error.diagnostics
     if diagnostics:

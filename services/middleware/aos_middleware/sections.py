@@ -61,12 +61,18 @@ class Sections:
     After `observe`, `handles_failures` says whether a rule looks at how the skill has ended.
     """
 
-    def __init__(self, mapping: AbstractionMapping, low_level: LowLevelDocument | None) -> None:
+    def __init__(
+        self,
+        mapping: AbstractionMapping,
+        low_level: LowLevelDocument | None,
+        shared: Snippet | None = None,
+    ) -> None:
         self.diagnostics: list[Diagnostic] = []
         self.marks = MarkedLines()
         self.handles_failures = False
         self._mapping = mapping
         self._low_level = low_level
+        self._shared = shared
         self._variables = {variable.name: variable for variable in mapping.local_variables}
         self._codes: list[PythonCode] = []
         self._check_names()
@@ -211,6 +217,17 @@ class Sections:
         return Function("observe", name, summary, (line,))
 
     # --- the module's names --------------------------------------------------------------------------
+
+    def shared_code(self) -> list[str]:
+        """What all mappings share, where this one uses any of it. Call it behind all other snippets."""
+        code = read_body(self._shared) if self._shared is not None else None
+        if isinstance(code, Diagnostic):
+            self.diagnostics.append(code)
+            return []
+        if code is None or not any(each.reads & code.assigns for each in self._codes):
+            return []
+        self._codes.append(code)
+        return self.marks.body(code, 0)
 
     def low_level_types(self) -> list[str]:
         """The classes of the low-level document, where this mapping can meet one."""

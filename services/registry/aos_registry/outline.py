@@ -46,6 +46,9 @@ def _environment(environment: Environment) -> Iterator[str]:
     if environment.shared_code is not None:
         yield _placed("shared code", environment.shared_code.span)
         yield from _code(environment.shared_code)
+    if environment.shared_mapping_code is not None:
+        yield _placed("shared code of the mappings", environment.shared_mapping_code.span)
+        yield from _code(environment.shared_mapping_code)
     for enum in environment.enums:
         yield _placed(f"enum {enum.name}: {', '.join(enum.values)}", enum.span)
     for compound in environment.compounds:

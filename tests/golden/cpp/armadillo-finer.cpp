@@ -1,5 +1,5 @@
 // Model of the project armadillo: 7 state variables, 5 skills.
-// Emitted by aos 0.1.0 from the documents of digest 0c27d8a41f46d490. Change the documents, not
+// Emitted by aos 0.1.0 from the documents of digest a9a1d2f33f014747. Change the documents, not
 // this file; `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 // Names that begin with `aos_` are this file's own.
 //

@@ -3,8 +3,8 @@
 `declarations` looks at names and types, `defaults` at what variables start with, `model_code` at the C++ of
 environment and skills, `responses` at what the two halves of a skill say to each other, `mapping_code` at the
 Python of the mappings and `python_names` at the names in it, `endings` at what ends a mission,
-`observed_numbers` at numbers beside responses, `shared_code` at what all model code shares, `unused` at what
-nothing mentions.
+`observed_numbers` at numbers beside responses, `shared_code` at what all model code shares and
+`shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from aos_registry.check.observed_numbers import (
 from aos_registry.check.responses import check_responses
 from aos_registry.check.scope import Scope
 from aos_registry.check.shared_code import check_shared_code, check_shared_names_are_used
+from aos_registry.check.shared_mapping_code import check_shared_mapping_code
 from aos_registry.check.unused import check_unused_locals, check_unused_variables
 from aos_runtime.observed import reported_numbers
 
@@ -67,6 +68,8 @@ def check(assembly: Assembly, findings: Findings) -> None:
             check_unused_locals(mapping, _reported_to_model(mapping, name, assembly), findings)
     if assembly.low_level is not None:
         check_low_level(assembly.low_level, assembly.mappings.values(), scope, findings)
+    if scope.shared_mapping_code is not None:
+        check_shared_mapping_code(scope.shared_mapping_code, assembly.mappings.values(), scope, findings)
     if is_whole and assembly.environment is not None:
         check_goals(assembly.environment, findings)
         check_shared_names_are_used(assembly.environment, assembly.models.values(), findings)

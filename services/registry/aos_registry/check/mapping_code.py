@@ -6,7 +6,7 @@ import ast
 import keyword
 import re
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from aos_protocol.diagnostics import Severity, Span
 from aos_protocol.documents import (
@@ -24,7 +24,7 @@ from aos_protocol.spelling import quoted
 from aos_registry.check.python_names import PythonNames, check_names
 from aos_registry.check.scope import Scope
 
-__all__ = ["check_low_level", "check_mapping"]
+__all__ = ["check_low_level", "check_mapping", "parsed", "snippets_of_mapping"]
 
 _CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
 _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
@@ -71,9 +71,19 @@ def check_low_level(
     """The code that makes low-level constants."""
     names = PythonNames.of_constants(mappings, scope)
     for constant in document.constants:
-        tree = _parse(constant.code, "exec", findings)
+        tree = parsed(constant.code, "exec", findings)
         if tree is not None:
             check_names(constant.code, tree, names, findings)
+
+
+def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:
+    """All Python of a mapping."""
+    for rule in mapping.rules:
+        yield from [rule.condition] if rule.condition is not None else []
+        yield from (assignment.value for assignment in rule.assignments)
+    yield from (field.value for field in mapping.activation.fields)
+    for variable in mapping.local_variables:
+        yield from (each for each in (variable.initial_value, variable.code) if each is not None)
 
 
 def _check_path(path: str, span: Span, findings: Findings) -> None:
@@ -127,7 +137,7 @@ def _check_expression(
     snippet: Snippet, names: PythonNames, findings: Findings, severity: Severity = Severity.ERROR
 ) -> ast.AST | None:
     """Parses an expression and looks at its names."""
-    tree = _parse(snippet, "eval", findings)
+    tree = parsed(snippet, "eval", findings)
     if tree is not None:
         check_names(snippet, tree, names, findings, severity)
     return tree
@@ -142,7 +152,7 @@ def _check_variable(
         _check_expression(variable.initial_value, names.at_start(), findings, severity)
     if variable.code is None:
         return
-    tree = _parse(variable.code, "exec", findings)
+    tree = parsed(variable.code, "exec", findings)
     if tree is None:
         return
     check_names(variable.code, tree, names.of_code(), findings, severity)
@@ -158,7 +168,7 @@ def _check_variable(
         findings.warning("AOS121", "this code returns nothing", variable.code.span, hint)
 
 
-def _parse(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
+def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
     """The syntax tree; None, with an error at its place, where it is not Python."""
     code = snippet.code
     is_long = mode == "eval" and "\n" in code  # An expression may go on in the next line.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import re
 from collections.abc import Iterable, Iterator
 
 import msgspec
@@ -18,12 +19,13 @@ from aos_protocol.findings import Findings
 from aos_protocol.spelling import nearest, quoted
 from aos_registry.check.scope import STATE_COPIES, Scope
 
-__all__ = ["PythonNames", "check_names"]
+__all__ = ["PythonNames", "check_names", "column_of", "top_level_names"]
 
 _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
 """What rules can say of a skill that has failed."""
 _INPUT, _PARAMETERS = "__input", "parameters"
 _BUILT_IN_NAMES = frozenset(dir(builtins))
+_WORD = re.compile(r"[A-Za-z_]\w*")
 _OF_OTHER_LANGUAGES = {"true": "True", "false": "False", "null": "None", "nullptr": "None", "NULL": "None"}
 
 
@@ -48,6 +50,7 @@ class PythonNames(msgspec.Struct, frozen=True):
         imported = _imported_names(imports)
         local_names = tuple(variable.name for variable in mapping.local_variables)
         known = _BUILT_IN_NAMES.union(imported or (), local_names, _names_of_constants(scope.low_level))
+        known |= _names_of_shared(scope.shared_mapping_code)
         parameters = tuple(parameter.name for parameter in model.parameters) if model is not None else ()
         return cls(known, local_names, parameters, is_open=imported is None)
 
@@ -94,6 +97,36 @@ def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
     return frozenset(names)
 
 
+def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
+    """What the environment's `shared_mapping_code` gives to the mappings' modules."""
+    if snippet is None:
+        return frozenset()
+    try:
+        return top_level_names(ast.parse(snippet.code))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return frozenset(_WORD.findall(snippet.code))  # Told where the code is checked.
+
+
+def top_level_names(tree: ast.Module) -> frozenset[str]:
+    """The names that a module's own statements bind: not those of functions' insides."""
+    names: set[str] = set()
+    waiting: list[ast.AST] = [*tree.body]
+    while waiting:
+        node = waiting.pop()
+        match node:
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                names.add(name)
+                continue
+            case ast.Name(id=name, ctx=ast.Store()):
+                names.add(name)
+            case ast.alias(name=name, asname=alias):
+                names.add(alias or name.partition(".")[0])
+            case ast.Lambda() | ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
+                continue
+        waiting += ast.iter_child_nodes(node)
+    return frozenset(names)
+
+
 def check_names(
     snippet: Snippet,
     tree: ast.AST,
@@ -108,7 +141,7 @@ def check_names(
     for node in _loaded_names(tree):
         if node.id in known:
             continue
-        span = snippet.locate(node.lineno, _column(snippet, node.lineno, node.col_offset))
+        span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
         close = nearest(node.id, names.local_names)
         candidates = names.local_names if close else sorted(known)
         if (hint := _hint(node.id, names)) and not close:
@@ -168,7 +201,7 @@ def _hint(name: str, names: PythonNames) -> str:
     return "There are no local variables: add one that gives it"
 
 
-def _column(snippet: Snippet, line: int, byte_offset: int) -> int:
+def column_of(snippet: Snippet, line: int, byte_offset: int) -> int:
     """A column from 1 for an offset in UTF-8 bytes, as `ast` gives it."""
     text = snippet.code.split("\n")[line - 1]
     return len(text.encode()[:byte_offset].decode(errors="ignore")) + 1

@@ -7,7 +7,14 @@ from collections.abc import Mapping
 
 import msgspec
 
-from aos_protocol.documents import CompoundType, EnumType, LowLevelDocument, SkillModel, StateVariable
+from aos_protocol.documents import (
+    CompoundType,
+    EnumType,
+    LowLevelDocument,
+    SkillModel,
+    Snippet,
+    StateVariable,
+)
 from aos_registry.assembly import Assembly
 from aos_registry.documents.document import array_type
 from aos_runtime.cpp_shared import NO_SHARED_CODE, SharedCode
@@ -57,6 +64,7 @@ class Scope(msgspec.Struct, frozen=True):
     has_environment: bool
     is_one_state_model: bool
     shared: SharedCode = NO_SHARED_CODE
+    shared_mapping_code: Snippet | None = None
 
     @classmethod
     def of(cls, assembly: Assembly) -> Scope:
@@ -76,6 +84,7 @@ class Scope(msgspec.Struct, frozen=True):
             has_environment=environment is not None,
             is_one_state_model=environment is not None and environment.is_one_state_model,
             shared=shared_code_of(environment) if environment is not None else NO_SHARED_CODE,
+            shared_mapping_code=environment.shared_mapping_code if environment is not None else None,
         )
 
     @property

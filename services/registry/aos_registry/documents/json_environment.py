@@ -51,6 +51,7 @@ def read_environment(record: Record, project: str, span: Span) -> Environment:
         print_state=read_block(record, "PrintStateFunc"),
         is_one_state_model=is_one_state,
         shared_code=record.code("SharedCode"),
+        shared_mapping_code=record.code("SharedMappingCode"),
     )
 
 

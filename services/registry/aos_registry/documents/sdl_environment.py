@@ -57,6 +57,9 @@ def read_environment(sections: Sections, project: str, span: Span, findings: Fin
         state_heuristic=sections.block("heuristic_code"),
         print_state=sections.block("print_code"),
         is_one_state_model=read_truth(sections.last("one_state_model"), findings),
+        shared_mapping_code=python.code()
+        if (python := sections.last("shared_mapping_code")) is not None
+        else None,
         shared_code=shared.code() if (shared := sections.last("shared_code")) is not None else None,
     )
 

@@ -48,6 +48,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         "action_parameter": Word(parts=_VARIABLE_PARTS),
         "one_state_model": _LINE,
         "shared_code": _CPP,
+        "shared_mapping_code": _PYTHON,
         "initial_belief": _BLOCK,
         "reward_code": _BLOCK,
         "special_state": Word(

@@ -71,6 +71,7 @@ def _environment(environment: Environment) -> dict[str, Any]:
             **_given(OneStateModel=environment.is_one_state_model),
         },
         **_given(SharedCode=_code(environment.shared_code)),
+        **_given(SharedMappingCode=_code(environment.shared_mapping_code)),
         "GlobalVariableTypes": [*enums, *map(_compound, environment.compounds)],
         "GlobalVariablesDeclaration": [_variable(variable) for variable in environment.variables],
         "InitialBeliefStateAssignments": _block(environment.initial_belief),

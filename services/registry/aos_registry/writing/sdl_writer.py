@@ -56,6 +56,8 @@ def _environment(environment: Environment) -> Iterator[str]:
         yield "one_state_model: true"
     if environment.shared_code is not None:
         yield from ("", *_code("shared_code", environment.shared_code))
+    if environment.shared_mapping_code is not None:
+        yield from ("", *_code("shared_mapping_code", environment.shared_mapping_code))
     for enum in environment.enums:
         yield from ("", f"define_type: {enum.name}", f"enum_members: {', '.join(enum.values)}")
     for compound in environment.compounds:

@@ -285,7 +285,7 @@ def _digest(project: Project) -> str:
     """Of all that the model depends on; not of the code in the abstraction mappings."""
     parts = [
         project.name,
-        project.environment,
+        msgspec.structs.replace(project.environment, shared_mapping_code=None),
         [constant.name for constant in project.low_level.constants] if project.low_level is not None else [],
         [
             (
