@@ -11,6 +11,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
+from .bundles import told_of_bundle
 from .compiled import examined, left_out
 from .documents import Documents, documents
 from .driver import Driver, built_driver
@@ -20,10 +21,13 @@ from .offline import false_bounds
 from .pomdp_file import pomdp_text
 from .problem import Problem
 from .summary import WORST_TARGET, Bounds, Regrets
+from .told import Values
 
-__all__ = ["CACHE", "examine_documents", "examine_engine", "examine_solver"]
+__all__ = ["CACHE", "examine_bundles", "examine_documents", "examine_engine", "examine_solver"]
 
 CACHE = Path.home() / ".cache" / "aos-exam"
+
+PLANNERS = {"regret": ["auto", "look-ahead"], "values": ["auto"]}
 
 
 async def examine_documents(arguments: argparse.Namespace) -> int:
@@ -96,14 +100,36 @@ def _tell_progress(text: str) -> None:
         print(f"\r{text}\033[K", end="", file=sys.stderr, flush=True)
 
 
+async def examine_bundles(arguments: argparse.Namespace) -> int:
+    """The values of bundles, told one by one as rows of a table."""
+    is_passed = True
+    print("| bundle | planner | told | proven | returned | range | right |\n|---|---|---|---|---|---|---|")
+    for bundle in arguments.bundle:
+        for planner in arguments.planner or PLANNERS["values"]:
+            told = await told_of_bundle(
+                bundle,
+                planner,
+                missions=arguments.missions,
+                seed=arguments.seed,
+                seconds=None if arguments.simulations else arguments.seconds or 0.1,
+                simulations=arguments.simulations or 0,
+            )
+            is_passed = is_passed and told.is_right
+            print(told.row(), flush=True)
+    return 0 if is_passed else 1
+
+
 def examine_engine(arguments: argparse.Namespace) -> int:
-    """Bounds or regret of problems as tables, in the engine's headers."""
-    summary: Bounds | Regrets = Bounds() if arguments.command == "bounds" else Regrets()
+    """Bounds, regret or values of problems as tables, in the engine's headers."""
+    summaries = {"bounds": Bounds, "regret": Regrets, "values": Values}
+    summary: Bounds | Regrets | Values = summaries[arguments.command]()
+    # Values are held against the missions that regret is measured by.
+    report_of = "bounds" if arguments.command == "bounds" else "regret"
     options = _options(arguments)
     drivers: SimpleQueue[Driver] = SimpleQueue()
     executable = asyncio.run(built_driver(CACHE))
     for _ in range(arguments.jobs):
-        drivers.put(Driver(executable, arguments.command, options, patience_s=600))
+        drivers.put(Driver(executable, report_of, options, patience_s=1800))
     all_problems = _problems(arguments)
 
     def report(problem: Problem) -> tuple[Problem, dict[str, Any]]:
@@ -138,11 +164,11 @@ def _options(arguments: argparse.Namespace) -> dict[str, object]:
     for name in ("truth", "simulations", "steps"):
         if (value := getattr(arguments, name)) is not None:
             options[name] = value
-    if arguments.command == "regret":
+    if arguments.command != "bounds":
         has_budget = arguments.simulations is not None and arguments.seconds is None
         options["seconds"] = 0 if has_budget else arguments.seconds or 0.1
         options["missions"] = arguments.missions
-        options["planners"] = ",".join(arguments.planner or ["auto", "look-ahead"])
+        options["planners"] = ",".join(arguments.planner or PLANNERS[arguments.command])
     return options
 
 

@@ -17,6 +17,7 @@ from exam.generation import named_problem, problems
 from exam.jobs import job
 from exam.problem import RUNNING, Problem
 from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
+from exam.told import Told
 from processes import HANG_S
 
 
@@ -64,6 +65,17 @@ def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path) -> None:
     assert len(excesses) >= 20
     assert sum(excesses) / len(excesses) <= MEAN_TARGET
     assert max(excesses) <= WORST_TARGET
+
+
+def test_a_value_is_wrong_beyond_two_errors_and_a_twentieth_of_the_range() -> None:
+    def told(value: float, error: float, returned_error: float) -> Told:
+        return Told("p", "auto", value, error, 10.0, returned_error, range=100.0)
+
+    assert told(15, 0, 0).is_right
+    assert not told(16, 0, 0).is_right
+    assert told(4, 3, 1).is_right
+    assert not told(-4.9, 3, 4).is_right
+    assert told(-4.9, 3, 7).is_right
 
 
 def test_no_variable_is_left_out_that_matters() -> None:

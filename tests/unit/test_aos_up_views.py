@@ -47,7 +47,7 @@ DECISION = DecisionRecord(
     simulations=1000,
     horizon=10,
     planning_s=0.25,
-    actions=(ActionValue("serve", -4.0, 100, 0.5), ActionValue("pick", 2.713, 900, 0.04)),
+    actions=(ActionValue("serve", -4.0, 100, 0.5, -9.0), ActionValue("pick", 2.713, 900, 0.04, 1.118, 3.001)),
     predicted=(),
     belief=BELIEF,
     planner="pomcp",
@@ -85,7 +85,8 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) ->
         "   2.00 s  skills ended: killed by SIGKILL",
         "run directory runs/x",
         "mission building: compiling the model",
-        "step  1: pick  [pick +2.71, serve -4.00]  pomcp, 1000 simulations in 0.25 s by 2 threads",
+        "step  1: pick  [pick +2.71 ± 0.04 (at least +1.11, at most +3.01), serve -4.00 ± 0.50]  "
+        "pomcp, 1000 simulations in 0.25 s by 2 threads",
         "step  1: pick -> pick_succeeded  surprise 0.50  goal 0.100",
         "pick.sd:7:2: error[AOS110]: unknown name",
         "bundle new refused, nothing has changed",
@@ -121,7 +122,14 @@ def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> N
     assert [line["event"] for line in lines] == [
         "service", "service", "remark", "mission", "mission", "decision", "decision", "bundle", "mission",
     ]  # fmt: skip
-    assert lines[5]["actions"][1] == {"action": "pick", "q": 2.713, "n": 900, "stderr": 0.04}
+    assert lines[5]["actions"][1] == {
+        "action": "pick",
+        "q": 2.713,
+        "n": 900,
+        "stderr": 0.04,
+        "at_least": 1.118,
+        "at_most": 3.001,
+    }
     assert lines[6]["outcome"]["response"] == "pick_succeeded"
 
 

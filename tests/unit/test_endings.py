@@ -10,10 +10,17 @@ from scripted_models import ScriptedModel, mapping_text, scripted, text_project
 
 from aos_deploy.exit_codes import exit_code_of_mission
 from aos_protocol.documents import Environment
-from aos_protocol.messages import BeliefSummary, EndingOdds, MissionState
+from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds, MissionState
 from aos_registry.convert import Dialect, convert, without_origins
 from aos_registry.load import load_files
-from aos_solver.endings import Ending, MissionLimits, believed_ending, is_held_back, remark_of
+from aos_solver.endings import (
+    Ending,
+    MissionLimits,
+    believed_ending,
+    ending_after_planning,
+    is_held_back,
+    remark_of,
+)
 
 RUNNING, GOAL, FAILURE, OVER = range(4)
 
@@ -191,3 +198,36 @@ def test_a_mission_whose_end_is_not_known_is_not_said_to_be_without_its_goal(
 def test_every_ending_has_an_exit_code_of_its_own() -> None:
     codes = {ending: exit_code_of_mission(MissionState("m", "ended", 1, 0.0, ending)) for ending in Ending}
     assert len(set(codes.values())) == len(Ending)
+
+
+GIVES_UP, GOES_ON = Ending.NOTHING_WORTHWHILE, None
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "at_most", "ending"),
+    [
+        (-12.9, 0.0, 19.7, GOES_ON),  # what is known is bad, and nobody knows the rest
+        (-12.9, 9.0, None, GOES_ON),  # the error has the benefit of the doubt
+        (-12.9, 1.0, None, GIVES_UP),
+        (-12.9, 1.0, -10.0, GIVES_UP),
+        (-0.1, 9.0, -0.05, GIVES_UP),  # the error is large, but what is proven is not
+        (1.0, 0.0, 1.0, GOES_ON),
+    ],
+)
+def test_a_mission_gives_up_where_the_estimate_is_bad_and_nothing_promises_more(
+    value: float, error: float, at_most: float | None, ending: Ending | None
+) -> None:
+    best = ActionValue("look", value, 10, error, at_most=at_most)
+    assert ending_after_planning(best, (best,), MissionLimits(stop_below_value=0.0)) is ending
+
+
+def test_a_mission_does_not_give_up_while_another_action_may_return_enough() -> None:
+    best, other = (
+        ActionValue("look", -2.0, 10, 0.0, at_most=-1.0),
+        ActionValue("ask", -9.0, 1, 0.0, at_most=30.0),
+    )
+    barred = ActionValue("ask", -9.0, 1, 0.0)
+    limits = MissionLimits(stop_below_value=0.0)
+    assert ending_after_planning(best, (best, other), limits) is GOES_ON
+    assert ending_after_planning(best, (best, barred), limits) is GIVES_UP
+    assert ending_after_planning(best, (best, other), MissionLimits()) is GOES_ON

@@ -17,3 +17,16 @@ def test_what_a_policy_never_chooses_has_a_dash_for_its_value(capsys: pytest.Cap
     assert "+2.500" in table
     assert "inf" not in table
     assert "wait" in table
+
+
+def test_what_is_proven_of_values_is_rounded_outwards(capsys: pytest.CaptureFixture[str]) -> None:
+    values = [
+        ActionValue("open", 2.5, 10, 0.1, -1.00004, 3.00004),
+        ActionValue("wait", 0.25, 10, 0.1, 0.25 - 1e-12, 0.25 + 1e-12),
+        ActionValue("leave", 0.0, 10, 0.1),
+    ]
+    print_values(values, 30, "")
+    rows = {line.split()[1]: line.split("│") for line in capsys.readouterr().out.splitlines() if "│" in line}
+    assert [cell.strip() for cell in rows["open"][5:7]] == ["-1.001", "+3.001"]
+    assert [cell.strip() for cell in rows["wait"][5:7]] == ["+0.250", "+0.250"]
+    assert [cell.strip() for cell in rows["leave"][5:7]] == ["", ""]

@@ -104,8 +104,7 @@ def plan(
 
     async def decision_of(engine: Engine) -> Decision:
         if exact:
-            values = (await engine.exact(horizon)).actions
-            return _decision([ActionValue(value.action, value.q, 0, 0.0) for value in values], 0)
+            return _decision((await engine.exact(horizon)).values, 0)
         budget = RiskBudget(engine.bounds)
         risks = await engine.risks(search.seed_of(1)) if budget else None
         forbidden = budget.forbidden(risks) if risks is not None else ()
@@ -163,7 +162,7 @@ def simulate(
     goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
     step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
     stop_below_value: Annotated[
-        float | None, typer.Option(help="Ends a mission when the best action promises less")
+        float | None, typer.Option(help="Ends a mission when no action can return so much")
     ] = None,
     states: Annotated[
         bool, typer.Option("--states", help="Also tell the world's state at each step")

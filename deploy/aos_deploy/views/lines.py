@@ -6,9 +6,10 @@ import sys
 from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
-from aos_deploy.views.observations import observation_text, value_text
+from aos_deploy.views.observations import observation_text, proven_text, value_text
 from aos_protocol.diagnostics import render
 from aos_protocol.messages import (
+    ActionValue,
     BeliefSummary,
     BundleReport,
     ConstraintRisk,
@@ -81,7 +82,7 @@ def decision_line(record: DecisionRecord) -> str:
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
-        values = ", ".join(f"{action.action} {value_text(action.q, 2)}" for action in others)
+        values = ", ".join(_value(action, record.action) for action in others)
         risks = "".join(f"  ({risk_text(constraint)})" for constraint in record.constraints)
         return f"{head}  [{values}]  {effort_text(record)}{risks}"
     outcome = record.outcome
@@ -92,6 +93,13 @@ def decision_line(record: DecisionRecord) -> str:
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
     remark = f"  ({record.remark})" if record.remark else ""
     return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
+
+
+def _value(action: ActionValue, chosen: str) -> str:
+    """`pick +2.71 ± 0.04 (at most +3.00)`; what is proven is told of the chosen action."""
+    error = f" ± {action.stderr:.2f}" if action.stderr else ""
+    proven = proven_text(action, 2) if action.action == chosen else ""
+    return f"{action.action} {value_text(action.q, 2)}{error}" + (f" ({proven})" if proven else "")
 
 
 def effort_text(record: DecisionRecord) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-__all__ = ["observation_text", "value_text"]
+from aos_protocol.messages import ActionValue
+
+__all__ = ["at_least_text", "at_most_text", "observation_text", "proven_text", "value_text"]
 
 
 def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
@@ -23,3 +25,27 @@ def _numbers(value: Any) -> str:
 def value_text(value: float, digits: int) -> str:
     """An action's value; a dash where a policy never chooses the action and knows nothing of it."""
     return f"{value:+.{digits}f}" if math.isfinite(value) else "-"
+
+
+def at_least_text(value: ActionValue, digits: int) -> str:
+    """The proven lower bound, rounded down; nothing where none is known."""
+    return "" if value.at_least is None else _rounded(value.at_least, digits, math.floor)
+
+
+def at_most_text(value: ActionValue, digits: int) -> str:
+    """The proven upper bound, rounded up; nothing where none is known."""
+    return "" if value.at_most is None else _rounded(value.at_most, digits, math.ceil)
+
+
+def proven_text(value: ActionValue, digits: int) -> str:
+    """`at least -1.20, at most +3.40`, what is known of it."""
+    bounds = {"at least": at_least_text(value, digits), "at most": at_most_text(value, digits)}
+    return ", ".join(f"{name} {text}" for name, text in bounds.items() if text)
+
+
+def _rounded(bound: float, digits: int, towards: Callable[[float], int]) -> str:
+    unit = 10.0**-digits
+    # What is only off by rounding in the last bits would show as a unit.
+    nearest = round(bound / unit)
+    is_that = math.isclose(nearest * unit, bound, rel_tol=1e-9, abs_tol=1e-9)
+    return f"{(nearest if is_that else towards(bound / unit)) * unit:+.{digits}f}"

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from rich.table import Table
 from rich.text import Text
 
-from aos_deploy.views.observations import observation_text, value_text
+from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
 from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord, SkillProgress
 
 __all__ = ["belief_bars", "belief_lines", "brief_action", "progress_text", "step_table", "value_table"]
@@ -16,6 +16,8 @@ __all__ = ["belief_bars", "belief_lines", "brief_action", "progress_text", "step
 _BAR_CELLS = 20
 _PROGRESS_CELLS = 10
 _SHOWN_VALUES = 4
+_WIDE = 100
+_BOUNDS_CELLS = 24
 _STEP_COLUMNS_CELLS = 36
 """Of the step table without its action and its observation."""
 _PARAMETER_NAME = re.compile(r"(?<=[(,])( ?)\w+=")
@@ -51,18 +53,26 @@ def step_table(records: Iterable[DecisionRecord], width: int) -> Table:
 
 
 def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
-    """What the search found about the actions, the best first; the last row tells how many are not shown."""
+    """What the actions are worth, the best first; the last row tells how many are not shown.
+
+    What is proven of values has room on a wide screen.
+    """
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     table.add_column("action", no_wrap=True)
     risks = _risks(record)
-    for column in ("value", "±", "visits", *(["risk"] if risks else [])):
+    has_bounds = width >= _WIDE and any(
+        each.at_least is not None or each.at_most is not None for each in record.actions
+    )
+    bounds = ["at least", "at most"] if has_bounds else []
+    for column in ("value", "±", *bounds, "visits", *(["risk"] if risks else [])):
         table.add_column(column, justify="right", no_wrap=True)
     best: list[ActionValue] = sorted(record.actions, key=lambda each: -each.q)
     shown = best if len(best) <= rows else best[: max(rows - 1, 1)]
-    names = _fitting([value.action for value in shown], width - 30)
+    names = _fitting([value.action for value in shown], width - 30 - (_BOUNDS_CELLS if has_bounds else 0))
     for value, name in zip(shown, names, strict=True):
         style = "bold" if value.action == record.action else ""
-        numbers = (value_text(value.q, 2), f"{value.stderr:.2f}", f"{value.n:,}")
+        proven = (at_least_text(value, 2), at_most_text(value, 2)) if has_bounds else ()
+        numbers = (value_text(value.q, 2), f"{value.stderr:.2f}", *proven, f"{value.n:,}")
         risk = [risks[value.action]] if risks else []
         table.add_row(Text(name, style), *numbers, *risk, style=style)
     if len(shown) < len(best):

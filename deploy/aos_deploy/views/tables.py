@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from aos_deploy.terminal import console
-from aos_deploy.views.observations import observation_text, value_text
+from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
 from aos_protocol.messages import ActionValue
 from aos_solver.simulation import SimulatedRun
 
@@ -20,28 +20,39 @@ BAR_WIDTH = 30
 LONGEST_ACTION = 48
 """In letters; what is longer takes several lines."""
 NUMBERS_WIDTH = 38
-"""Of all but the action and the bar, with the lines between."""
+"""Of all but the action, the bounds and the bar, with the lines between."""
+BOUNDS_WIDTH = 24
 
 
 def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
-    """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations."""
+    """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations.
+
+    What is proven of values stands beside them, rounded outwards.
+    """
     tried = [value.q for value in values if (value.n or not simulations) and math.isfinite(value.q)]
     lowest, highest = min(tried, default=0.0), max(tried, default=0.0)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
     out = console()
     # Bars give way first: actions often differ in their last letters only.
     action_width = min(max(len(value.action) for value in values), LONGEST_ACTION)
-    bar_width = max(min(BAR_WIDTH, out.width - action_width - NUMBERS_WIDTH), 1)
+    has_bounds = any(value.at_least is not None or value.at_most is not None for value in values)
+    numbers_width = NUMBERS_WIDTH + (BOUNDS_WIDTH if has_bounds else 0)
+    bar_width = max(min(BAR_WIDTH, out.width - action_width - numbers_width), 1)
     table.add_column("action", overflow="fold", min_width=action_width)
     table.add_column("value", justify="right")
     if simulations:
         table.add_column("stderr", justify="right")
         table.add_column("visits", justify="right")
+    if has_bounds:
+        table.add_column("at least", justify="right")
+        table.add_column("at most", justify="right")
     table.add_column("")
     for value in values:
         row = [value.action, value_text(value.q, 3)]
         if simulations:
             row += [f"{value.stderr:.3f}", f"{value.n:,}"]
+        if has_bounds:
+            row += [at_least_text(value, 3), at_most_text(value, 3)]
         size = max(highest - lowest, 1e-9)
         table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=bar_width, color="cyan"))
     out.print(table)

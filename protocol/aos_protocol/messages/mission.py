@@ -111,12 +111,21 @@ class MissionState(Message, frozen=True):
 
 
 class ActionValue(Message, frozen=True):
-    """What the search found about one grounded action: mean return, visits, standard error of the mean."""
+    """What one grounded action is worth.
+
+    `q` is an estimate of the discounted return of the next decisions, as many as the record's `horizon`. The
+    first of them is the action, and each later one is planned anew. `stderr` is the standard error of the
+    estimate: that of samples, and that of what the search does not know. `at_least` and `at_most` are proven
+    for the belief decided on, and rounded outwards: some way of deciding is known that returns no less, and
+    none returns more. None says that no such number is known. `n` is how often the search tried the action.
+    """
 
     action: str
     q: float
     n: int
     stderr: float
+    at_least: float | None = None
+    at_most: float | None = None
 
 
 class PredictedObservation(Message, frozen=True):

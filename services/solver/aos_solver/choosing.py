@@ -146,7 +146,7 @@ class Chooser:
             reach = await engine.may_reach_goal(without=sorted(set_aside), cautious=is_cautious)
             if not reach.is_reachable:
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(set_aside))
-        ending = ending_after_planning(plan.best, self._limits)
+        ending = ending_after_planning(plan.best, plan.actions, self._limits)
         return Ended(ending, remark_of_ending(ending, belief, self._limits)) if ending else None
 
     async def _repeated(self, engine: Engine, decision: DecisionRecord, index: int) -> Plan:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import StrEnum
 
 import msgspec
@@ -41,8 +42,8 @@ class Ending(StrEnum):
 class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
     """What ends a mission: `goal_probability` holds for the goal and for the other endings alike.
 
-    `stop_below_value` is an expected return: when even the best action promises less, the robot does better
-    by doing nothing, which is worth 0. With None no mission stops for that reason.
+    `stop_below_value` is an expected return: when no action promises so much, the robot does better by doing
+    nothing, which is worth 0. With None no mission stops for that reason.
     """
 
     goal_probability: float = 0.9
@@ -106,21 +107,29 @@ def ending_of_belief(belief: BeliefSummary, steps_taken: int, limits: MissionLim
     return None
 
 
-def ending_after_planning(best: ActionValue, limits: MissionLimits) -> Ending | None:
-    """The ending that the search's best action calls for.
+def ending_after_planning(
+    best: ActionValue, actions: Sequence[ActionValue], limits: MissionLimits
+) -> Ending | None:
+    """The ending that a decision for the `best` of the `actions` calls for.
 
-    The action has the benefit of the doubt: twice its standard error.
+    To give up wrongly loses the whole mission, and to go on wrongly a step. So where it is proven what
+    actions return at most, the mission goes on while one of them may return enough. Where nothing is proven,
+    the estimate has twice its standard error as the benefit of the doubt.
     """
     if limits.stop_below_value is None:
         return None
-    if best.q + 2 * best.stderr < limits.stop_below_value:
-        return Ending.NOTHING_WORTHWHILE
-    return None
+    proven = [action.at_most for action in actions if action.at_most is not None]
+    most = max(proven) if proven else best.q + 2 * best.stderr
+    return Ending.NOTHING_WORTHWHILE if most < limits.stop_below_value else None
 
 
 def is_worth_nothing(best: ActionValue, limits: MissionLimits) -> bool:
-    """Whether the best action promises no more than to do nothing, given twice its standard error."""
-    return best.q + 2 * best.stderr <= limits.worth_of_stopping
+    """Whether nothing is known that returns more than to do nothing.
+
+    Where nothing is proven, the estimate has twice its standard error as the benefit of the doubt.
+    """
+    known = best.q + 2 * best.stderr if best.at_least is None else best.at_least
+    return known <= limits.worth_of_stopping
 
 
 def remark_of(ending: Ending, belief: BeliefSummary, limits: MissionLimits) -> str:

@@ -84,7 +84,7 @@ async def simulate_mission(
             ending = Ending.TOO_RISKY
         if ending is None:
             plan = await search.run(engine, len(actions) + 1, sorted(forbidden))
-            ending = ending_after_planning(plan.best, limits)
+            ending = ending_after_planning(plan.best, plan.actions, limits)
         if ending is not None:
             return SimulatedRun(
                 search.seed,

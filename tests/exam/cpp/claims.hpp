@@ -52,6 +52,7 @@ class Claims {
     double known_running = running;
     Planner automatic;
     Planner point_based;
+    Planner tree;
     start_numbers(start);
     for (int step = 0; step <= options_.steps && !exact.empty(); ++step) {
       where_ = "step " + std::to_string(step);
@@ -59,6 +60,7 @@ class Claims {
       check_exact_values(belief, exact, known_running);
       check_planner(aos::PlannerKind::automatic, automatic, belief, exact, known_running);
       check_planner(aos::PlannerKind::sarsop, point_based, belief, exact, known_running);
+      check_planner(aos::PlannerKind::despot, tree, belief, exact, known_running);
       check_numbers(exact);
       if (step == options_.steps) break;
       const int action = random_.below(TableModel::action_count());
@@ -77,6 +79,7 @@ class Claims {
       exact = reached[chosen].belief;
       automatic.move_to(action, seen);
       point_based.move_to(action, seen);
+      tree.move_to(action, seen);
     }
     return text();
   }
@@ -155,8 +158,7 @@ class Claims {
     aos::Budget budget;
     budget.simulations = options_.simulations;
     planner.search(kind, belief, budget, problem_.horizon, random);
-    const std::string asked = kind == aos::PlannerKind::automatic ? "auto" : "sarsop";
-    who_ = asked + " (" + planner.name() + ")";
+    who_ = std::string{aos::planner_names[static_cast<std::size_t>(kind)]} + " (" + planner.name() + ")";
     planners_[planner.name()] += 1;
     const std::string& why = planner.why();
     static const std::regex worth{"(?:with ([0-9]+) decisions to go|without a horizon) the belief is worth between "
@@ -176,7 +178,30 @@ class Claims {
       for (const aos::ActionEstimate& estimate : planner.estimates(belief)) values.push_back(estimate.q);
       check_action_values("value of action ", values, exact, running, problem_.horizon);
     }
+    check_proven(planner, belief, exact, running);
     who_.clear();
+  }
+
+  // What decisions say is proven of actions, for as many decisions as the horizon has.
+  void check_proven(const Planner& planner, const Belief& belief, const Mass& exact, double running) {
+    const std::vector<aos::ActionEstimate> estimates = planner.estimates(belief);
+    const auto values = planner.values(belief, estimates, planner.choice(estimates));
+    Truth& truth = truth_of(problem_.horizon);
+    for (std::size_t i = 0; i < std::min(values.size(), max_actions); ++i) {
+      const std::size_t action = values.size() <= max_actions ? i : choosing_.bits() % values.size();
+      const auto& [at_least, at_most] = std::pair{values[action].at_least, values[action].at_most};
+      if (!std::isfinite(at_least) && !std::isfinite(at_most)) continue;
+      within_allowance([&](double seconds) {
+        truth.narrow_action(exact, action, problem_.horizon, 1e-6 * largest_, seconds / 4);
+      });
+      const Bracket bracket = truth.action_value(exact, action, problem_.horizon);
+      const double rounding = 1e-8 * (largest_ + std::abs(bracket.upper));
+      ++claims_;
+      if (at_least <= running * bracket.upper + rounding && at_most >= running * bracket.lower - rounding &&
+          at_least <= at_most) continue;
+      fail("proven of action " + std::to_string(action), number(at_least) + " to " + number(at_most),
+           running * bracket.lower, running * bracket.upper);
+    }
   }
 
   // The truth with so many decisions to go; 0 counts none.

@@ -85,15 +85,18 @@ class Regret {
     int action;
     std::string name;
     std::string why;
+    aos::ActionEstimate told{};  // of the action, as decisions tell it; look-ahead tells nothing
   };
   struct Played {
-    double value = 0;
+    double value = 0;         // without most of its luck
+    double discounted = 0;    // what the mission returned
     double by_decisions = 0;  // what its decisions lose, each with a whole horizon to go
     std::string actions;
   };
 
   void play_all(aos::JsonWriter& json, const std::string& name, const Mass& start, double optimum, double range) {
     std::vector<double> regrets;
+    std::vector<double> returns;
     double by_decisions = 0;
     Played worst;
     double highest = -INFINITY;
@@ -109,7 +112,7 @@ class Regret {
       const auto decide = [&](const Mass& exact, const Belief& belief, int step) {
         const double before = processor_seconds();
         const Decision decision = planner ? searched(*planner, name, belief, mission, step)
-                                          : Decision{looked_ahead(exact), "look-ahead", ""};
+                                          : Decision{looked_ahead(exact), "look-ahead", "", {}};
         const double spent = processor_seconds() - before;
         seconds += spent;
         longest = std::max(longest, spent);
@@ -118,23 +121,37 @@ class Regret {
       };
       const Played played = play(start, mission, planner ? &*planner : nullptr, decide, fault);
       regrets.push_back((optimum - played.value) / range);
+      returns.push_back(played.discounted);
       by_decisions += played.by_decisions / range / options_.missions;
       if (regrets.back() > highest) {
         highest = regrets.back();
         worst = played;
       }
     }
-    double mean = 0;
-    double squares = 0;
-    for (const double regret : regrets) mean += regret / static_cast<double>(regrets.size());
-    for (const double regret : regrets) squares += (regret - mean) * (regret - mean);
-    const double count = static_cast<double>(regrets.size());
-    json.begin_object().member("planner", name).member("regret", mean);
-    json.member("by_decisions", by_decisions);
-    json.member("standard_error", count > 1 ? std::sqrt(squares / (count - 1) / count) : 0.0);
+    const Mean regret = mean_of(regrets);
+    const Mean returned = mean_of(returns);
+    json.begin_object().member("planner", name).member("regret", regret.mean);
+    json.member("by_decisions", by_decisions).member("standard_error", regret.error);
+    json.member("returned", returned.mean).member("returned_error", returned.error);
+    json.member("told", first.told.q).member("told_error", first.told.standard_error);
+    json.member("at_least", first.told.at_least).member("at_most", first.told.at_most);
     json.member("used", first.name).member("why", first.why).member("decisions", decisions);
     json.member("seconds", seconds / std::max(decisions, 1)).member("longest", longest);
     json.member("worst_actions", worst.actions).member("fault", fault).end_object();
+  }
+
+  struct Mean {
+    double mean = 0;
+    double error = 0;  // its standard error
+  };
+  static Mean mean_of(const std::vector<double>& numbers) {
+    const auto count = static_cast<double>(numbers.size());
+    Mean result;
+    double squares = 0;
+    for (const double number : numbers) result.mean += number / count;
+    for (const double number : numbers) squares += (number - result.mean) * (number - result.mean);
+    if (count > 1) result.error = std::sqrt(squares / (count - 1) / count);
+    return result;
   }
 
   template <class Decide>
@@ -145,7 +162,7 @@ class Regret {
     Mass exact = start;
     std::uint32_t hidden = drawn(exact, world.uniform());
     double value = truth_.value(exact, steps_).lower;
-    Played played{value, 0, ""};
+    Played played{value, 0, 0, ""};
     double discount = 1;
     for (int step = 0; step < steps_; ++step) {
       const int action = decide(exact, belief, step);
@@ -160,12 +177,13 @@ class Regret {
       }
       played.value += discount * (flat_.expected_reward(exact, a) + flat_.discount() * later - value);
       played.by_decisions += discount * lost_by(exact, a);
-      discount *= flat_.discount();
       // One number for where the world goes, one for what is seen of it, whatever was decided.
       const double outcome_drawn = world.uniform();
       const double seen_drawn = world.uniform();
       const Outcome& outcome = drawn_from(problem_.row(hidden, a), outcome_drawn);
       const int seen = drawn_from(problem_.sensings[outcome.sensing], seen_drawn).observation;
+      played.discounted += discount * outcome.reward;
+      discount *= flat_.discount();
       hidden = outcome.next;
       if (!problem_.is_running(hidden)) break;
       const int observation_branch = flat_.observation_branch(a, seen);
@@ -192,7 +210,10 @@ class Regret {
     budget.seconds = options_.seconds;
     budget.simulations = options_.simulations;
     planner.search(*aos::planner_kind(name), belief, budget, problem_.horizon, random);
-    return {planner.choice(planner.estimates(belief)), planner.name(), planner.why()};
+    const std::vector<aos::ActionEstimate> estimates = planner.estimates(belief);
+    const int action = planner.choice(estimates);
+    const auto told = planner.values(belief, estimates, action)[static_cast<std::size_t>(action)];
+    return {action, planner.name(), planner.why(), told};
   }
 
   // Against the best action, with a whole horizon to go.

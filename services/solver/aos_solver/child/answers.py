@@ -131,11 +131,22 @@ class ExactValue(msgspec.Struct, frozen=True):
 
 
 class ExactValues(msgspec.Struct, frozen=True):
-    """Finite-horizon values of all actions, and how many beliefs and states it took."""
+    """Finite-horizon values of all actions, and how many beliefs and states it took.
+
+    Rounding has moved no value by more than `error`.
+    """
 
     actions: tuple[ExactValue, ...]
     beliefs: int
     states: int
+    error: float = 0.0
+
+    @property
+    def values(self) -> list[ActionValue]:
+        return [
+            ActionValue(each.action, each.q, 0, 0.0, each.q - self.error, each.q + self.error)
+            for each in self.actions
+        ]
 
 
 class ReachedAction(msgspec.Struct, frozen=True):

@@ -92,4 +92,9 @@ std::pair<double, double> OnlineSarsop::bounds() {
   return checked(sarsop.lower() - solver_->below(), sarsop.upper() + solver_->above());
 }
 
+std::pair<double, double> OnlineSarsop::extremes() const {
+  const BeliefGraph& graph = solver_->sarsop.graph();
+  return {std::min(graph.min_value(), 0.0), graph.max_value()};
+}
+
 }  // namespace aos::point_based

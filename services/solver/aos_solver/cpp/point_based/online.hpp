@@ -54,6 +54,9 @@ class OnlineSarsop {
   std::vector<ActionBounds> action_bounds();
   // The bounds of the value of the belief moved to. Throws CrossedBounds.
   std::pair<double, double> bounds();
+  // Some policy never returns less than the first number, which is at most 0, and no state is worth more than the second,
+  // which is at least 0. Without a horizon these hold for all that is to come.
+  std::pair<double, double> extremes() const;
 
  private:
   struct Solver;

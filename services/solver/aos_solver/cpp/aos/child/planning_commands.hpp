@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -90,7 +91,7 @@ class PlanningCommands {
       json.begin_object().member("action", Model::action_name(action));
       json.member("q", values[static_cast<std::size_t>(action)].value).end_object();
     }
-    json.end_array().member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
+    json.end_array().member("error", evaluation.error(horizon)).member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
   }
 
   void reach(JsonWriter& json, const Command& command) const {
@@ -177,6 +178,7 @@ class PlanningCommands {
     const std::uint64_t simulations = search.search(*planner, belief, budget, horizon, random, barred);
     const auto estimates = search.estimates(belief);
     const int best = search.choice(estimates, barred);
+    const auto values = search.values(belief, estimates, best);
     json.begin_object().member("index", numbers[static_cast<std::size_t>(best)]).member("place", best);
     json.member("simulations", simulations).member("horizon", horizon).member("known_simulations", known);
     const std::string_view name = search.name();
@@ -184,9 +186,13 @@ class PlanningCommands {
     json.member("threads", name == "pomcp" ? budget.threads : 1);  // only POMCP has several threads
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
-      const auto& estimate = estimates[static_cast<std::size_t>(action)];
-      json.begin_object().member("action", Model::action_name(action)).member("q", estimate.q);
-      json.member("n", estimate.n).member("stderr", estimate.standard_error).end_object();
+      const auto& value = values[static_cast<std::size_t>(action)];
+      json.begin_object().member("action", Model::action_name(action)).member("q", value.q).member("n", value.n);
+      json.member("stderr", value.standard_error);
+      // An action that cannot be taken returns nothing now, however much it would.
+      const bool is_barred = barred.contains(static_cast<std::size_t>(action));
+      json.member("at_least", value.at_least);
+      json.member("at_most", is_barred ? std::numeric_limits<double>::infinity() : value.at_most).end_object();
     }
     json.end_array().key("predicted");
     beliefs_.write_predicted(json, best, belief);

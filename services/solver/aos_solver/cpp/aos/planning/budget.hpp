@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -23,12 +24,15 @@ struct Budget {
 // Actions that a decision may not take, since they cannot be carried out now. Later decisions may take them.
 using BarredActions = std::set<std::size_t>;
 
-// An action's value, its simulations (0: unknown), the standard error of the value, and the immediate reward.
+// An action's value, its simulations (0: unknown), the standard error of the value, the immediate reward, and between
+// which proven bounds the value is; infinite ones are unknown. What the value is, a planner says; see action_values.hpp.
 struct ActionEstimate {
   double q = 0;
   std::uint32_t n = 0;
   double standard_error = 0;
   double reward = 0;
+  double at_least = -std::numeric_limits<double>::infinity();
+  double at_most = std::numeric_limits<double>::infinity();
 };
 
 // The action with the highest value of those that count. Of actions that are as good as this one, it is the

@@ -25,6 +25,7 @@
 #include "aos/base/room.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/scenarios.hpp"
 
@@ -85,6 +86,21 @@ class Despot {
     }
     return result;
   }
+  // Where the tree ends, and what it has gained over the default policies.
+  TreeReach reach(const Belief<Model>& belief) const {
+    TreeReach result;
+    result.beyond.assign(action_count(), 1);
+    if (nodes_.size() == 0 || nodes_[0].first_action == no_node) return result;
+    result.gain = belief.probability_of(Ending::running) * (nodes_[0].lower - nodes_[0].default_lower);
+    for (std::size_t a = 0; a < deviations_.size(); ++a) {
+      result.beyond[a] = beyond_action(actions_[nodes_[0].first_action + a]);
+    }
+    return result;
+  }
+  // The standard error of what a policy earns in the scenarios.
+  double error(const Belief<Model>& belief) const {
+    return belief.probability_of(Ending::running) * penalty_ / penalty_in_deviations * std::sqrt(static_cast<double>(scenario_count_));
+  }
 
  private:
   static std::size_t scenario_bytes() { return sizeof(Scenario<Model>) + Model::bytes_elsewhere(); }
@@ -116,6 +132,22 @@ class Despot {
   }
   std::uint64_t simulations() const { return all_steps() / static_cast<std::uint64_t>(std::max(horizon_, 1)); }
   std::uint64_t all_steps() const { return steps_ + evaluation_.steps(); }
+
+  // The discounted share of the scenarios that come to where the tree ends, by the best actions.
+  double beyond_action(const ActionNode& action) const {
+    double sum = 0;
+    for (std::uint32_t child = action.first_child; child != no_node; child = nodes_[child].sibling) sum += beyond_node(child);
+    return sum;
+  }
+  double beyond_node(std::uint32_t number) const {
+    const Node& node = nodes_[number];
+    const double end = weight_at(static_cast<int>(node.depth)) * node.scenarios;
+    if (node.first_action == no_node || node.lower <= node.default_lower) return end;
+    for (std::size_t a = 0; a < action_count(); ++a) {
+      if (actions_[node.first_action + a].lower >= node.lower) return beyond_action(actions_[node.first_action + a]);
+    }
+    return end;
+  }
 
   // --- the root --------------------------------------------------------------------------------------
 

@@ -60,6 +60,37 @@ class ExactEvaluation {
     return values;
   }
 
+  // What missions that begin with an action lose of its value, since they plan anew at each step: as many of some missions
+  // as the limits allow.
+  std::vector<double> losses(const Belief<Model>& belief, std::size_t action, int horizon, ExactLimits limits) {
+    constexpr std::size_t missions = 30;
+    std::vector<double> found;
+    Weighted root = space_.weights_of(belief);
+    double total = 0;
+    for (const auto& part : root) total += part.second;
+    if (total <= 0) return found;
+    for (auto& part : root) part.second /= total;
+    limits_ = std::move(limits);
+    if (limits_.outcomes > 0) limits_.outcomes += walked_;
+    limits_.beliefs += evaluated_;
+    Sampler random{1};
+    try {
+      while (found.size() < missions) found.push_back(total * loss_of_mission(root, action, horizon, random));
+    } catch (const NotEnumerable&) {
+      // What was found counts.
+    }
+    return found;
+  }
+
+  // How far rounding may have moved a value with so many decisions to go, at most: that of sums, that of the keys of
+  // beliefs, and ties.
+  double error(int horizon) const {
+    double largest = 0;
+    for (const double reward : rows().rewards) largest = std::max(largest, std::abs(reward));
+    const double once = 1e-12 * (4 + static_cast<double>(space_.size()));
+    return once * largest * horizon * horizon;
+  }
+
   std::uint64_t beliefs() const { return evaluated_; }
   std::uint64_t outcomes() const { return walked_; }
 
@@ -101,25 +132,68 @@ class ExactEvaluation {
   // Posteriors are not normalised here: a weight is the probability of getting to that state.
   ExactValue action_value(const Weighted& belief, std::size_t action, int horizon) {
     ExactValue result;
-    std::map<std::uint32_t, std::map<std::uint32_t, double>> posteriors;
-    for (const auto& [state, weight] : belief) {
-      const std::size_t row = rows().row(state, action);
-      result.value += weight * rows().rewards[row];
-      if (horizon == 1) continue;
-      for (const auto& outcome : rows().outcomes[row]) {
-        for (const auto& likelihood : rows().likelihoods[outcome.sensing]) {
-          posteriors[likelihood.observation][outcome.next] += weight * outcome.probability * likelihood.probability;
-          ++walked_;
-        }
-      }
-    }
-    if (limits_.outcomes > 0 && walked_ > limits_.outcomes) throw NotEnumerable{"there are more outcomes than the budget"};
-    for (const auto& [observation, states] : posteriors) {
+    for (const auto& [state, weight] : belief) result.value += weight * rows().rewards[rows().row(state, action)];
+    if (horizon == 1) return result;
+    for (const auto& [observation, states] : posteriors(belief, action)) {
       const ExactValue later = best_value({states.begin(), states.end()}, horizon - 1);
       result.value += Model::discount * later.value;
       result.growth += later.value + Model::discount * later.growth;
     }
     return result;
+  }
+
+  // The weights of the states after an action, by what is observed.
+  std::map<std::uint32_t, std::map<std::uint32_t, double>> posteriors(const Weighted& belief, std::size_t action) {
+    std::map<std::uint32_t, std::map<std::uint32_t, double>> result;
+    for (const auto& [state, weight] : belief) {
+      for (const auto& outcome : rows().outcomes[rows().row(state, action)]) {
+        for (const auto& likelihood : rows().likelihoods[outcome.sensing]) {
+          result[likelihood.observation][outcome.next] += weight * outcome.probability * likelihood.probability;
+          ++walked_;
+        }
+      }
+    }
+    if (limits_.outcomes > 0 && walked_ > limits_.outcomes) throw NotEnumerable{"there are more outcomes than the budget"};
+    return result;
+  }
+
+  // What a mission loses of an action's value if it plans a whole horizon anew at each later decision. It may put off for
+  // ever what is best at the end of a horizon.
+  double loss_of_mission(Weighted belief, std::size_t action, int horizon, Sampler& random) {
+    double loss = 0;
+    double discount = 1;
+    for (int left = horizon; left > 1; --left) {
+      // Where the mission has ended, nothing is observed.
+      double place = random.uniform();
+      Weighted next;
+      for (const auto& [observation, states] : posteriors(belief, action)) {
+        double total = 0;
+        for (const auto& part : states) total += part.second;
+        if (place < total) {
+          next.assign(states.begin(), states.end());
+          for (auto& part : next) part.second /= total;
+          break;
+        }
+        place -= total;
+      }
+      if (next.empty()) break;
+      belief = std::move(next);
+      discount *= Model::discount;
+      action = best_action(belief, horizon);
+      loss += discount * (best_value(belief, left - 1).value - action_value(belief, action, left - 1).value);
+    }
+    return loss;
+  }
+  std::size_t best_action(const Weighted& belief, int horizon) {
+    std::size_t best = 0;
+    ExactValue highest = action_value(belief, best, horizon);
+    for (std::size_t action = 1; action < space_.actions(); ++action) {
+      const ExactValue value = action_value(belief, action, horizon);
+      if (!value.is_better_than(highest)) continue;
+      highest = value;
+      best = action;
+    }
+    return best;
   }
 
   ExactValue best_value(Weighted belief, int horizon) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +27,12 @@ class ExactSearch {
       --put_off_;
       return false;
     }
-    ExactEvaluation<Model> evaluation{space_, limits_of(budget, horizon)};
     try {
-      values_ = evaluation.action_values(belief, horizon);
-      simulations_ = evaluation.outcomes() / static_cast<std::uint64_t>(horizon) + 1;
+      evaluation_.emplace(space_, limits_of(budget, horizon));
+      values_ = evaluation_->action_values(belief, horizon);
+      error_ = evaluation_->error(horizon);
+      budget_ = budget;
+      horizon_ = horizon;
       failures_ = 0;
       return true;
     } catch (const NotEnumerable&) {
@@ -37,10 +41,32 @@ class ExactSearch {
     }
   }
 
-  std::uint64_t simulations() const { return simulations_; }
+  // Finds what missions lose that begin with an action and plan anew at each step, which takes a quarter of the budget at
+  // most. Returns how many simulations everything counts as.
+  std::uint64_t play(const Belief<Model>& belief, int action) {
+    mean_loss_ = loss_error_ = 0;
+    const auto losses = evaluation_->losses(belief, static_cast<std::size_t>(action), horizon_, limits_of(budget_, horizon_));
+    const auto count = static_cast<double>(losses.size());
+    double squares = 0;
+    for (const double loss : losses) mean_loss_ += loss / count;
+    for (const double loss : losses) squares += (loss - mean_loss_) * (loss - mean_loss_);
+    if (count > 1) loss_error_ = std::sqrt(squares / (count - 1) / count);
+    const std::uint64_t outcomes = evaluation_->outcomes();
+    evaluation_.reset();
+    return outcomes / static_cast<std::uint64_t>(horizon_) + 1;
+  }
+  // What missions return that plan anew at each step. Bounds are those of the best way of deciding.
+  std::vector<ActionEstimate> values() const {
+    std::vector<ActionEstimate> result = estimates();
+    for (ActionEstimate& estimate : result) {
+      estimate.q -= mean_loss_;
+      estimate.standard_error = loss_error_;
+    }
+    return result;
+  }
   std::vector<ActionEstimate> estimates() const {
     std::vector<ActionEstimate> estimates;
-    for (const ExactValue& value : values_) estimates.push_back({value.value, 1, 0});
+    for (const ExactValue& value : values_) estimates.push_back({value.value, 1, 0, 0, value.value - error_, value.value + error_});
     return estimates;
   }
   int best(const BarredActions& barred) const {
@@ -75,7 +101,12 @@ class ExactSearch {
 
   const StateSpace<Model>& space_;
   std::vector<ExactValue> values_;  // by action
-  std::uint64_t simulations_ = 0;
+  double error_ = 0;                // of the values, at most
+  double mean_loss_ = 0;
+  double loss_error_ = 0;
+  std::optional<ExactEvaluation<Model>> evaluation_;  // between `search` and `play`
+  Budget budget_;
+  int horizon_ = 1;
   int put_off_ = 0;  // how many decisions make no try
   int failures_ = 0;
 };

@@ -16,6 +16,7 @@
 #include "aos/belief/belief.hpp"
 #include "aos/planning/state_space.hpp"
 #include "aos/planning/state_values.hpp"
+#include "point_based/rounding.hpp"
 
 namespace aos {
 
@@ -32,13 +33,17 @@ class MdpValues final : public StateValues<Model> {
   // Prepares values for up to `horizon` decisions. Returns whether the model is small enough. A belief whose
   // states are known takes little time.
   bool prepare(const Belief<Model>& belief, int horizon) {
-    if (Model::action_count() == 0 || !space_.reach(belief)) return false;
+    is_prepared_ = Model::action_count() > 0 && space_.reach(belief);
+    if (!is_prepared_) return false;
     if (values_of_ == space_.numbering() && horizon == horizon_) return true;
     values_of_ = space_.numbering();
     horizon_ = horizon;
     iterate();
     return true;
   }
+
+  // Whether the last `prepare` was for the states that are listed now, and for this horizon.
+  bool knows(int horizon) const { return values_of_ == space_.numbering() && horizon == horizon_ && is_prepared_; }
 
   std::size_t states() const { return space_.size(); }
 
@@ -80,6 +85,18 @@ class MdpValues final : public StateValues<Model> {
     return is_last ? action_values_[row] : value_of(row, layer(horizon - 1));
   }
 
+  // The most that each action may return from listed states with these weights, with the whole horizon to go: proven,
+  // since no robot sees more than the state.
+  std::vector<double> at_most(const std::vector<std::pair<std::uint32_t, double>>& weights) const {
+    std::vector<double> most(actions());
+    const std::vector<double>& later = layer(horizon_ - 1);
+    for (std::size_t action = 0; action < actions(); ++action) {
+      for (const auto& [number, weight] : weights) most[action] += weight * value_of(rows().row(number, action), later);
+      most[action] += error_;
+    }
+    return most;
+  }
+
   // Adds the value of each action with many decisions to go, times a weight.
   void add_action_values(std::uint32_t number, std::vector<double>& sums, double weight = 1) const {
     if (number == no_state) return;
@@ -95,13 +112,34 @@ class MdpValues final : public StateValues<Model> {
     layers_.assign(1, std::vector<double>(space_.size()));
     action_values_.assign(space_.size() * actions(), 0);
     const bool has_room = space_.size() * (static_cast<std::size_t>(horizon_) + 1) <= max_layered_values;
-    for (int decisions = 1; decisions <= horizon_; ++decisions) {
+    double change = 0;
+    int decisions = 0;
+    while (decisions < horizon_) {
       std::vector<double> values(space_.size());
-      const double change = one_more_decision(layers_.back(), values);
+      change = one_more_decision(layers_.back(), values);
       if (!has_room) layers_.clear();
       layers_.push_back(std::move(values));
+      ++decisions;
       if (change <= settled_share * std::abs(highest_)) break;
     }
+    error_ = rounding() + (has_room && decisions >= horizon_ - 1 ? 0 : change * changes_beyond(decisions));
+  }
+
+  // How often the last change may come again, discounted, until all decisions but one are counted. A layer that stands
+  // for the one before it is off by one change.
+  double changes_beyond(int decisions) const {
+    double sum = 0;
+    double discount = 1;
+    for (int i = decisions + 1; i < horizon_; ++i) sum += discount *= Model::discount;
+    return std::max(sum, 1.0);
+  }
+  // How far rounding may move the mean value of an action, at most.
+  double rounding() const {
+    double largest = 0;
+    for (const double reward : rows().rewards) largest = std::max(largest, std::abs(reward));
+    const double decisions = horizon_;
+    const double once = point_based::rounding_of(point_based::longest_row(rows().outcomes) + space_.size());
+    return 2 * once * decisions * decisions * largest;
   }
 
   double value_of(std::size_t row, const std::vector<double>& later) const {
@@ -134,7 +172,9 @@ class MdpValues final : public StateValues<Model> {
   StateSpace<Model>& space_;
   Numbering values_of_;
   int horizon_ = 0;
+  bool is_prepared_ = false;  // by the last belief
   double highest_ = 0;
+  double error_ = 0;  // of values with the whole horizon to go, at most
   std::vector<std::vector<double>> layers_;
   std::vector<float> action_values_;
 };

@@ -8,12 +8,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
 #include "aos/base/rounded_text.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/action_values.hpp"
 #include "aos/planning/belief_tree.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/despot.hpp"
@@ -48,7 +50,7 @@ class Planner {
     horizon_ = horizon;
     used_ = chosen_kind(kind, belief, budget, horizon);
     switch (used_) {
-      case PlannerKind::exact: return exact_.simulations();
+      case PlannerKind::exact: return exact_.play(belief, exact_.best(barred));
       case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred);
       case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred);
       case PlannerKind::sarsop: {
@@ -68,6 +70,7 @@ class Planner {
   const char* name() const { return planner_names[static_cast<std::size_t>(used_)]; }
   const std::string& why() const { return why_; }
 
+  // What the search has found of the actions, by which `choice` decides.
   std::vector<ActionEstimate> estimates(const Belief<Model>& belief) const {
     switch (used_) {
       case PlannerKind::exact: return exact_.estimates();
@@ -77,7 +80,29 @@ class Planner {
       default: return pomcp_.estimates(belief);
     }
   }
-  // The action to take: the one with the highest value among those with reliable values.
+  // What a decision tells: an estimate of what is returned over the next `horizon` decisions, beginning with each action,
+  // while the mission plans anew at each of them (action_values.hpp). `estimates` are those by which `choice` was made.
+  std::vector<ActionEstimate> values(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
+    switch (used_) {
+      case PlannerKind::exact: return exact_.values();
+      case PlannerKind::sarsop: return point_based_.values(std::move(estimates), choice);
+      case PlannerKind::despot: {
+        bound(belief, estimates);
+        for (ActionEstimate& estimate : estimates) estimate.standard_error = despot_->error(belief);
+        return values_of_tree(std::move(estimates), despot_->reach(belief), choice);
+      }
+      case PlannerKind::belief_tree: {
+        bound(belief, estimates);
+        return values_of_tree(std::move(estimates), belief_tree_.reach(belief), choice);
+      }
+      default: {
+        bound(belief, estimates);
+        const TreeReach reach = pomcp_.reach(estimates, choice, belief);
+        return values_of_tree(std::move(estimates), reach, choice);
+      }
+    }
+  }
+  // The action to take: the one with the highest estimate among those with reliable values.
   int choice(const std::vector<ActionEstimate>& estimates, const BarredActions& barred = {}) const {
     if (used_ == PlannerKind::exact) return exact_.best(barred);
     const auto is_barred = [&](const ActionEstimate& estimate) {
@@ -179,6 +204,13 @@ class Planner {
              std::to_string(point_based_.cells()) + " cells";
     }
     return scope + " the belief is worth between " + rounded_down(lower) + " and " + rounded_up(upper);
+  }
+
+  // Sets the most that each action may return, where the states are listed and have been valued.
+  void bound(const Belief<Model>& belief, std::vector<ActionEstimate>& estimates) const {
+    if (!values_.knows(horizon_)) return;
+    const std::vector<double> most = values_.at_most(space_.weights_of(belief));
+    for (std::size_t a = 0; a < estimates.size(); ++a) estimates[a].at_most = most[a];
   }
 
   Despot<Model>& despot() {

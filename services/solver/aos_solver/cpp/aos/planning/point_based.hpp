@@ -18,6 +18,7 @@
 #include "aos/base/clock.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/number_cells.hpp"
 #include "aos/planning/state_space.hpp"
@@ -86,14 +87,32 @@ class PointBased {
     known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), until(budget, is_over)));
   }
 
-  // The lower bounds of the actions. `n` counts the trials that began with the action, and 1 for opening it.
+  // The lower bounds of the actions, by which the decision is made. `n` counts the trials that began with the action, and 1
+  // for opening it. What is proven holds for the next `horizon` decisions, also where the search has no horizon.
   std::vector<ActionEstimate> estimates() const {
     if (running_ <= 0) return std::vector<ActionEstimate>(static_cast<std::size_t>(Model::action_count()));
+    const auto [least_later, most_later] = later();
     std::vector<ActionEstimate> result;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
-      result.push_back({bounds.lower - error_, bounds.trials + 1, 0});
+      const double lower = bounds.lower - error_;
+      result.push_back({lower, bounds.trials + 1, 0, 0, lower - most_later});
+      if (!tells_by_cells()) result.back().at_most = bounds.upper + error_ - least_later;
     }
     return result;
+  }
+  // Estimates with a value between the bounds. With cells the upper one holds for a robot that observes cells only. Where
+  // the search has no horizon, what comes after the horizon is worth nothing at least, and as much as now at most.
+  std::vector<ActionEstimate> values(std::vector<ActionEstimate> estimates, int choice) const {
+    if (running_ <= 0) return estimates;
+    const auto [worst, best] = search_->bounds();
+    const double left = is_endless_ ? std::pow(Model::discount, horizon_) : 0;
+    std::vector<double> lowers, uppers;
+    for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
+      lowers.push_back(bounds.lower - error_ - left * std::max(best, 0.0));
+      uppers.push_back(bounds.upper + error_ - left * std::min(worst, 0.0));
+    }
+    set_between(estimates, lowers, uppers, choice);
+    return estimates;
   }
 
  private:
@@ -116,6 +135,13 @@ class PointBased {
     }
     search_->move_to(entries);
     return {};
+  }
+  // What may be left of a value without a horizon for what comes after the horizon: at least and at most.
+  std::pair<double, double> later() const {
+    if (!is_endless_) return {0, 0};
+    const double left = std::pow(Model::discount, horizon_) * (1 + 1e-9);
+    const auto [least, most] = search_->extremes();
+    return {left * least, left * most};
   }
   // Whether it takes long to go through all observations of all states once for each decision to go.
   bool is_large(const point_based::FlatModel& model) const {

@@ -15,6 +15,7 @@
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/action_values.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/learned_values.hpp"
 #include "aos/planning/mdp_values.hpp"
@@ -74,6 +75,24 @@ class Pomcp {
     draw_towards(prior_, result, [&](const ActionEstimate& estimate) { return is_well_visited(estimate.n, max_visits); });
     return result;
   }
+  // Where the trees of the last search end, and what they have gained over the values there.
+  TreeReach reach(const std::vector<ActionEstimate>& estimates, int choice, const Belief<Model>& belief) const {
+    TreeReach result;
+    for (int a = 0; a < Model::action_count(); ++a) {
+      double beyond = 0;
+      double n = 0;
+      for (const auto& tree : threads_.trees()) {
+        const double visits = tree->known(a).n;
+        beyond += visits * tree->beyond(a);
+        n += visits;
+      }
+      result.beyond.push_back(n > 0 ? beyond / n : 1);
+    }
+    const double guessed = source_ == ValueSource::none ? rolled_out_ : mdp_value_;
+    const ActionEstimate& chosen = estimates[static_cast<std::size_t>(choice)];
+    if (chosen.n > 0) result.gain = chosen.q - belief.probability_of(Ending::running) * guessed;
+    return result;
+  }
   // Whether values are drawn towards a prior.
   bool has_prior() const { return !prior_.empty(); }
   // Whether rollouts value new histories. No value is then too high because few simulations went on below it.
@@ -102,6 +121,8 @@ class Pomcp {
 
  private:
   enum class ValueSource { none, listed, wide, learned };
+  static constexpr std::uint64_t fewest_rollouts = 10;
+  static constexpr std::uint64_t most_rollouts = 100;
 
   template <class IsOver>
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
@@ -115,6 +136,7 @@ class Pomcp {
     if (belief.probability_of(Ending::running) <= 0) return 0;
     if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
     if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
+    if (source_ == ValueSource::none && first < 0) roll_out(belief, budget, horizon, Sampler{Sampler{random}.bits()});
     for (const auto& tree : threads_.trees()) tree->begin(horizon, prior_, source_ == ValueSource::wide, barred);
     if (source_ == ValueSource::listed && steps_.prepare(space_, belief)) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
@@ -140,6 +162,21 @@ class Pomcp {
     return &estimates_;
   }
 
+  // Finds what rollouts return from the belief's running part. It takes a hundredth of a budget in simulations, and draws
+  // no number of those that the search draws.
+  void roll_out(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
+    const std::uint64_t wanted = budget.simulations > 0 ? budget.simulations / 100 : most_rollouts;
+    double sum = 0;
+    double count = 0;
+    for (std::uint64_t i = 0; i < std::clamp(wanted, fewest_rollouts, most_rollouts); ++i) {
+      State state = belief.sample(random);
+      if (Model::ending(state) != Ending::running) continue;
+      sum += Model::rollout(state, horizon, random);
+      ++count;
+    }
+    rolled_out_ = count > 0 ? sum / count : 0;
+  }
+
   // The mean value of the running part of a belief.
   template <class Worth>
   static double mean_value(const Belief<Model>& belief, Worth&& worth) {
@@ -162,6 +199,7 @@ class Pomcp {
   ValueSource source_ = ValueSource::none;  // of the last search
   std::vector<double> prior_;  // of the last search
   double mdp_value_ = 0;
+  double rolled_out_ = 0;  // what rollouts return from the belief, where they value new histories
 };
 
 }  // namespace aos

@@ -79,6 +79,11 @@ class TreeSearch {
     return {node.q, node.n, variance, record_.mean_reward(static_cast<std::size_t>(action))};
   }
   std::uint32_t known_simulations() const { return tree_.history(0).n; }
+  // The discounted probability that a mission that begins with a root action comes to where the tree ends, if it goes on
+  // by the best actions; 1 before the first visit.
+  double beyond(int action) const {
+    return has_actions() ? beyond_action(tree_.actions(tree_.history(0))[action]) : 1;
+  }
   // Whether `more` simulations could not change the choice.
   bool is_decided(double more) const {
     const HistoryNode& root = tree_.history(0);
@@ -154,6 +159,17 @@ class TreeSearch {
       change = back_up(visits_[i], change, later);
     }
     return later;
+  }
+
+  double beyond_action(const ActionNode& action) const {
+    if (action.n == 0) return 1;
+    double sum = 0;
+    for (std::uint32_t child = action.first_child; child != no_node; child = tree_.history(child).sibling) {
+      const HistoryNode& history = tree_.history(child);
+      const bool has_settled = history.first_action != no_node && history.n >= settled_visits;
+      sum += history.n * (has_settled ? beyond_action(tree_.actions(history)[history.best]) : 1);
+    }
+    return std::min(Model::discount * sum / action.n, 1.0);
   }
 
   // The action with the highest upper confidence bound.

@@ -1,0 +1,55 @@
+// What a decision tells of its actions: estimates of the discounted return of the next `horizon` decisions, beginning with
+// the action, with honest standard errors.
+//
+// A search decides by what it has found so far: a lower bound, or a value that rests on guesses where the search ended.
+// The mission plans anew at each step, and each time it finds more. Two rules turn the one into the other.
+//
+// - Between proven bounds nothing is known: the value is in their middle, and its error is that of an even distribution.
+// - A tree ends in guesses, such as rollouts or the values of seen states. At the root, the search has moved the guess by
+//   its gain. Searches from the tree's leaves may move their guesses as far. The value is moved by half of that, with an
+//   error of the other half. The share of the value that lies beyond the leaves is `beyond`.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "aos/planning/budget.hpp"
+
+namespace aos {
+
+// What a search has gained at the root over the guess of its leaves, and for each action the discounted probability
+// that a mission that follows the tree comes to a leaf, unless it ends before.
+struct TreeReach {
+  double gain = 0;
+  std::vector<double> beyond;
+};
+
+// The values of actions whose estimates come from a tree.
+inline std::vector<ActionEstimate> values_of_tree(std::vector<ActionEstimate> estimates, const TreeReach& reach, int choice) {
+  const double moved = reach.gain * reach.beyond[static_cast<std::size_t>(choice)] / 2;
+  for (std::size_t a = 0; a < estimates.size(); ++a) {
+    ActionEstimate& estimate = estimates[a];
+    if (estimate.n == 0) continue;
+    // All values move alike, so that the order of the decision stays.
+    estimate.q = std::min(estimate.q + moved, estimate.at_most);
+    estimate.standard_error = std::hypot(estimate.standard_error, reach.gain * reach.beyond[a] / 2);
+  }
+  return estimates;
+}
+
+// The values of actions with bounds; `lowers` and `uppers` are between what the values may be, proven or not.
+inline void set_between(std::vector<ActionEstimate>& estimates, const std::vector<double>& lowers,
+                        const std::vector<double>& uppers, int choice) {
+  static const double deviation_of_even = 1 / std::sqrt(12.0);
+  const auto chosen = static_cast<std::size_t>(choice);
+  const double above = (uppers[chosen] - lowers[chosen]) / 2;
+  for (std::size_t a = 0; a < estimates.size(); ++a) {
+    // The decision is by the lower bounds, and no action is told to be worth more than the one that was chosen.
+    estimates[a].q = std::min(lowers[a] + above, uppers[a]);
+    estimates[a].standard_error = (uppers[a] - lowers[a]) * deviation_of_even;
+  }
+}
+
+}  // namespace aos

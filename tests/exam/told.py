@@ -1,0 +1,164 @@
+"""Whether decisions tell what missions return: a value with its error, against the mean of missions."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import Counter, defaultdict
+from statistics import fmean
+from typing import Any
+
+from .problem import Problem
+
+__all__ = ["ALLOWED_SHARE", "Told", "Values"]
+
+ALLOWED_SHARE = 0.05
+"""Of the range from random actions to the optimum, by which a value may be off whatever its error."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Told:
+    """The value of the first decision, what missions returned, and the range that returns may have."""
+
+    problem: str
+    planner: str
+    value: float
+    error: float
+    returned: float
+    returned_error: float
+    range: float
+    at_least: float | None = None
+    at_most: float | None = None
+
+    @property
+    def deviation(self) -> float:
+        """In shares of the range; above 0 where too much was promised."""
+        return (self.value - self.returned) / self.range
+
+    @property
+    def share_of_error(self) -> float:
+        return self.error / self.range
+
+    @property
+    def is_right(self) -> bool:
+        """Within two standard errors, of the value and of the mean together, or a share of the range."""
+        error = math.hypot(self.error, self.returned_error)
+        return abs(self.value - self.returned) <= max(2 * error, ALLOWED_SHARE * self.range)
+
+    def row(self) -> str:
+        """Of a table, for bundles."""
+        proven = f"{_text(self.at_least)} to {_text(self.at_most)}"
+        cells = (
+            self.problem,
+            self.planner,
+            f"{self.value:.4g} +- {self.error:.2g}",
+            proven,
+            f"{self.returned:.4g} +- {self.returned_error:.2g}",
+            f"{self.range:.3g}",
+            "yes" if self.is_right else "no",
+        )
+        return f"| {' | '.join(cells)} |"
+
+    def text(self) -> str:
+        bounds = (
+            f", at least {_text(self.at_least)}, at most {_text(self.at_most)}"
+            if self.at_least is not None or self.at_most is not None
+            else ""
+        )
+        return (
+            f"{self.problem} ({self.planner}): told {self.value:.4g} +- {self.error:.2g}{bounds}; "
+            f"returned {self.returned:.4g} +- {self.returned_error:.2g}; the range is {self.range:.3g}"
+        )
+
+
+def _text(bound: float | None) -> str:
+    return "?" if bound is None else f"{bound:.4g}"
+
+
+@dataclasses.dataclass
+class Values:
+    """Values of first decisions by the planner that was asked for and the family."""
+
+    values: dict[str, dict[str, list[Told]]] = dataclasses.field(
+        default_factory=lambda: defaultdict(lambda: defaultdict(list))
+    )
+    left_out: Counter[str] = dataclasses.field(default_factory=Counter)
+    crashes: list[str] = dataclasses.field(default_factory=list)
+
+    def add(self, problem: Problem, answer: dict[str, Any]) -> bool:
+        """Takes the driver's report of missions; returns whether a value was wrong."""
+        if "optimum" not in answer or any(entry["fault"] for entry in answer.get("planners", ())):
+            self.crashes.append(problem.name)
+            return True
+        if answer["obstacle"]:
+            self.left_out[answer["obstacle"]] += 1
+            return False
+        family = problem.name.partition("/")[0].removesuffix("+")
+        found = [(entry["planner"], told_of(problem.name, entry, answer)) for entry in answer["planners"]]
+        for name, told in found:
+            self.values[name][family].append(told)
+        return not all(told.is_right for _, told in found)
+
+    def told(self, problem: Problem, answer: dict[str, Any]) -> str:
+        """What is wrong about a model, for people."""
+        if "optimum" not in answer:
+            return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
+        found = (told_of(problem.name, entry, answer) for entry in answer["planners"])
+        return "\n".join(told.text() for told in found if not told.is_right)
+
+    def all_of(self, name: str) -> list[Told]:
+        return [told for of_family in self.values[name].values() for told in of_family]
+
+    def share_right(self, name: str) -> float:
+        return fmean(told.is_right for told in self.all_of(name))
+
+    def line(self) -> str:
+        return ", ".join(f"{name} {100 * self.share_right(name):.0f} % right" for name in self.values)
+
+    def table(self) -> str:
+        lines = []
+        for name in self.values:
+            lines += [
+                f"| {name} | models | right | told less returned, % of the range | size of it | error told |",
+                "|---|---:|---:|---:|---:|---:|",
+            ]
+            families = sorted(self.values[name].items())
+            lines += [_row(family, found) for family, found in families]
+            lines += [_row("all", self.all_of(name)), ""]
+        lines += [f"{count} models left out: {why}" for why, count in self.left_out.items()]
+        lines += [f"crashed: {', '.join(self.crashes)}"] if self.crashes else []
+        return "\n".join(lines)
+
+    def is_passed(self) -> bool:
+        return not self.crashes and all(told.is_right for name in self.values for told in self.all_of(name))
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "told": {name: [dataclasses.asdict(told) for told in self.all_of(name)] for name in self.values},
+            "left_out": self.left_out,
+            "crashes": self.crashes,
+        }
+
+
+def told_of(problem: str, entry: dict[str, Any], answer: dict[str, Any]) -> Told:
+    """A planner's part of the driver's report of missions, whose mean is without most of their luck."""
+    width = answer["optimum"] - answer["random"]
+    return Told(
+        problem,
+        entry["used"],
+        entry["told"],
+        entry["told_error"],
+        answer["optimum"] - entry["regret"] * width,
+        entry["standard_error"] * width,
+        width,
+        entry["at_least"],
+        entry["at_most"],
+    )
+
+
+def _row(family: str, found: list[Told]) -> str:
+    right = sum(told.is_right for told in found)
+    deviations = [100 * told.deviation for told in found]
+    size = fmean(abs(deviation) for deviation in deviations)
+    error = fmean(100 * told.share_of_error for told in found)
+    return f"| {family} | {len(found)} | {right} | {fmean(deviations):+.1f} | {size:.1f} | {error:.1f} |"
