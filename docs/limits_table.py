@@ -81,6 +81,10 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "base/enumerator.hpp:path_budget", "", "beliefs and plans are sampled",
         ),
         Row(
+            "memory for the rounds of loops that draw, in one step",
+            "base/loop_chain.hpp:max_key_bytes", "bytes", "beliefs and plans are sampled",
+        ),
+        Row(
             "a model that is not used is kept for",
             "aos_solver.building.build_cache._UNUSED_AFTER_S", "s", "built anew",
         ),

@@ -36,8 +36,7 @@ Walked walked(Code&& code) {
   Walked result;
   Enumerator draws;
   try {
-    result.left_out = draws.for_nearly_each_path([&](Enumerator& path) {
-      code(path);
+    result.left_out = draws.for_nearly_each_path(code, [&](Enumerator& path) {
       result.walked += path.probability();
     });
   } catch (const NotEnumerable&) {

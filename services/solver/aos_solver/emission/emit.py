@@ -122,6 +122,7 @@ def _laid_out(program: Program) -> tuple[str, dict[int, tuple[Origin, ...]]]:
         has_named_arrays=_has_named_arrays(program),
         has_rollout_policy=any(skill.rollout_policy for skill in program.skills),
         draws_enums=any("AOS.SampleDiscrete(-1, " in piece.text for piece in program.pieces),
+        has_drawing_loops=any("aos::DrawingLoop" in piece.text for piece in program.pieces),
         has_corrections=any(skill.is_corrected for skill in program.skills),
         has_costs=any(constraint.cost for constraint in program.constraints),
         looks_ahead=any(constraint.looks_ahead for constraint in program.constraints),

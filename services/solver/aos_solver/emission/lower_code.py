@@ -17,6 +17,7 @@ from aos_protocol.documents import (
     TemporaryVariable,
 )
 from aos_protocol.findings import Findings
+from aos_runtime.cpp_loops import Scope, loops_of
 from aos_runtime.cpp_shared import SharedCode
 from aos_runtime.document_code import snippets_of
 from aos_runtime.snippets import (
@@ -31,7 +32,7 @@ from aos_runtime.snippets import (
 from aos_solver.emission.cpp_library import unrepeatable_names
 from aos_solver.emission.lower_types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
-from aos_solver.emission.rewrite import EnumValues, Rewriting, rewrite
+from aos_solver.emission.rewrite import NO_LOOPS, EnumValues, LoopsOfPiece, Rewriting, rewrite
 
 __all__ = ["Phase", "Pieces", "SectionLowering", "sections_of"]
 
@@ -46,6 +47,9 @@ class Phase(msgspec.Struct, frozen=True):
 
 
 _CONTAINER = re.compile(r"(?:const\s+)?(?:std\s*::\s*)?(?:vector|array)\s*<.*>\s*&?$", re.DOTALL)
+
+_LoopsByCode = Mapping[int, LoopsOfPiece]
+"""By the identity of the snippet, since two snippets of a section may be equal."""
 
 BELIEF = Phase("the initial belief", changes=frozenset({"state"}))
 EXTRINSIC = Phase("extrinsic changes", "state_", frozenset({"state_"}))
@@ -79,12 +83,18 @@ class Pieces:
         """`told_apart`: draws of a kind, by where their calls start, each with the kind's word."""
         self.made: list[Piece] = []
         self.identifiers: set[str] = set()
+        self._loops = 0
         self._findings = findings
         self._told_apart = told_apart
 
-    def code(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
+    def code(self, snippet: Snippet, rewriting: Rewriting, of_loops: LoopsOfPiece = NO_LOOPS) -> Piece:
         """Statements."""
-        return self._make(snippet, read_cpp(snippet.code), rewriting)
+        return self._make(snippet, read_cpp(snippet.code), rewriting, self._numbered(of_loops))
+
+    def _numbered(self, of_loops: LoopsOfPiece) -> LoopsOfPiece:
+        first = self._loops + 1
+        self._loops += len(of_loops.loops)
+        return msgspec.structs.replace(of_loops, first=first)
 
     def expression(self, snippet: Snippet, rewriting: Rewriting) -> Piece:
         """One expression."""
@@ -97,16 +107,22 @@ class Pieces:
         if not any(each.is_late == late for each in (*shared.names, *shared.functions)):
             return None
         cpp = read_cpp_declarations(shared.without(late=not late))
-        text, edits = rewrite(cpp, rewriting, {}, shared.functions if late else ())
+        functions = shared.functions if late else ()
+        read = loops_of(cpp, _drawing(shared.drawing), are_declarations=True)
+        of_loops = self._numbered(LoopsOfPiece(read.loops, read.unset if read.loops else ()))
+        text, edits = rewrite(cpp, rewriting, {}, functions, of_loops)
         text = "\n".join(line if line.strip() else "" for line in text.split("\n"))
         piece = Piece(len(self.made) + 1, snippet, text, edits, is_declarations=True)
         self.made.append(piece)
         return piece
 
-    def _make(self, snippet: Snippet, cpp: Cpp, rewriting: Rewriting) -> Piece:
+    def _make(
+        self, snippet: Snippet, cpp: Cpp, rewriting: Rewriting, of_loops: LoopsOfPiece = NO_LOOPS
+    ) -> Piece:
         self.check(snippet, cpp)
         is_safe = all(fault.kind is FaultKind.SYNTAX for fault in cpp.faults)
-        text, edits = rewrite(cpp, rewriting, self._told_apart.get(snippet, {})) if is_safe else ("", ())
+        told_apart = self._told_apart.get(snippet, {})
+        text, edits = rewrite(cpp, rewriting, told_apart, of_loops=of_loops) if is_safe else ("", ())
         piece = Piece(len(self.made) + 1, snippet, text, edits)
         self.made.append(piece)
         return piece
@@ -174,23 +190,28 @@ class SectionLowering:
         enums = {**self.outside.enums, **_local_enums(cpp for _, cpp in read)}
         containers = self._containers | _local_containers(cpp for _, cpp in read)
         rewriting = msgspec.structs.replace(self.outside, enums=enums, containers=containers)
-        statements = [part for a in assignments for part in self._assignment(phase, a, rewriting)]
         names = frozenset(mention.path[0] for _, cpp in read for mention in cpp.mentions)
+        scope = _drawing(self.outside.drawing).with_variables(phase.changes | (names & _RESULTS))
+        of_loops = _loops_of(assignments, scope)
+        statements = [part for a in assignments for part in self._assignment(phase, a, rewriting, of_loops)]
         return Section(tuple(statements), names | _looped_copies(phase, assignments))
 
-    def _assignment(self, phase: Phase, assignment: Assignment, rewriting: Rewriting) -> Iterator[Statement]:
+    def _assignment(
+        self, phase: Phase, assignment: Assignment, rewriting: Rewriting, of_loops: _LoopsByCode
+    ) -> Iterator[Statement]:
         if assignment.temporary is not None:
             yield self._temporary(assignment.temporary)
         if assignment.over_previous:
             copy = phase.previous_copy
-            yield self._loop(assignment.over_previous, copy, copy in phase.changes, rewriting)
+            is_reference = copy in phase.changes
+            yield self._loop(assignment.over_previous, copy, is_reference, rewriting, of_loops)
         if assignment.over_next:
             if phase.next_copy:
-                yield self._loop(assignment.over_next, phase.next_copy, True, rewriting)
+                yield self._loop(assignment.over_next, phase.next_copy, True, rewriting, of_loops)
             else:
                 self._no_next_state(phase, assignment.over_next[0].span)
         if assignment.code is not None and not read_cpp(assignment.code.code).is_empty:
-            yield self._pieces.code(assignment.code, rewriting)
+            yield self._pieces.code(assignment.code, rewriting, of_loops.get(id(assignment.code), NO_LOOPS))
 
     def _temporary(self, variable: TemporaryVariable) -> Statement:
         if variable.enum_values:
@@ -198,20 +219,56 @@ class SectionLowering:
         return DeclaredVariable(variable.name, self._types.plain(variable.type, variable.span))
 
     def _loop(
-        self, loops: tuple[Iteration, ...], copy: str, is_reference: bool, rewriting: Rewriting
+        self,
+        loops: tuple[Iteration, ...],
+        copy: str,
+        is_reference: bool,
+        rewriting: Rewriting,
+        of_loops: _LoopsByCode,
     ) -> Loop:
         first, rest = loops[0], loops[1:]
         condition = body = None
         if first.condition is not None and not read_cpp_expression(first.condition.code).is_empty:
             condition = self._pieces.expression(first.condition, rewriting)
         if first.body is not None and not read_cpp(first.body.code).is_empty:
-            body = self._pieces.code(first.body, rewriting)
-        inner = self._loop(rest, copy, is_reference, rewriting) if rest else None
+            body = self._pieces.code(first.body, rewriting, of_loops.get(id(first.body), NO_LOOPS))
+        inner = self._loop(rest, copy, is_reference, rewriting, of_loops) if rest else None
         return Loop(first.type, first.item, copy, is_reference, condition, body, inner)
 
     def _no_next_state(self, phase: Phase, span: Span) -> None:
         hint = "Use IteratePreviousStateVars"
         self._findings.error("AOS123", f"there is no next state in {phase.title} to iterate over", span, hint)
+
+
+_RESULTS = frozenset({
+    "__heuristicValue", "__isFailureState", "__isGoalState", "__meetPrecondition", "__moduleExecutionTime",
+    "__moduleResponse", "__moduleResponseStr", "__possibleParameters", "__reward", "__stopEvaluatingState",
+})  # fmt: skip
+
+
+def _drawing(functions: frozenset[str]) -> Scope:
+    """Code that may call functions that draw."""
+    return Scope(drawing=Scope().drawing | functions)
+
+
+def _loops_of(assignments: tuple[Assignment, ...], scope: Scope) -> _LoopsByCode:
+    """The loops in which a section draws. One snippet sees the variables of those before it."""
+    found: dict[int, LoopsOfPiece] = {}
+    for assignment in assignments:
+        if assignment.temporary is not None:
+            scope = scope.with_variables([assignment.temporary.name])
+        for loops in (assignment.over_previous, assignment.over_next):
+            inside = scope
+            for each in loops:
+                inside = inside.with_variables([each.item])
+                if each.body is not None:
+                    read = loops_of(read_cpp(each.body.code), inside)
+                    found[id(each.body)] = LoopsOfPiece(read.loops, read.unset)
+        if assignment.code is not None:
+            read = loops_of(read_cpp(assignment.code.code), scope)
+            found[id(assignment.code)] = LoopsOfPiece(read.loops, read.unset)
+            scope = read.after
+    return found if any(piece.loops for piece in found.values()) else {}
 
 
 def _looped_copies(phase: Phase, assignments: tuple[Assignment, ...]) -> frozenset[str]:

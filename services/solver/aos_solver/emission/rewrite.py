@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
 from aos_runtime.cpp_flow import STATES
+from aos_runtime.cpp_loops import DrawingLoop
 from aos_runtime.cpp_shared import SharedFunction
 from aos_runtime.observed import reports_in
 from aos_runtime.snippets import Call, Cpp, Extent
@@ -15,7 +16,7 @@ from aos_solver.emission.program import Edit
 from aos_solver.emission.rewrite_containers import container_edits
 from aos_solver.emission.rewrite_objects import object_edits
 
-__all__ = ["EnumValues", "Rewriting", "rewrite"]
+__all__ = ["NO_LOOPS", "EnumValues", "LoopsOfPiece", "Rewriting", "rewrite"]
 
 _SCOPE = re.compile(r"AOS(?:Utils)?")
 
@@ -38,11 +39,26 @@ class Rewriting(msgspec.Struct, frozen=True):
     drawing: frozenset[str] = frozenset()
 
 
+class LoopsOfPiece(msgspec.Struct, frozen=True):
+    """The drawing loops of a piece; `unset` is where its variables without a first value are declared.
+
+    The loops have the numbers from `first` on, which no other loop of the model has.
+    """
+
+    loops: tuple[DrawingLoop, ...] = ()
+    unset: tuple[int, ...] = ()
+    first: int = 0
+
+
+NO_LOOPS = LoopsOfPiece()
+
+
 def rewrite(
     cpp: Cpp,
     rewriting: Rewriting,
     told_apart: Mapping[int, str],
     functions: Iterable[SharedFunction] = (),
+    of_loops: LoopsOfPiece = NO_LOOPS,
 ) -> tuple[str, tuple[Edit, ...]]:
     """The text to emit, and what was edited. `told_apart`: the starts of draws of a kind, with its word.
 
@@ -56,10 +72,12 @@ def rewrite(
     - `state->x` becomes `state.x`
     - a call of a shared function that draws, `slips(0.1)`, becomes `slips(AOS, 0.1)`, and its definition, one
       of `functions`, `bool slips(auto& AOS, double p) {`
+    - a loop that draws tells of its rounds: see `drawing_loop.hpp`; variables that it may read are set first
     - objects and containers: see `rewrite_objects` and `rewrite_containers`
     """
     reported = [report.draw for report in reports_in(cpp)]
-    edits: list[tuple[Extent | int, str]] = list(_of_mentions(cpp, rewriting, reported))
+    edits: list[tuple[Extent | int, str]] = list(_before_loops(of_loops))
+    edits += _of_mentions(cpp, rewriting, reported)
     for draw in reported:
         edits += _of_reported(draw)
     unnamed = [*object_edits(cpp, rewriting.object_types), *container_edits(cpp, rewriting.values)]
@@ -76,8 +94,10 @@ def rewrite(
             if kind := told_apart.get(call.function.start):
                 scope = _SCOPE.match(cpp.code, call.function.start)
                 edits += [(scope.end(), f".{kind}()")] if scope is not None else []
+    edits += [(loop.head_end, ")" if loop.head_end > loop.head else "true)") for loop in of_loops.loops]
     # Last, since a bracket that goes to the same place has to come before it.
     edits += [(offset, ";") for offset in cpp.missing_semicolons]
+    edits += _after_loops(of_loops.loops)
     unique = list(dict.fromkeys(edits))
     return cpp.replace(unique), tuple(sorted(_placed(unique, cpp.code), key=lambda e: (e.line, e.column)))
 
@@ -89,6 +109,21 @@ def _of_definitions(cpp: Cpp, functions: Iterable[SharedFunction]) -> Iterator[t
         body = cpp.code[function.body : function.extent.end]
         if function.draws and re.search(r"\bAOSUtils\b", body):
             yield function.body, " auto& AOSUtils = AOS; "
+
+
+def _before_loops(of_loops: LoopsOfPiece) -> Iterator[tuple[Extent | int, str]]:
+    for offset in of_loops.unset:
+        yield offset, "{}"
+    for index, loop in enumerate(of_loops.loops, 1):
+        yield loop.start, f"{{ aos::DrawingLoop aos_loop_{index}{{AOS, {of_loops.first + index - 1}}}; "
+        told = ", ".join(f"std::tie({', '.join(names)})" for names in (loop.mentioned, loop.others))
+        head = "head_in_function" if loop.is_in_function else "head"
+        yield loop.head, f"aos_loop_{index}.{head}({told}), ("
+
+
+def _after_loops(loops: Sequence[DrawingLoop]) -> Iterator[tuple[Extent | int, str]]:
+    for end in dict.fromkeys(loop.end for loop in loops):
+        yield end, " }" * sum(loop.end == end for loop in loops)
 
 
 def _of_mentions(

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <utility>
 
+#include "aos/base/loop_heads.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -39,6 +41,9 @@ class DirectedDraws : public Draws<DirectedDraws> {
   AveragedDraws<DirectedDraws> averaged() { return AveragedDraws<DirectedDraws>{*this}; }
   static bool gives_means() { return true; }
 
+  // Who is told of the loops in which model code draws; null if nobody is.
+  virtual LoopHeads* loop_heads() { return nullptr; }
+
   void report(std::uint32_t key, const Distribution& distribution) {
     if (sink_ == nullptr) return ignore_number();
     sink_->take(key, distribution);
@@ -56,6 +61,8 @@ class DirectedDraws : public Draws<DirectedDraws> {
   }
   // The weight that the sink gives the step since `begin_numbers`; 1 without a sink.
   double weight_of_numbers() const { return sink_ == nullptr ? 1 : sink_->weight(); }
+  // Writes what the sink has taken since `begin_numbers`. Returns false if it does not tell.
+  bool write_numbers(std::string& key) const { return sink_ == nullptr || sink_->write_taken(key); }
   // Whether the draw that is made now shapes only what is observed. Asked once of each draw.
   bool takes_sensing() { return std::exchange(is_sensing_, false); }
 

@@ -9,6 +9,7 @@
 
 #include "aos/base/directed.hpp"
 #include "aos/base/enumerator.hpp"
+#include "aos/base/loop_elimination.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -22,6 +23,11 @@ inline int next_outcome(const double* weights, int count, int taken, int first) 
     if (i == first) return -1;
     if (weights[i] > 0) return i;
   }
+}
+
+template <class T>
+void append_bytes(std::string& text, const T& value) {
+  text.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 inline bool skips_sensing(const Sampler&) { return false; }
@@ -41,6 +47,7 @@ inline constexpr AnySource::Functions functions_of{
         [](void* source, std::uint32_t key, const Distribution& distribution) {
           static_cast<Source*>(source)->report(key, distribution);
         },
+    .loop_heads = [](void* source) -> LoopHeads* { return static_cast<Source*>(source)->loop_heads(); },
 };
 
 }  // namespace detail
@@ -49,7 +56,8 @@ AnySource::AnySource(Sampler& sampler) : source_(&sampler), functions_(detail::f
 AnySource::AnySource(DirectedDraws& draws) : source_(&draws), functions_(detail::functions_of<DirectedDraws>) {}
 
 int Enumerator::choose(const double* weights, int count, double total) {
-  if (depth_ == choices_.size()) {
+  if (depth_ >= choices_.size()) {
+    if (given_left_ > 0) return choose_given();
     if (depth_ == max_draws_of_path) throw NotEnumerable{"a step draws too often"};
     const bool by_chance = is_best_first_ || depth_ >= max_draws_depth_first;
     const int first = by_chance ? chance_.choose(weights, count, total) : detail::next_outcome(weights, count, -1, count);
@@ -74,6 +82,84 @@ void Enumerator::start() {
   choices_.clear();
   chance_ = Sampler{1};
   is_best_first_ = false;
+}
+
+void Enumerator::start_from(LoopChain::Number head) {
+  from_ = head;
+  if (head == LoopChain::start) {
+    given_.clear();
+    stops_.clear();
+  } else {
+    chain_.write_way(head, given_, stops_);
+  }
+}
+
+void Enumerator::give_up() const {
+  if (from_ != LoopChain::start) throw TooManyHeads{};
+  throw NotEnumerable{"there are more combinations of draws than can be walked"};
+}
+
+void Enumerator::begin_run_with_loops() {
+  given_left_ = given_.size();
+  if (given_left_ > 0) depth_ = on_the_way;
+  at_ = LoopChain::start;
+  next_stop_ = draws_at_ = 0;
+  events_ = events_at_ = 0;
+  has_arrived_ = false;
+}
+
+int Enumerator::choose_given() {
+  const int taken = given_[given_.size() - given_left_];
+  if (--given_left_ == 0) depth_ = 0;
+  return taken;
+}
+
+std::uint32_t Enumerator::enter() {
+  if (!is_cutting_) return 0;
+  if (!has_loops_) {
+    has_loops_ = true;
+    begin_run_with_loops();
+    chain_.clear();
+    chain_.begin(LoopChain::start);
+  }
+  ++events_;
+  way_.clear();
+  detail::append_bytes(way_, at_);
+  detail::append_bytes(way_, events_ - events_at_);
+  const std::size_t given = given_.size() - given_left_;
+  for (std::size_t draw = draws_at_; draw < given; ++draw) detail::append_bytes(way_, given_[draw]);
+  for (std::size_t draw = 0; given_left_ == 0 && draw < depth_; ++draw) detail::append_bytes(way_, choices_[draw].taken);
+  return chain_.entry(way_);
+}
+
+std::string* Enumerator::arrive(std::uint32_t loop, std::uint32_t entry) {
+  ++events_;
+  if (next_stop_ < stops_.size()) {
+    const LoopChain::Stop& stop = stops_[next_stop_];
+    if (stop.events == events_) {
+      ++next_stop_;
+      at_ = stop.head;
+      draws_at_ = stop.draws;
+      events_at_ = events_;
+    }
+    return nullptr;
+  }
+  key_.clear();
+  detail::append_bytes(key_, loop);
+  detail::append_bytes(key_, entry);
+  if (!write_numbers(key_)) return nullptr;
+  has_arrived_ = true;
+  return is_cutting_ ? &key_ : nullptr;
+}
+
+void Enumerator::cut() {
+  if (is_listing_) {
+    std::vector<int> choices;
+    for (std::size_t draw = 0; draw < depth_; ++draw) choices.push_back(choices_[draw].taken);
+    const LoopChain::Number head = chain_.find_or_add(key_, from_, std::move(choices), events_);
+    chain_.add_edge(head, probability_);
+  }
+  throw CutPath{};
 }
 
 bool Enumerator::advance() {

@@ -4,9 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "aos/base/directed.hpp"
+#include "aos/base/loop_chain.hpp"
+#include "aos/base/loop_heads.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -28,37 +31,48 @@ inline constexpr double max_left_out = 1e-6;            // the same once the bud
 // Replays model code, one path of draws in each run. A run repeats the choices that are known of its path,
 // and makes the later ones. Outcomes of probability zero are never walked.
 //
-// Paths are walked depth first, and a new draw takes its first outcome first. A loop that draws until a
-// condition holds has paths without end, and a depth-first walk may follow the endless one. So a path that
-// gets long makes its new draws at random; their seed is fixed, and a walk always comes out the same. The
-// rest is then walked best first: the most probable paths come first, until the others are negligible.
-class Enumerator final : public DirectedDraws {
+// A loop that draws until a condition holds has paths without end. Model code tells of its loops. A path is cut at the
+// head of a loop, and what follows is walked once from each head that differs from the others. A path that has come to
+// an end after a head stands for all that lead there: its probability is that of getting there times the number of
+// times that a run comes to the head (see loop_chain.hpp), which is known once all heads are walked. So ends after
+// heads are walked again then.
+//
+// A loop whose heads all differ, such as one that counts its rounds, has heads without end. The likeliest are walked
+// first, until the others are negligible. If there are too many heads, as in a loop that fills an array, paths are not
+// cut. They are then walked depth first, and a new draw takes its first outcome first. A path that gets long makes its
+// new draws at random; their seed is fixed, and a walk always comes out the same. The rest is then walked best first,
+// too. So are the paths of a loop that the code does not tell of.
+class Enumerator final : public DirectedDraws, private LoopHeads {
  public:
   // The probability of the path, times the weight that the sink gives the numbers that it reports.
-  double probability() const { return probability_ * weight_of_numbers(); }
+  double probability() const { return visits_ * probability_ * weight_of_numbers(); }
 
   // How many choices are known of the path. Before a run, these are the choices shared with the path before.
-  std::size_t draws() const { return choices_.size(); }
+  std::size_t draws() const { return given_.size() + choices_.size(); }
 
   int choose(const double* weights, int count, double total) override;
   double uniform() override;
+  LoopHeads* loop_heads() override { return this; }
 
-  // Calls `run(enumerator)` for each path; `probability()` is the path's afterwards. Throws NotEnumerable.
-  template <class Run>
-  void for_each_path(Run&& run, int max_paths = path_budget) {
-    walk(run, max_paths, std::numeric_limits<std::size_t>::max());
+  // Calls `run(enumerator)` for each path, and `visit(enumerator)` once its end has been reached; `probability()` is
+  // the path's then. `run` may run model code and keep its result. Some runs are cut short or are not visited. Throws
+  // NotEnumerable.
+  template <class Run, class Visit>
+  void for_each_path(Run&& run, Visit&& visit, int max_paths = path_budget) {
+    walk(run, visit, max_paths, std::numeric_limits<std::size_t>::max());
   }
 
-  // Does the same for models with loops that chance ends. Returns the probability of the paths that were not
-  // walked, which is at most `max_left_out`. Throws NotEnumerable.
-  template <class Run>
-  double for_nearly_each_path(Run&& run, int max_paths = path_budget) {
-    return walk(run, max_paths, max_draws_depth_first);
+  // Does the same, but leaves out negligible paths of loops without end. Returns the probability of the paths that were
+  // not walked, which is at most `max_left_out`. Throws NotEnumerable.
+  template <class Run, class Visit>
+  double for_nearly_each_path(Run&& run, Visit&& visit, int max_paths = path_budget) {
+    return walk(run, visit, max_paths, max_draws_depth_first);
   }
 
  private:
   static constexpr int none = -1;
   static constexpr std::uint32_t no_node = 0xffffffffu;
+  static constexpr std::size_t on_the_way = std::numeric_limits<std::size_t>::max();  // a depth before `from_`
 
   // A choice of a path. The outcomes of its draw are walked in their order, from `first` on and around to it.
   struct Choice {
@@ -84,37 +98,111 @@ class Enumerator final : public DirectedDraws {
   // A number cannot be enumerated, so a sink has to take it.
   void ignore_number() override { throw NotEnumerable{numbers_are_observed}; }
 
+  std::uint32_t enter() override;
+  std::string* arrive(std::uint32_t loop, std::uint32_t entry) override;
+  [[noreturn]] void cut() override;
+
   void start();
+  // Walks from this head of a loop on.
+  void start_from(LoopChain::Number head);
   // Goes to the next path, depth first. Returns false after the last one.
   bool advance();
 
-  // Returns the probability of the paths that were not walked.
+  template <class Run, class Visit>
+  double walk(Run& run, Visit& visit, int max_paths, std::size_t max_depth_first) {
+    has_loops_ = false;
+    is_listing_ = is_cutting_ = true;
+    visits_ = 1;
+    paths_left_ = max_paths;
+    const auto visit_end = [&] { visit(*this); };
+    start_from(LoopChain::start);
+    double left_out = walk_on(run, visit_end, max_depth_first);
+    if (!has_loops_) return left_out;
+    chain_.end(LoopChain::start, 0, 0);
+    try {
+      left_out += list_heads(run, max_depth_first);
+    } catch (const TooManyHeads&) {
+      return walk_without_cuts(run, visit, max_paths, max_depth_first);
+    }
+    is_listing_ = false;
+    paths_left_ = max_paths;
+    for (LoopChain::Number head = LoopChain::start + 1; head < chain_.size(); ++head) {
+      if (!chain_.has_ends(head)) continue;
+      visits_ = chain_.visits(head);
+      start_from(head);
+      walk_on(run, visit_end, max_depth_first);
+    }
+    return left_out;
+  }
+
+  // Walks the paths that were cut before.
+  template <class Run, class Visit>
+  double walk_without_cuts(Run& run, Visit& visit, int max_paths, std::size_t max_depth_first) {
+    is_cutting_ = false;
+    paths_left_ = max_paths;
+    start_from(LoopChain::start);
+    const auto visit_end = [&] {
+      if (has_arrived_) visit(*this);
+    };
+    return walk_on(run, visit_end, max_depth_first);
+  }
+
+  // Lists what follows each head. Returns the probability of what is not listed.
   template <class Run>
-  double walk(Run& run, int max_paths, std::size_t max_depth_first) {
+  double list_heads(Run& run, std::size_t max_depth_first) {
+    const bool is_nearly = max_depth_first < std::numeric_limits<std::size_t>::max();
+    while (chain_.is_waiting()) {
+      if (is_nearly && chain_.waiting() <= negligible_paths && chain_.settle() <= negligible_paths) break;
+      if (paths_left_ <= 0) {
+        if (!is_nearly || chain_.settle() > max_left_out) throw TooManyHeads{};
+        break;
+      }
+      const LoopChain::Number head = chain_.likeliest();
+      start_from(head);
+      chain_.begin(head);
+      double ends = 0;
+      const double lost = walk_on(run, [&] { ends += probability_; }, max_depth_first);
+      chain_.end(head, ends, lost);
+      if (chain_.is_too_large()) throw TooManyHeads{};
+    }
+    return chain_.settle();
+  }
+
+  // Walks the paths from the head on, up to their ends or other heads. Returns the probability of those not walked.
+  template <class Run, class End>
+  double walk_on(Run& run, End&& at_end, std::size_t max_depth_first) {
     start();
-    int paths = 0;
     do {
-      if (++paths > max_paths) throw NotEnumerable{"there are more combinations of draws than can be walked"};
-      run_once(run);
-      if (depth_ > max_depth_first) return best_first(run, max_paths - paths);
+      if (--paths_left_ < 0) give_up();
+      run_once(run, at_end);
+      if (depth_ > max_depth_first) return best_first(run, at_end);
     } while (advance());
     return 0;
   }
 
-  template <class Run>
-  void run_once(Run& run) {
+  [[noreturn]] void give_up() const;
+  void begin_run_with_loops();
+  int choose_given();
+  template <class Run, class End>
+  void run_once(Run& run, End& at_end) {
     depth_ = 0;
     probability_ = 1;
+    if (has_loops_) begin_run_with_loops();
     begin_numbers();
-    run(*this);
+    try {
+      run(*this);
+    } catch (const CutPath&) {
+      return;
+    }
+    at_end();
   }
 
-  template <class Run>
-  double best_first(Run& run, int max_paths) {
+  template <class Run, class End>
+  double best_first(Run& run, End& at_end) {
     if (!advance()) return 0;
     begin_best_first();
-    for (int paths = 0; paths < max_paths && nodes_.size() < max_frontier; ++paths) {
-      run_once(run);
+    for (; paths_left_ > 0 && nodes_.size() < max_frontier; --paths_left_) {
+      run_once(run, at_end);
       put_off();
       if (begun_.empty() || waiting_ + dropped_ <= negligible_paths) return waiting_ + dropped_;
       take_likeliest();
@@ -127,9 +215,32 @@ class Enumerator final : public DirectedDraws {
   void put_off();
   void take_likeliest();
 
-  std::vector<Choice> choices_;
+  std::vector<Choice> choices_;  // since the head that is walked from
   std::size_t depth_ = 0;
-  double probability_ = 1;
+  double probability_ = 1;  // of these
+  int paths_left_ = 0;
+
+  // The way to that head.
+  std::vector<int> given_;
+  std::size_t given_left_ = 0;
+  std::vector<LoopChain::Stop> stops_;
+  LoopChain::Number from_ = LoopChain::start;
+  double visits_ = 1;
+
+  // The last head that the run has passed.
+  LoopChain::Number at_ = LoopChain::start;
+  std::size_t next_stop_ = 0;
+  std::size_t draws_at_ = 0;
+  std::uint64_t events_ = 0;  // how often the run has entered loops and come to heads
+  std::uint64_t events_at_ = 0;
+
+  LoopChain chain_;
+  bool has_loops_ = false;
+  bool is_listing_ = false;
+  bool is_cutting_ = false;
+  bool has_arrived_ = false;  // at a head where paths are cut
+  std::string way_;
+  std::string key_;
 
   bool is_best_first_ = false;
   Sampler chance_{0};

@@ -124,6 +124,12 @@ class WeighedNumbers final : public NumberSink {
   }
 
   bool weighs() const override { return observed_.size() > 0 && by_value_; }
+  bool write_taken(std::string& key) const override {
+    for (const bool is_taken : is_taken_) key += is_taken ? '1' : '0';
+    key += has_others_ ? '1' : '0';
+    key.append(reinterpret_cast<const char*>(&log_density_), sizeof log_density_);
+    return true;
+  }
 
   double log_scale() const { return log_scale_; }
   bool rescale() {
@@ -155,6 +161,7 @@ class WeighedNumbers final : public NumberSink {
 class IgnoredNumbers final : public NumberSink {
  public:
   void take(NumberKey, const Distribution&) override {}
+  bool write_taken(std::string&) const override { return true; }
   double log_scale() const { return 0; }
   bool rescale() { return false; }
 };

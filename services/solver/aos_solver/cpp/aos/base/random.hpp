@@ -6,9 +6,11 @@
 #include <bit>
 #include <cstdint>
 #include <initializer_list>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "aos/base/loop_heads.hpp"
 #include "aos/base/normal.hpp"
 
 namespace aos {
@@ -30,6 +32,8 @@ class NumberSink {
   // The weight of the step since `begin`, as far as its numbers tell. It is 1 for every step unless `weighs()`.
   virtual double weight() { return 1; }
   virtual bool weighs() const { return false; }
+  // Appends all that decides what later numbers of the step do. Returns false if that is not known.
+  virtual bool write_taken(std::string& /*key*/) const { return false; }
 
  protected:
   ~NumberSink() = default;
@@ -74,6 +78,8 @@ class Draws {
   Source& sensing() { return source(); }
   // The source of draws that enter the reward alone, and linearly. Some sources give the mean instead.
   Source& averaged() { return source(); }
+  // Who is told of the loops in which model code draws; null if nobody is.
+  static constexpr LoopHeads* loop_heads() { return nullptr; }
 
   void SetNull(bool& value) { value = false; }
   void Uninitialize(bool& value) { value = false; }
@@ -232,6 +238,7 @@ class AnySource : public Draws<AnySource> {
     bool (*skips_sensing)(void* source);
     bool gives_means;
     void (*report)(void* source, std::uint32_t key, const Distribution& distribution);
+    LoopHeads* (*loop_heads)(void* source);
   };
 
   explicit AnySource(Sampler& sampler);
@@ -247,6 +254,7 @@ class AnySource : public Draws<AnySource> {
   bool gives_means() const { return functions_.gives_means; }
   AveragedDraws<AnySource> averaged() { return AveragedDraws<AnySource>{*this}; }
   void report(std::uint32_t key, const Distribution& distribution) { functions_.report(source_, key, distribution); }
+  LoopHeads* loop_heads() { return functions_.loop_heads(source_); }
 
  private:
   void* source_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aos/base/directed.hpp"
+#include "aos/base/loop_heads.hpp"
 #include "aos/base/random.hpp"
 
 namespace aos {
@@ -29,15 +30,16 @@ class DrawWatcher {
 
 class Replay final : public DirectedDraws {
  public:
-  // Begins a path. The arguments must outlive it. The path's numbers are appended to `record`, and the
-  // watcher is told of its draws, where these are not null.
+  // Begins a path. The arguments must outlive it. The path's numbers are appended to `record`, the watcher is told
+  // of its draws, and `heads` of its loops, where these are not null.
   void start(const std::vector<double>& given, Sampler& random, std::vector<double>* record = nullptr,
-             DrawWatcher* watcher = nullptr) {
+             DrawWatcher* watcher = nullptr, LoopHeads* heads = nullptr) {
     given_ = given.data();
     count_ = given.size();
     random_ = &random;
     record_ = record;
     watcher_ = watcher;
+    heads_ = heads;
     draws_ = 0;
     begin_numbers();
   }
@@ -52,6 +54,7 @@ class Replay final : public DirectedDraws {
     return place_in(weights, count, next(weights, count, total) * total);
   }
   double uniform() override { return next(nullptr, 0, 1); }
+  LoopHeads* loop_heads() override { return heads_; }
 
  private:
   double next(const double* weights, int count, double total) {
@@ -67,6 +70,7 @@ class Replay final : public DirectedDraws {
   Sampler* random_ = nullptr;
   std::vector<double>* record_ = nullptr;
   DrawWatcher* watcher_ = nullptr;
+  LoopHeads* heads_ = nullptr;
   std::size_t draws_ = 0;
 };
 

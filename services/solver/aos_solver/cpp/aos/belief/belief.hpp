@@ -35,6 +35,7 @@ inline constexpr int max_initial_paths = 1'000'000;
 inline constexpr std::size_t max_enumerated_paths = 4'000'000;  // of one update of an exact belief
 inline constexpr std::size_t max_predicted_paths = 200'000;  // beyond these a prediction is drawn
 inline constexpr double negligible_weight = 1e-12;
+inline constexpr double negligible_error = 1e-6;  // of a belief that counts as exact
 
 // What a belief becomes after an observation that it held impossible.
 enum class ImpossiblePolicy { hold, widen, reset };
@@ -48,7 +49,8 @@ class Belief {
   using Particle = aos::Particle<Model>;
 
   const std::vector<Particle>& particles() const { return particles_; }
-  bool is_exact() const { return error_bound_ == 0; }
+  // Whether it is the exact belief, but for differences that nobody would notice.
+  bool is_exact() const { return error_bound_ <= negligible_error; }
   // Whether the states were drawn at random.
   bool is_drawn() const { return source_ == Source::drawing; }
   // How the particles of a drawn belief came to be, if that is known.
@@ -73,12 +75,12 @@ class Belief {
       Enumerator draws;
       double gone = 0;
       const std::size_t limit = max_states(Source::enumeration);
+      const auto run = [&](Enumerator& path) { Model::initial(state, path); };
       const auto add = [&](Enumerator& path) {
-        Model::initial(state, path);
         gathering.add(state, path.probability());
         if (gathering.size() > 2 * limit) gone += gathering.reduce(limit, random);
       };
-      gone += draws.for_nearly_each_path(add, max_initial_paths);
+      gone += draws.for_nearly_each_path(run, add, max_initial_paths);
       gone += gathering.reduce(limit, random);
       return Belief{gathering, gone, Source::enumeration};
     } catch (const NotEnumerable&) {
@@ -222,14 +224,25 @@ class Belief {
   }
 
   // An estimate of the combinations of draws in the initial belief: the median of estimates from single
-  // paths, each of which is right on average (Knuth, 1975). Infinite if a draw is continuous.
+  // paths, each of which is right on average (Knuth, 1975). Of the rounds of a loop only the last counts, since an
+  // enumeration cuts paths there. Infinite if a draw is continuous.
   static double combinations(Sampler& random) {
-    struct Alternatives final : DrawWatcher {
+    struct Alternatives final : DrawWatcher, LoopHeads {
       double product = 1;
+      std::vector<double> before_loops;  // the product where each loop began
       void before_draw(std::size_t, const double* weights, int count, double) override {
         const auto positive = std::count_if(weights, weights + count, [](double weight) { return weight > 0; });
         product *= weights == nullptr ? std::numeric_limits<double>::infinity() : static_cast<double>(positive);
       }
+      std::uint32_t enter() override {
+        before_loops.push_back(product);
+        return static_cast<std::uint32_t>(before_loops.size() - 1);
+      }
+      std::string* arrive(std::uint32_t, std::uint32_t entry) override {
+        if (std::isfinite(product)) product = before_loops[entry];
+        return nullptr;
+      }
+      [[noreturn]] void cut() override { throw CutPath{}; }
     };
     std::vector<double> estimates;
     const std::vector<double> none;
@@ -237,7 +250,7 @@ class Belief {
     State state{};
     for (int i = 0; i < 11; ++i) {
       Alternatives alternatives;
-      replay.start(none, random, nullptr, &alternatives);
+      replay.start(none, random, nullptr, &alternatives, &alternatives);
       Model::initial(state, replay);
       estimates.push_back(alternatives.product);
     }

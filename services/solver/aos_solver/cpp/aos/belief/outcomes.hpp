@@ -22,11 +22,15 @@ double enumerate_outcomes(const std::vector<Particle<Model>>& particles, int act
   std::size_t paths = 0;
   std::size_t states = 0;
   double left_out = 0;
+  typename Model::State next{};
+  Step step;
   for (const auto& particle : particles) {
-    left_out += particle.weight * draws.for_nearly_each_path([&](Enumerator& path) {
+    const auto run = [&](Enumerator& path) {
       if (++paths > max_paths) throw NotEnumerable{"too many outcomes"};
-      auto next = particle.state;
-      const Step step = Model::step(next, action, path);
+      next = particle.state;
+      step = Model::step(next, action, path);
+    };
+    left_out += particle.weight * draws.for_nearly_each_path(run, [&](Enumerator& path) {
       visit(particle.state, next, step.observation, particle.weight * path.probability());
     });
     if (++states == telling && paths / telling > 2 * max_paths / particles.size()) {

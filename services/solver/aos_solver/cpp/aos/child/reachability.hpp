@@ -56,8 +56,10 @@ class Reachability {
 
   void try_precondition(std::uint32_t number, int action) {
     bool meets = false;
+    bool meets_now = false;
     draws_.for_each_path(
-        [&](Enumerator& path) { meets = Model::meets_precondition(space_[number], action, path) || meets; });
+        [&](Enumerator& path) { meets_now = Model::meets_precondition(space_[number], action, path); },
+        [&](Enumerator&) { meets = meets || meets_now; });
     if (!meets) return;
     is_met_[static_cast<std::size_t>(action)] = true;
     --unmet_;

@@ -35,13 +35,14 @@ class ExpectedRewards {
   std::optional<double> of(const typename Model::State& state, int action) {
     if (is_left_out_[static_cast<std::size_t>(action)]) return {};
     double sum = 0;
-    const auto add = [&](Enumerator& path) {
-      typename Model::State next = state;
-      const double reward = Model::step(next, action, path).reward;
-      sum += reward * path.probability();
+    double reward = 0;
+    const auto run = [&](Enumerator& path) {
+      next_ = state;
+      reward = Model::step(next_, action, path).reward;
     };
+    const auto add = [&](Enumerator& path) { sum += reward * path.probability(); };
     try {
-      paths_.for_each_path(add, max_reward_paths);
+      paths_.for_nearly_each_path(run, add, max_reward_paths);
       return sum;
     } catch (const NotEnumerable&) {
     } catch (const ModelFault&) {  // a path that may never be drawn
@@ -52,6 +53,7 @@ class ExpectedRewards {
 
  private:
   Enumerator paths_;
+  typename Model::State next_;
   std::vector<bool> is_left_out_;
 };
 

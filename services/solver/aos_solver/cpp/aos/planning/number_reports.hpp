@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -36,6 +37,17 @@ class NumberReports final : public NumberSink {
     if (is_full_) return;
     taken_.emplace_back(key, DescribedDistribution{});
     distribution.describe(taken_.back().second);
+  }
+  bool write_taken(std::string& key) const override {
+    const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    append(taken_.size());
+    for (const auto& [number, distribution] : taken_) {
+      append(number);
+      append(distribution.kind);
+      append(distribution.numbers.size());
+      for (const double each : distribution.numbers) append(each);
+    }
+    return true;
   }
 
   // The number of the report of the step that began last, given the skill and the number of its response.

@@ -91,6 +91,9 @@ class SensedPath final : public DirectedDraws, private NumberSink {
     return report;
   }
 
+  // Where paths are listed, those of loops are cut as the enumerator cuts them.
+  LoopHeads* loop_heads() override { return path_ == nullptr ? nullptr : path_->loop_heads(); }
+
   int choose(const double* weights, int count, double total) override {
     if (takes_sensing()) return place_in(weights, count, sensed() * total);
     if (path_ != nullptr) {

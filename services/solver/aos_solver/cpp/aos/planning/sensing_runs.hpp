@@ -34,14 +34,18 @@ class SensingRuns {
     Enumerator draws;
     draws.skip_sensing(true);
     draws.report_to(&ignored_numbers);
-    draws.for_each_path([&](Enumerator& path) {
+    std::vector<int> taken;
+    State next;
+    const auto run = [&](Enumerator& path) {
       ++count_;
-      std::vector<int> taken;
-      State next = space_[number];
+      taken.clear();
+      next = space_[number];
       source_.follow(path, taken);
       Model::step(next, action, source_);
+    };
+    draws.for_nearly_each_path(run, [&](Enumerator& path) {
       if (Model::ending(next) != Ending::running) return;
-      paths_.push_back({space_.find(next), path.probability(), std::move(taken)});
+      paths_.push_back({space_.find(next), path.probability(), taken});
     });
     blame::at(0);
   }

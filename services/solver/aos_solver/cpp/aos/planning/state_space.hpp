@@ -105,6 +105,8 @@ class StateSpace {
   // Whether the rows have no observations, and why.
   bool leaves_out_observations() const { return skips_sensing_; }
   const std::string& observations_obstacle() const { return observations_obstacle_; }
+  // What rows leave out of loops without end: at most so much of the probability of each.
+  double most_left_out() const { return most_left_out_; }
   const NumberReports& reports() const { return reports_; }
   bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
 
@@ -199,16 +201,19 @@ class StateSpace {
   void add_row(std::uint32_t number, int action) {
     double reward = 0;
     paths_.clear();
-    draws_.for_each_path([&](Enumerator& path) {
+    const auto run = [&](Enumerator& path) {
       work_ += work_of_step(path, Model::state_bytes());
       if (work_ > limits_.work) throw NotEnumerable{"there are too many outcomes to list"};
-      State next = numbers_[number];
-      const Step step = Model::step(next, action, path);
-      reward += path.probability() * step.reward;
-      note_ending(next);
-      if (Model::ending(next) != Ending::running) return;
-      paths_.push_back({add(next), observation_of(action, step), path.probability()});
+      next_ = numbers_[number];
+      step_ = Model::step(next_, action, path);
+    };
+    const double left_out = draws_.for_nearly_each_path(run, [&](Enumerator& path) {
+      reward += path.probability() * step_.reward;
+      note_ending(next_);
+      if (Model::ending(next_) != Ending::running) return;
+      paths_.push_back({add(next_), observation_of(action, step_), path.probability()});
     });
+    most_left_out_ = std::max(most_left_out_, left_out);
     rows_.rewards.push_back(reward);
     add_outcomes();
     rows_.outcomes.first.push_back(rows_.outcomes.elements.size());
@@ -270,6 +275,7 @@ class StateSpace {
   std::uint64_t restarts_ = 0;
   bool reached_[ending_count]{};
   std::size_t work_ = 0;
+  double most_left_out_ = 0;
   bool skips_sensing_ = false;
   std::string observations_obstacle_;
   std::string obstacle_;
@@ -277,6 +283,8 @@ class StateSpace {
   std::size_t first_given_up_with_ = 0;  // in the first try
 
   Enumerator draws_;
+  State next_;  // to which the last run led
+  Step step_;
   std::unordered_map<SensingKey, std::uint32_t, NumbersHash> sensings_;
   std::vector<Path> paths_;
   std::vector<point_based::Likelihood> likelihoods_;

@@ -185,13 +185,15 @@ class WideValues final : public StateValues<Model> {
   double outcomes_of(const State& state, int action, NumberOf&& number_of) {
     double reward = 0;
     outcomes_.clear();
-    draws_.for_each_path([&](Enumerator& path) {
+    const auto run = [&](Enumerator& path) {
       work_ += work_of_step(path, Model::state_bytes());
       if (work_ > limits_.work) throw NotEnumerable{"there are too many outcomes"};
-      State next = state;
-      const Step step = Model::step(next, action, path);
-      reward += path.probability() * step.reward;
-      if (Model::ending(next) == Ending::running) outcomes_.push_back({number_of(next), path.probability()});
+      next_ = state;
+      step_ = Model::step(next_, action, path);
+    };
+    draws_.for_nearly_each_path(run, [&](Enumerator& path) {
+      reward += path.probability() * step_.reward;
+      if (Model::ending(next_) == Ending::running) outcomes_.push_back({number_of(next_), path.probability()});
     });
     return reward;
   }
@@ -311,6 +313,8 @@ class WideValues final : public StateValues<Model> {
   // While computing:
   std::vector<int> actions_;  // one of those that are alike
   Enumerator draws_;
+  State next_;  // to which the last run led
+  Step step_;
   std::size_t work_ = 0;
   std::vector<Outcome> outcomes_;
   std::vector<std::uint32_t> row_;

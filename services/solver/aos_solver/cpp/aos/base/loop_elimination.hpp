@@ -1,0 +1,168 @@
+// The functions of LoopChain that are compiled once and not with every model. Only support.hpp includes this file.
+//
+// Heads are eliminated one by one after Grassmann, Taksar and Heyman (1985). Nothing is ever subtracted, so every result
+// is as accurate as the probabilities are, however rarely a loop ends.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <queue>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "aos/base/enumerator.hpp"
+#include "aos/base/loop_chain.hpp"
+
+namespace aos {
+
+void LoopChain::write_way(Number to, std::vector<int>& draws, std::vector<Stop>& stops) const {
+  draws.clear();
+  stops.clear();
+  for (Number head = to; head != start; head = heads_[head].before) stops.push_back({head, 0, heads_[head].events});
+  std::reverse(stops.begin(), stops.end());
+  for (Stop& stop : stops) {
+    const std::vector<int>& choices = heads_[stop.head].choices;
+    draws.insert(draws.end(), choices.begin(), choices.end());
+    stop.draws = draws.size();
+  }
+}
+
+void LoopChain::end(Number head, double ends, double lost) {
+  std::sort(listed_.begin(), listed_.end(), [](const Edge& left, const Edge& right) { return left.to < right.to; });
+  std::vector<Edge>& edges = heads_[head].edges;
+  for (const Edge& edge : listed_) {
+    if (edges.empty() || edges.back().to != edge.to) {
+      edges.push_back(edge);
+    } else {
+      edges.back().probability += edge.probability;
+    }
+  }
+  heads_[head].ends = ends;
+  heads_[head].lost = lost;
+  ++listed_heads_;
+}
+
+class LoopChain::Elimination {
+ public:
+  explicit Elimination(const std::vector<Head>& heads) : heads_(heads), rows_(heads.size()), sources_(heads.size()) {
+    for (Number from = 0; from < heads.size(); ++from) {
+      if (!heads[from].is_listed) continue;
+      Row& row = rows_[from];
+      row.is_left = true;
+      row.exit = heads[from].ends + heads[from].lost;
+      for (const auto& [to, probability] : heads[from].edges) {
+        if (!heads[to].is_listed) {
+          row.exit += probability;
+        } else if (to != from) {
+          row.to[to] += probability;
+          sources_[to].push_back(from);
+        }
+      }
+    }
+  }
+
+  // How often a run comes to each head.
+  std::vector<double> visits() {
+    for (Number head = start + 1; head < heads_.size(); ++head) {
+      if (rows_[head].is_left) order_.push({degree(head), head});
+    }
+    while (!order_.empty()) {
+      const auto [degree_then, head] = order_.top();
+      order_.pop();
+      if (rows_[head].is_left && degree_then == degree(head)) eliminate(head);
+    }
+    std::vector<double> visits(heads_.size(), 0);
+    visits[start] = 1;
+    for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
+      for (const auto& [from, share] : step->shares) visits[step->head] += visits[from] * share;
+    }
+    return visits;
+  }
+
+ private:
+  // The probabilities of leaving a head, to other heads and for good. What leads back to it is left out.
+  struct Row {
+    std::unordered_map<Number, double> to;
+    double exit = 0;
+    bool is_left = false;  // not eliminated
+  };
+  // One visit to `from` makes so many visits to the head.
+  struct Share {
+    Number from;
+    double share;
+  };
+  struct Step {
+    Number head;
+    std::vector<Share> shares;
+  };
+
+  std::size_t degree(Number head) const { return sources_[head].size() * rows_[head].to.size(); }
+
+  // Leads every way through the head around it.
+  void eliminate(Number head) {
+    Row& row = rows_[head];
+    row.is_left = false;
+    double leaving = row.exit;
+    for (const auto& [to, probability] : row.to) leaving += probability;
+    if (!(leaving > 0)) throw NotEnumerable{"a loop may never end"};
+    Step step{head, {}};
+    for (const Number from : sources_[head]) {
+      const auto found = rows_[from].to.find(head);
+      if (!rows_[from].is_left || found == rows_[from].to.end()) continue;
+      const double share = found->second / leaving;
+      rows_[from].to.erase(found);
+      step.shares.push_back({from, share});
+      rows_[from].exit += share * row.exit;
+      for (const auto& [to, probability] : row.to) {
+        if (to == from) continue;
+        const auto [entry, is_new] = rows_[from].to.try_emplace(to, 0.0);
+        entry->second += share * probability;
+        if (is_new) sources_[to].push_back(from);
+        if (++work_ > max_steps) throw TooManyHeads{};
+      }
+      if (from != start) order_.push({degree(from), from});
+    }
+    for (const auto& [to, probability] : row.to) {
+      std::erase_if(sources_[to], [&](Number from) { return from == head; });
+      if (to != start) order_.push({degree(to), to});
+    }
+    row.to.clear();
+    steps_.push_back(std::move(step));
+  }
+
+  const std::vector<Head>& heads_;
+  std::vector<Row> rows_;
+  std::vector<std::vector<Number>> sources_;  // the heads with a way to this one
+  std::priority_queue<std::pair<std::size_t, Number>, std::vector<std::pair<std::size_t, Number>>, std::greater<>> order_;
+  std::vector<Step> steps_;
+  std::size_t work_ = 0;
+};
+
+double LoopChain::settle() {
+  const std::vector<double> visits = Elimination{heads_}.visits();
+  double left_out = 0;
+  for (Head& head : heads_) {
+    if (!head.is_listed) head.mass = 0;
+  }
+  for (Number from = 0; from < heads_.size(); ++from) {
+    Head& head = heads_[from];
+    if (!head.is_listed) continue;
+    head.visits = head.mass = visits[from];
+    left_out += head.visits * head.lost;
+    for (const auto& [to, probability] : head.edges) {
+      if (!heads_[to].is_listed) heads_[to].mass += head.visits * probability;
+    }
+  }
+  waiting_ = 0;
+  likeliest_ = {};
+  for (Number number = 0; number < heads_.size(); ++number) {
+    if (heads_[number].is_listed) continue;
+    waiting_ += heads_[number].mass;
+    likeliest_.push({heads_[number].mass, number});
+  }
+  return left_out + waiting_;
+}
+
+}  // namespace aos

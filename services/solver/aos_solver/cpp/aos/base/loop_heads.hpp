@@ -1,0 +1,26 @@
+// What model code tells a source of draws of the loops in which it draws: see model/drawing_loop.hpp.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace aos {
+
+// Thrown out of model code where the rest of a path is walked elsewhere.
+struct CutPath {};
+
+class LoopHeads {
+ public:
+  // Called where a loop begins. Returns a number for the way there: different ways have different numbers.
+  virtual std::uint32_t enter() = 0;
+  // Called before each round of a loop. Returns where to write all that the loop may change, and `cut` is called then.
+  // It returns null if the path goes on.
+  virtual std::string* arrive(std::uint32_t loop, std::uint32_t entry) = 0;
+  // Throws a CutPath.
+  [[noreturn]] virtual void cut() = 0;
+
+ protected:
+  ~LoopHeads() = default;
+};
+
+}  // namespace aos
