@@ -51,8 +51,8 @@ class Activate(Message, frozen=True):
 
 
 class Outcome(Message, frozen=True):
-    """How an activation ended: `status` is `observed`, `refused` (nothing was begun), `failed`, `timed_out`,
-    `cancelled` or `unknown`.
+    """How an activation ended: `status` is `observed`, `refused` (nothing was begun), `failed` (the robot
+    reports it), or `timed_out`, `cancelled` or `unknown`, where nobody knows what the skill did.
 
     `response` is the observation, empty unless observed. `numbers` are what was observed beside it, by name:
     a number, or a list with null for those that are missing. Local variables are as they were when the rules

@@ -200,7 +200,7 @@ class Mission:
         remark = self._failures.take(
             decision,
             outcome,
-            is_excluded=update.is_impossible or update.is_excluded,
+            is_excluded=update.is_excluded,
             surprise=update.surprise,
             now_s=self._ports.clock.monotonic_s(),
             announced=self._ports.announced,

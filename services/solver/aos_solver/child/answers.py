@@ -94,8 +94,9 @@ class EngineFault(msgspec.Struct, frozen=True):
 class BeliefUpdate(msgspec.Struct, frozen=True):
     """The belief after an outcome, and log P(observation | belief, action) before it.
 
-    `is_impossible` where no state of any belief explains it. `is_excluded` also where a report that was
-    impossible before is impossible in the cautious belief again.
+    `is_impossible` where no state of any belief explains it. `is_excluded` where the model does not: not
+    where there may only have been too few particles, but also where a report that was excluded before is
+    impossible in the cautious belief again.
 
     With numbers P is a density, in units of the numbers. `has_other_numbers` says that the model reports no
     such numbers with that response, so that the response counted alone. `uncorrected` is why the local

@@ -42,7 +42,7 @@ bool are_alike(const Belief<Model>& left, const Belief<Model>& right) {
   return std::ranges::all_of(difference.particles(), [](const auto& each) { return std::abs(each.weight) < 1e-9; });
 }
 
-// A response of a skill, by their names.
+// A skill by its name, and what it reported: the response and the numbers beside it.
 using Report = std::pair<std::string, std::string>;
 
 template <class Model>
@@ -134,6 +134,20 @@ class Hypotheses {
     after.discredited_.insert(report);
     after.log_ratio_ = log_ratio_;
     after.keep_cautious(cautious_ ? *cautious_ : this->belief());
+    return after;
+  }
+
+  // After an observation that cannot be used, though the model may well explain it.
+  Hypotheses unread(int action, Sampler& random) const {
+    Hypotheses after;
+    after.discredited_ = discredited_;
+    after.log_ratio_ = log_ratio_;
+    after.open_ = open_;
+    for (const Hypothesis& each : all_) after.all_.push_back({each.weight, each.ran, each.belief.predicted(action, random)});
+    const auto row = std::ranges::find(open_, Model::skill_of(action));
+    if (row != open_.end()) after.close(row - open_.begin());
+    after.mix();
+    if (cautious_) after.keep_cautious(cautious_->predicted(action, random));
     return after;
   }
 

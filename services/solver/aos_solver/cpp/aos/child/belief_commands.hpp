@@ -94,20 +94,27 @@ class BeliefCommands {
       }
     }
     const bool is_impossible = found.are_empty();
-    const Report report{Model::skill_name(Model::skill_of(action)), std::string{command.text("response")}};
+    impossible_in_a_row_ = is_impossible ? impossible_in_a_row_ + 1 : 0;
+    // A drawn belief may only have had too few particles, and a mixed one can be moved no more (moves.hpp). So the first
+    // impossible observations in a row are left out.
+    const bool may_be_too_few = belief().is_drawn() && impossible_in_a_row_ <= left_out_in_a_row;
+    const bool is_left_out = is_impossible && may_be_too_few && policy_ != ImpossiblePolicy::reset;
+    const Report report{Model::skill_name(Model::skill_of(action)),
+                        std::string{command.text("response")} + '\n' + std::string{command.text("numbers")}};
     json.begin_object().member("log_probability", is_impossible ? 0 : believed_.log_probability(found));
-    json.member("is_impossible", is_impossible).member("is_excluded", believed_.excludes(found, report));
+    json.member("is_impossible", is_impossible);
+    json.member("is_excluded", !is_left_out && believed_.excludes(found, report));
     json.member("has_other_numbers", has_other_numbers && !is_impossible);
     if (!uncorrected.code.empty()) {
       json.key("uncorrected").begin_object().member("code", uncorrected.code).member("text", uncorrected.text);
       json.member("piece", uncorrected.piece).end_object();
     }
     json.key("summary");
-    if (is_impossible) {
-      ++impossible_in_a_row_;
+    if (is_left_out) {
+      become(json, believed_.unread(action, random_));
+    } else if (is_impossible) {
       become(json, believed_.remedied(report, after_impossible(action)));
     } else {
-      impossible_in_a_row_ = 0;
       const bool is_by_bayes = !found.hypotheses_are_empty() && !believed_.excludes(found, report);
       auto after = believed_.given(Model::skill_of(action), report, std::move(found), command.number<double>("refuted_below"));
       become(json, std::move(after), [&] { is_by_bayes ? search_.move_to(action, observation) : search_.forget(); });
@@ -212,19 +219,15 @@ class BeliefCommands {
   // The belief after an observation that was impossible under it. hold: the predicted belief, as if nothing
   // were observed. widen: one half is the predicted belief, one quarter each the belief before and the
   // initial belief. reset: the initial belief.
-  //
-  // A drawn belief may only have had too few particles, and a mixed belief can be moved no more (moves.hpp).
-  // So a drawn belief is held at the first impossible observations in a row.
   Belief<Model> after_impossible(int action) {
     const Belief<Model> initial = Belief<Model>::initial(random_);
     if (policy_ == ImpossiblePolicy::reset) return initial;
     const Belief<Model> predicted = belief().predicted(action, random_);
-    const bool may_be_too_few = belief().is_drawn() && impossible_in_a_row_ <= held_in_a_row;
-    if (policy_ == ImpossiblePolicy::hold || may_be_too_few) return predicted;
+    if (policy_ == ImpossiblePolicy::hold) return predicted;
     return predicted.mixed_with(belief().mixed_with(initial, 0.5), 0.5);
   }
 
-  static constexpr int held_in_a_row = 8;
+  static constexpr int left_out_in_a_row = 8;
 
   Sampler random_;
   ImpossiblePolicy policy_;
