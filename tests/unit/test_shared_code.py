@@ -14,6 +14,7 @@ from aos_registry.convert import Dialect, convert, without_origins
 from aos_registry.load import load_files
 from aos_registry.outline import outline
 from aos_runtime.cpp_shared import shared_code
+from aos_solver.building.compiler_messages import read_messages
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lower import lower
 from aos_solver.emission.program import Program
@@ -210,6 +211,15 @@ def test_the_emitted_functions_stand_at_the_documents_lines() -> None:
     assert "bool slips(auto& AOS) { return slips(AOS, 1); }" in emitted.cpp
 
 
+def test_a_misspelt_call_is_told_with_the_name_that_was_meant() -> None:
+    emitted = emit(program())
+    line = next(n for n, text in enumerate(emitted.cpp.split("\n"), 1) if "slips(AOS, 2)" in text)
+    said = f"m.cpp:{line}:6: error: there are no arguments to 'slipps' that depend on a template parameter\n"
+    (error,) = read_messages(said, "m.cpp", emitted).diagnostics
+    assert (error.message, error.hint) == ("`slipps` was not declared", "Did you mean `slips`?")
+    assert error.span.file == "work.sd"
+
+
 # --- mistakes --------------------------------------------------------------------------------------------
 
 
@@ -226,6 +236,7 @@ def test_the_emitted_functions_stand_at_the_documents_lines() -> None:
         ("{ return slips(1); } -> { return slips(1); }}", "AOS108", "garden.ef:15:34"),
         ("constexpr int start -> #define later 3\nconstexpr int start", "AOS108", "garden.ef:5:1"),
         ("    for (int i -> static int n = 0;\n    for (int i", "AOS124", "garden.ef:10:1"),
+        ("if (!slips(2)) -> auto may = slips;\nif (!slips(2))", "AOS145", "work.sd:4:12"),
         ("    return false; -> int lost; return lost > 0;", "AOS143", "garden.ef:13:18"),
         ("AOS.Bernoulli(slip_probability) -> rand() % 2 > slip_probability", "AOS124", "garden.ef:11:13"),
         ("AOS.Bernoulli(slip_probability) -> AOS.Bernouli(slip_probability)", "AOS110", "garden.ef:11:17"),

@@ -219,6 +219,8 @@ class _BlockCheck:
 
     def _check_mention(self, mention: Mention) -> None:
         root = mention.path[0]
+        if root in self._scope.shared.drawing and mention.access is not Access.CALL:
+            self._check_drawing_function(mention, root)
         is_parameter = self._block.is_declarations and root in STATE_COPIES and root in self._locals
         if mention.access is Access.CALL or (root in self._locals and not is_parameter):
             return
@@ -240,6 +242,15 @@ class _BlockCheck:
             self._check_absent_skill(mention, root)
         elif root not in self._declared:
             self._check_special_name(mention, root)
+
+    def _check_drawing_function(self, mention: Mention, root: str) -> None:
+        """The source of draws is given to a function where it is called, and only there."""
+        names = {each.name_extent.start for each in self._scope.shared.functions}
+        if root in self._locals or (self._block.is_declarations and mention.root.start in names):
+            return
+        message = f"`{root}` draws, so it can only be called"
+        hint = f"Call it in a lambda: `[&](auto& each) {{ return {root}(each); }}`"
+        self._findings.error("AOS145", message, self._span(mention.root), hint)
 
     def _check_absent_skill(self, mention: Mention, root: str) -> None:
         """A skill that is not there is never chosen; its parameters nobody knows."""

@@ -7,6 +7,7 @@ import re
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
+from aos_protocol.spelling import did_you_mean
 from aos_solver.emission.emit import EmittedModel
 
 __all__ = ["CompilerReport", "read_messages", "without_line_directives"]
@@ -17,6 +18,7 @@ _PLACE = re.compile(
 )
 _ANOTHER_ENUM = re.compile(r"deleted .*(?:Named<.*operator\[\]|operator `\[\]`)")
 """What g++ and clang say of the one deleted operator that documents can meet, see named_array.hpp."""
+_NOT_DECLARED = re.compile(r"`([A-Za-z_]\w*)` was not declared|use of undeclared identifier `([A-Za-z_]\w*)`")
 _FAULTS = ("error", "fatal error")
 
 
@@ -56,6 +58,8 @@ def read_messages(output: str, source_name: str, emitted: EmittedModel) -> Compi
             outside.append(f"{message.file}:{message.line}:{message.column}: {message.text}")
             continue
         text, hint = _plain(message.text)
+        if not hint and (unknown := _NOT_DECLARED.fullmatch(text)) is not None:
+            hint = did_you_mean(unknown[1] or unknown[2], sorted(emitted.names))
         diagnostic = Diagnostic(Severity.ERROR, "AOS201", text, span, hint)
         diagnostics.append(diagnostic)
     return CompilerReport(tuple(_without_repeats(diagnostics)), tuple(outside))

@@ -59,7 +59,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
     `locals` are the local variables that the engine wants with a real observation, for each skill whose
     observations correct the belief; `observed` are the numbers that a skill reports. `choosing_skills` are
     those whose parameters stand for state variables. `bounds` are the mission's constraints, in the order of
-    the model's.
+    the model's. `names` are those of shared code and enum values, which every section sees.
     """
 
     project: str
@@ -73,6 +73,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
     observed: dict[str, tuple[Observed, ...]] = {}
     choosing_skills: frozenset[str] = frozenset()
     bounds: tuple[Bound, ...] = ()
+    names: frozenset[str] = frozenset()
 
     def locate(self, line: int, byte_column: int = 1) -> Span | None:
         """The document place of a place in the file; None for code that no document gave."""
@@ -104,6 +105,7 @@ def emit(program: Program) -> EmittedModel:
         locals={skill.name: skill.locals for skill in program.skills if skill.is_corrected},
         observed={skill.name: skill.observed for skill in program.skills if skill.observed},
         choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
+        names=program.shared_names | {value for enum in program.enums for value in enum.values},
         bounds=tuple(Bound(each.never.snippet.code, each.probability) for each in program.constraints),
     )
 
