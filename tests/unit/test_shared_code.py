@@ -232,6 +232,7 @@ def test_a_misspelt_call_is_told_with_the_name_that_was_meant() -> None:
         ("bool slips(int times) -> bool slips(auto& AOS, int times)", "AOS145", "garden.ef:9:18"),
         ("int depth( -> int max(", "AOS145", "garden.ef:17:5"),
         ("Grip grip_of( -> Grip Firm(", "AOS126", "garden.ef:16:6"),
+        ("const Tool spade -> const Tool next_state", "AOS126", "garden.ef:7:12"),
         ("constexpr int start -> constexpr int North", "AOS126", "garden.ef:5:15"),
         ("{ return slips(1); } -> { return slips(1); }}", "AOS108", "garden.ef:15:34"),
         ("constexpr int start -> #define later 3\nconstexpr int start", "AOS108", "garden.ef:5:1"),

@@ -8,6 +8,7 @@ from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Environment, Project
 from aos_protocol.findings import Findings
 from aos_runtime.cpp_keywords import CPP_KEYWORDS
+from aos_runtime.document_code import shared_code_of
 from aos_solver.emission.lower_code import sections_of
 
 __all__ = ["check_names"]
@@ -37,6 +38,8 @@ def check_names(project: Project, findings: Findings) -> None:
     for enum in project.environment.enums:
         for value in enum.values:
             _check(value, enum.span, findings, global_names)
+    for name, span in _shared_names(project.environment):
+        _check(name, span, findings, global_names | _OF_NAMESPACES)
     for name, span in _type_names(project.environment):
         _check(name, span, findings, global_names | _OF_NAMESPACES)
     for name, span in _member_names(project):
@@ -44,6 +47,14 @@ def check_names(project: Project, findings: Findings) -> None:
     for skill in project.skills:
         for rule in skill.mapping.rules:
             _check(rule.response, rule.span, findings, _OF_EMITTED_SKILLS)
+
+
+def _shared_names(environment: Environment) -> Iterator[tuple[str, Span]]:
+    if (snippet := environment.shared_code) is not None:
+        shared = shared_code_of(environment)
+        for each in (*shared.names, *shared.functions):
+            if each.name:
+                yield each.name, snippet.locate(each.name_extent.line, each.name_extent.column)
 
 
 def _type_names(environment: Environment) -> Iterator[tuple[str, Span]]:
