@@ -55,13 +55,17 @@ def adapter_files(kind: str, project: Project, bundle: str) -> dict[str, str]:
 
 def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: list[str]) -> str:
     name = project.name
+    if kind == "model":
+        budget = "simulations: 10_000, seed: 1}    # for each decision, so that missions repeat"
+    else:
+        budget = "time_s: 0.2, seed: 1}    # seconds for each decision"
     lines = [
         f"# The robot {name}: what runs when aos-up starts it. Every key: docs/deploy-file.md.",
         "aos: 1",
         f"robot: {name}",
         f"bundles: [{bundle}]",
         "mission: {goal_probability: 0.9, step_limit: 30}",
-        "solver: {simulations: 10_000, seed: 1}",
+        f"solver: {{{budget}",
     ]
     if kind == "command":
         lines += [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -33,8 +33,11 @@ def progress(*columns: ProgressColumn) -> Progress:
 
 
 @contextmanager
-def waiting(what: str) -> Iterator[None]:
-    """Shows what is waited for, and for how long, where the work has no steps to count."""
+def waiting(what: str) -> Iterator[Callable[[str], None]]:
+    """Shows what is waited for, and for how long, where the work has no steps to count.
+
+    What is yielded takes how far the work is, as text.
+    """
     with progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()) as shown:
-        shown.add_task(what, total=None)
-        yield
+        task = shown.add_task(what, total=None)
+        yield lambda text: shown.update(task, description=f"{what}: {text}")

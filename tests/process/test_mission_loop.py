@@ -59,6 +59,8 @@ async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) ->
     state, around = await run_mission(finer, robot)
     assert state.ending == "goal"
     assert all(each.planner and each.why and each.threads == 1 for each in around.records)
+    assert all(each.preparation_s >= 0 for each in around.records)
+    assert all((each.update_s > 0) == (each.outcome is not None) for each in around.records)
     statuses = [record.outcome.status for record in around.records if record.outcome]
     assert statuses[0] == "timed_out"
     assert set(statuses[1:]) == {"observed"}

@@ -32,6 +32,10 @@ def test_documents_that_come_back_are_not_emitted_again(bundles: Path) -> None:
     assert again is first
 
 
+def untimed(plan: Plan) -> Plan:
+    return msgspec.structs.replace(plan, seconds=0, cpu_seconds=0, preparation_s=0, search_s=0)
+
+
 async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
     """What an engine says that depends on neither time nor machine: plans, and a belief between them."""
     engine = await Engine.start(built, seed=7)
@@ -41,8 +45,7 @@ async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
         after = await engine.plan(simulations=5000, seed=4)
     finally:
         await engine.close()
-    return [msgspec.structs.replace(before, seconds=0, cpu_seconds=0), update,
-            msgspec.structs.replace(after, seconds=0, cpu_seconds=0)]  # fmt: skip
+    return [untimed(before), update, untimed(after)]
 
 
 async def mean_reward(built: BuiltModel) -> float:

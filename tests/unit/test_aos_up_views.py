@@ -114,6 +114,17 @@ def test_an_outcome_without_an_observation_says_why(capsys: pytest.CaptureFixtur
     assert "pick -> timed_out (no answer within 9 s)" in capsys.readouterr().out
 
 
+def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.CaptureFixture[str]) -> None:
+    view = PlainView()
+    for remark in ("listing states: 1 of 2", "listing states: 2 of 3", "computing first bounds: 1 of 10"):
+        view(MissionState("m", "planning", 0, 0.0, remark=remark))
+    told = capsys.readouterr().out.splitlines()
+    assert told == [
+        "mission planning: listing states: 1 of 2",
+        "mission planning: computing first bounds: 1 of 10",
+    ]
+
+
 def test_every_event_is_one_json_object(capsys: pytest.CaptureFixture[str]) -> None:
     with JsonView() as view:
         for event in EVENTS:
@@ -146,6 +157,16 @@ def test_the_screen_says_what_is_being_waited_for() -> None:
     assert "waiting for skills ... 0 s" in shown(screen)
     screen.take(EVENTS[3])
     assert "compiling the model ... 0 s" in shown(screen)
+
+
+def test_the_screen_says_how_far_a_decision_is_and_for_how_long_it_has_been_made() -> None:
+    screen = Screen("armadillo")
+    screen.take(MissionState("m", "planning", 0, 0.0, remark="listing states: 1 of 2"))
+    screen.remark_since_s -= 7
+    screen.take(MissionState("m", "planning", 0, 0.0, remark="listing states: 2 of 3"))
+    assert "listing states: 2 of 3 ... 7 s" in shown(screen)
+    screen.take(MissionState("m", "planning", 0, 0.0, remark="computing first bounds: 1 of 10"))
+    assert "computing first bounds: 1 of 10 ... 0 s" in shown(screen)
 
 
 def test_the_screen_shows_steps_values_and_belief_bars() -> None:

@@ -92,3 +92,15 @@ def test_every_example_is_whole_where_it_is_written(name: str, aos: typer.Typer)
 
 def test_an_unknown_example_is_told_with_the_nearest(aos: typer.Typer) -> None:
     assert "Did you mean `armadillo`?" in str(getattr(run(aos, "new example armadilo").exception, "hint", ""))
+
+
+@pytest.mark.parametrize(("kind", "plans_in_time"), [("class", True), ("command", True), ("model", False)])
+def test_a_robot_plans_in_time_and_its_model_in_simulations(
+    kind: str, plans_in_time: bool, aos: typer.Typer
+) -> None:
+    run(aos, "new project fetch")
+    written = run(aos, f"new adapter {kind} --in fetch")
+    assert written.exit_code == 0, written.output
+    solver = read_deploy_file(next(Path().glob("*.yaml"))).file.solver
+    assert (solver.time_s is not None) == plans_in_time
+    assert (solver.simulations is not None) != plans_in_time

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from aos_deploy.bench.problems import Problem
+from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine, Planner, Stepping
 from aos_solver.endings import MissionLimits
 from aos_solver.search import Search
@@ -13,7 +14,7 @@ from aos_solver.simulation import simulate_mission
 __all__ = ["SIMULATIONS", "discounted_returns", "sampling_rate", "search_rate", "threaded_search_rates"]
 
 SIMULATIONS = 65_536
-"""Of one search from a fresh root, here and in the baselines."""
+"""Descents of one search from a fresh root, about; in the baselines just as many."""
 
 THREADED_SEARCH_S = 0.3
 """Of a search by one thread that several are compared with: long beside the start of a thread, which may wait
@@ -35,27 +36,43 @@ async def sampling_rate(
 
 
 async def search_rate(engine: Engine, repetitions: int, seed: int) -> list[float]:
-    """Simulations of POMCP from a fresh root at the initial belief, per second of processor time.
+    """Descents of POMCP from a fresh root at the initial belief, per second of processor time.
 
     A first search warms up.
     """
     rates = []
+    simulations = await _simulations_for(engine, SIMULATIONS, seed)
     for turn in range(repetitions + 1):
         await engine.reset_belief()
-        plan = await engine.plan(simulations=SIMULATIONS, seed=seed + turn, planner="pomcp")
-        rates.append(plan.simulations / plan.cpu_seconds)
+        plan = await engine.plan(simulations=simulations, seed=seed + turn, planner="pomcp")
+        rates.append(_descents(plan) / plan.cpu_seconds)
     return rates[1:]
+
+
+async def _simulations_for(engine: Engine, descents: int, seed: int) -> int:
+    """The budget that is used up by about so many descents: a simulation may be several of these."""
+    await engine.reset_belief()
+    sample = max(descents // 16, 1)
+    sizing = await engine.plan(simulations=sample, seed=seed, planner="pomcp")
+    return max(1, round(sample * descents / max(_descents(sizing), 1)))
+
+
+def _descents(plan: Plan) -> int:
+    """Of a search from a fresh root."""
+    return sum(action.n for action in plan.actions)
 
 
 async def threaded_search_rates(
     engines: Mapping[int, Engine], repetitions: int, seed: int
 ) -> dict[int, list[float]]:
-    """Simulations per second of real time, by the number of threads, for each of which there is an engine.
+    """Descents per second of real time, by the number of threads, for each of which there is an engine.
 
     The engines search in turns. A first search of each warms up.
     """
-    sizing = await engines[1].plan(simulations=SIMULATIONS, seed=seed, planner="pomcp")
-    simulations = max(SIMULATIONS, round(THREADED_SEARCH_S * sizing.simulations / sizing.cpu_seconds))
+    least = await _simulations_for(engines[1], SIMULATIONS, seed)
+    await engines[1].reset_belief()
+    sizing = await engines[1].plan(simulations=least, seed=seed, planner="pomcp")
+    simulations = max(least, round(THREADED_SEARCH_S * sizing.simulations / sizing.cpu_seconds))
     rates: dict[int, list[float]] = {threads: [] for threads in engines}
     for turn in range(repetitions + 1):
         for threads, engine in engines.items():
@@ -63,7 +80,7 @@ async def threaded_search_rates(
             plan = await engine.plan(
                 simulations=simulations, seed=seed + turn, planner="pomcp", threads=threads
             )
-            rates[threads].append(plan.simulations / plan.seconds)
+            rates[threads].append(_descents(plan) / plan.seconds)
     return {threads: known[1:] for threads, known in rates.items()}
 
 

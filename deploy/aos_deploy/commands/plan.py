@@ -99,7 +99,8 @@ def plan(
         search = _by_policy(search, policy)
 
     async def decide(engine: Engine) -> Decision:
-        with waiting("deciding"):
+        with waiting("deciding") as tell:
+            engine.on_progress = lambda found: tell(found.text)
             return await decision_of(engine)
 
     async def decision_of(engine: Engine) -> Decision:
@@ -187,9 +188,12 @@ def simulate(
     async def run_all(engine: Engine) -> list[SimulatedRun]:
         done: list[SimulatedRun] = []
         with progress() as bar:
-            for run_seed in bar.track(range(seed, seed + runs), description="missions"):
+            task = bar.add_task("missions", total=runs)
+            engine.on_progress = lambda found: bar.update(task, description=f"missions, {found.text}")
+            for run_seed in range(seed, seed + runs):
                 of_run = msgspec.structs.replace(search, seed=run_seed)
                 done.append(await simulate_mission(engine, of_run, limits, with_states=states))
+                bar.update(task, description="missions", completed=len(done))
         return done
 
     missions = _with_engine(bundle, seed, run_all, never=never)

@@ -9,7 +9,7 @@ import shutil
 import signal
 import subprocess
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -24,7 +24,7 @@ from aos_deploy.formats.problem_files import PROBLEM_ENDINGS, read_problem
 from aos_deploy.formats.problem_writers import WRITERS, write_problem
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
-from aos_deploy.terminal import progress
+from aos_deploy.terminal import progress, waiting
 from aos_protocol.errors import DeployError, PlanningError
 from aos_solver.child.answers import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
@@ -177,14 +177,21 @@ async def _enumerated(bundle: Path, max_states: int, discount: float | None) -> 
 async def _solve(
     model: ExplicitModel, limits: SolvingLimits, on_progress: Callable[[Bounds], None]
 ) -> Solution:
-    """Solves until a limit or Ctrl-C."""
+    """Solves until a limit or Ctrl-C. Shows that it works until there are bounds to tell."""
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
     loop.add_signal_handler(signal.SIGINT, stop.set)
-    try:
-        return await solve_model(model, limits, cache_dir=cache_dir(), on_progress=on_progress, stop=stop)
-    finally:
-        loop.remove_signal_handler(signal.SIGINT)
+    with ExitStack() as until_bounds:
+        until_bounds.enter_context(waiting("computing first bounds"))
+
+        def told(bounds: Bounds) -> None:
+            until_bounds.close()
+            on_progress(bounds)
+
+        try:
+            return await solve_model(model, limits, cache_dir=cache_dir(), on_progress=told, stop=stop)
+        finally:
+            loop.remove_signal_handler(signal.SIGINT)
 
 
 def _policy(target: _Target, solution: Solution, stop_value: float | None) -> Policy:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
@@ -21,11 +22,18 @@ from aos_protocol.messages import (
 __all__ = ["JsonView", "PlainView", "decision_line", "effort_text", "endings_text", "lines_of", "risk_text"]
 
 
+_TELLING_AGAIN_S = 5.0
+
+
 class PlainView:
-    """Prints `lines_of` each event but progress. A mission's state is printed when its remark is news."""
+    """Prints `lines_of` each event but a skill's progress. Of a mission's state it prints what is news.
+
+    How far a decision is, is news every five seconds, and when the solver does something else for it.
+    """
 
     def __init__(self) -> None:
         self._last_remark = ""
+        self._last_told_s = 0.0
 
     def __enter__(self) -> Self:
         return self
@@ -40,9 +48,16 @@ class PlainView:
             # What acts is in the decision's own line.
             if not event.remark or event.remark == self._last_remark or event.phase == "acting":
                 return
+            if event.phase == "planning" and not self._is_due(event.remark):
+                return
             self._last_remark = event.remark
+            self._last_told_s = time.monotonic()
         for line in lines_of(event):
             print(line, flush=True)
+
+    def _is_due(self, remark: str) -> bool:
+        is_the_same_work = remark.partition(":")[0] == self._last_remark.partition(":")[0]
+        return not is_the_same_work or time.monotonic() >= self._last_told_s + _TELLING_AGAIN_S
 
 
 class JsonView:

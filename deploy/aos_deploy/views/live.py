@@ -72,8 +72,10 @@ class Screen:
                 pass
 
     def _remark(self, text: str) -> None:
-        if text != self.remark:
-            self.remark, self.remark_since_s = text, time.monotonic()
+        # How far work is changes often, and says nothing about since when the work goes on.
+        if text.partition(":")[0] != self.remark.partition(":")[0]:
+            self.remark_since_s = time.monotonic()
+        self.remark = text
 
     def __rich_console__(self, console: Console, _: ConsoleOptions) -> RenderResult:
         yield self._headline()

@@ -156,6 +156,8 @@ class DecisionRecord(Message, frozen=True):
     """One step of a mission, published twice: when decided (`outcome` is None) and when observed.
 
     `sequence` is dense over the mission and names the publication, `step` names the decision, from 1.
+    `planning_s` is what the decision took. Of it `preparation_s` is processor time for what no budget counts:
+    lists of states, their values, first bounds. `update_s` is what the belief update took after the outcome.
     `belief` is the belief decided on, or after the observation the updated one. `surprise` is
     -log P(observation | belief, action) in nats, of a density where numbers were observed; infinite surprise
     is given as `is_impossible`. `remark` says what of the outcome could not be used for the belief. `planner`
@@ -192,6 +194,8 @@ class DecisionRecord(Message, frozen=True):
     constraints: tuple[ConstraintRisk, ...] = ()
     set_aside: dict[str, str] = {}
     is_cautious: bool = False
+    preparation_s: float = 0.0
+    update_s: float = 0.0
 
 
 class HistoryQuery(Message, frozen=True):

@@ -168,6 +168,7 @@ class Mission:
             simulations=plan.simulations,
             horizon=plan.horizon,
             planning_s=plan.seconds,
+            preparation_s=plan.preparation_s,
             actions=plan.actions,
             predicted=plan.predicted,
             belief=belief,
@@ -196,7 +197,9 @@ class Mission:
         return outcome
 
     async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> BeliefSummary:
+        before_s = self._ports.clock.monotonic_s()
         update = await self._updated_belief(decision, outcome)
+        update_s = self._ports.clock.monotonic_s() - before_s
         remark = self._failures.take(
             decision,
             outcome,
@@ -212,6 +215,7 @@ class Mission:
             belief=update.summary,
             outcome=outcome,
             surprise=update.surprise,
+            update_s=update_s,
             is_impossible=update.is_impossible,
             remark="; ".join(each for each in (update.remark, remark) if each),
         )

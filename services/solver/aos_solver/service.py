@@ -37,6 +37,7 @@ from aos_runtime.journal import Journal
 from aos_runtime.lifecycle import Service
 from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import Progress
 from aos_solver.child.engine import Engine
 from aos_solver.endings import MissionLimits
 from aos_solver.failures import FailureRules, Failures
@@ -163,11 +164,13 @@ class _Solver:
         await self._shelf.make(revision)
 
     async def _start_engine(self, built: BuiltModel) -> Engine:
-        return await Engine.start(
+        engine = await Engine.start(
             built,
             seed=self._settings.seed,
             impossible_observation=self._settings.impossible_observation,
         )
+        engine.on_progress = self._report_planning
+        return engine
 
     def _search_by_policy(self, running: RunningModel) -> Search:
         """The search that follows the policy of the settings, if they name one that fits the model."""
@@ -195,6 +198,11 @@ class _Solver:
         log.info("%s", remark)
         if self._mission is None:
             self.publish_state(MissionState(self._name, "building", 0, 0.0, remark=remark))
+
+    def _report_planning(self, progress: Progress) -> None:
+        """Tells people how far a decision is that takes long. The journal has only the decision."""
+        if self._mission is not None and self._mission.state.phase == "planning":
+            self.publish_state(msgspec.structs.replace(self._mission.state, remark=progress.text))
 
     # --- the mission and its ports -------------------------------------------------------------------
 

@@ -15,7 +15,10 @@ double mean_return(const units::Problem& problem, int horizon) {
   aos::Sampler random{1};
   TableModel::initial(start, random);
   double sum = 0;
-  for (int i = 0; i < rollouts; ++i) sum += TableModel::rollout(start, horizon, random);
+  for (int i = 0; i < rollouts; ++i) {
+    int left = horizon;
+    sum += TableModel::rollout(start, left, random);
+  }
   return sum / rollouts;
 }
 

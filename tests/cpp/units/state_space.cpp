@@ -179,7 +179,8 @@ TEST("Exact values are those that can be worked out by hand") {
   const Belief belief = initial_belief(tiger);
   Space space;
   EXPECT(space.reach(belief));
-  aos::ExactEvaluation<TableModel> evaluation{space, {.beliefs = 1000}};
+  const aos::ObservableValues<TableModel> observable{space, 3};
+  aos::ExactEvaluation<TableModel> evaluation{space, observable, {.beliefs = 1000}};
   const auto one = evaluation.action_values(belief, 1);
   EXPECT_NEAR(one[0].value, -1.0, 1e-12);
   EXPECT_NEAR(one[1].value, -45.0, 1e-12);
@@ -198,7 +199,8 @@ TEST("Exact values that exceed the budget are refused, and no wrong ones given")
   const Belief belief = initial_belief(tiger);
   Space space;
   EXPECT(space.reach(belief));
-  aos::ExactEvaluation<TableModel> evaluation{space, {.beliefs = 3}};
+  const aos::ObservableValues<TableModel> observable{space, 10};
+  aos::ExactEvaluation<TableModel> evaluation{space, observable, {.beliefs = 3}};
   bool is_refused = false;
   try {
     evaluation.action_values(belief, 10);

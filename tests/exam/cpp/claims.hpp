@@ -127,8 +127,9 @@ class Claims {
   void check_exact_values(const Belief& belief, const Mass& exact, double running) {
     aos::StateSpace<TableModel> space;
     if (!space.reach(belief)) return;
+    const aos::ObservableValues<TableModel> observable{space, problem_.horizon};
     for (const int decisions : {1, 3, problem_.horizon}) {
-      aos::ExactEvaluation<TableModel> evaluation{space, {.beliefs = 3000, .outcomes = 1'000'000}};
+      aos::ExactEvaluation<TableModel> evaluation{space, observable, {.beliefs = 3000, .work = 100'000'000}};
       try {
         std::vector<double> values;
         for (const auto& of_action : evaluation.action_values(belief, decisions)) values.push_back(of_action.value);

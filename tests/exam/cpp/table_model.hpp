@@ -137,8 +137,8 @@ struct TableModel {
   }
   static bool meets_precondition(const State&, int, auto&) { return true; }
 
-  static double rollout(const State& state, int horizon, aos::Sampler& random) {
-    return aos::rollout<TableModel>(state, horizon, random);
+  static double rollout(const State& state, int& left, aos::Sampler& random) {
+    return aos::rollout<TableModel>(state, left, random);
   }
   static void rollout_odds(const State& state, double* odds, aos::Sampler& random) {
     aos::rollout_odds<TableModel>(state, odds, action_count(), random);

@@ -23,6 +23,7 @@ __all__ = [
     "Listed",
     "Plan",
     "Prediction",
+    "Progress",
     "Reach",
     "ReachedAction",
     "Risks",
@@ -59,7 +60,8 @@ class Plan(msgspec.Struct, frozen=True):
 
     Skills that the search did without have no actions here; `place` is where the best one stands among those
     that have, None where that is its index. `planner` has made it with so many `threads`, and `why` says why
-    that planner did. `known_simulations` were in the tree before the search.
+    that planner did. `known_simulations` were in the tree before the search. The search took `search_s` of
+    processor time, and before it the lists, values and first bounds, which no budget counts, `preparation_s`.
     """
 
     index: int
@@ -69,6 +71,8 @@ class Plan(msgspec.Struct, frozen=True):
     predicted: tuple[PredictedObservation, ...]
     seconds: float
     cpu_seconds: float = 0.0
+    preparation_s: float = 0.0
+    search_s: float = 0.0
     known_simulations: int = 0
     planner: str = ""
     why: str = ""
@@ -81,6 +85,20 @@ class Plan(msgspec.Struct, frozen=True):
 
 
 _ROUNDING = 1e-9
+
+
+class Progress(msgspec.Struct, frozen=True):
+    """How far the engine is with `what` before it can answer: `done` of `all`, which is 0 if unknown."""
+
+    what: str
+    done: int
+    all: int = 0
+
+    @property
+    def text(self) -> str:
+        """For people: `listing states: 12,000 of 34,000`."""
+        of_all = f" of {self.all:,}" if self.all else ""
+        return f"{self.what}: {self.done:,}{of_all}"
 
 
 class EngineFault(msgspec.Struct, frozen=True):

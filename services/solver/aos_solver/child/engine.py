@@ -11,7 +11,7 @@ import asyncio
 import logging
 import re
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, Self, TypeVar
 
@@ -33,6 +33,7 @@ from aos_solver.child.answers import (
     Listed,
     Plan,
     Prediction,
+    Progress,
     Reach,
     Risks,
     SampleCount,
@@ -97,6 +98,8 @@ class Engine:
         self._correction_faults: dict[EngineFault, AosError] = {}
         self._world: list[str] = []
         self._asking = asyncio.Lock()
+        self.on_progress: Callable[[Progress], None] | None = None
+        """Told how far the work on an answer is, some times a second where it takes long."""
         self.description: EngineDescription
 
     @classmethod
@@ -206,6 +209,10 @@ class Engine:
     async def count_processor_time(self, counts: bool) -> None:
         """Whether this child's budgets in seconds are of processor time, for measurements."""
         await self._ask(command_line("count_processor_time", counts=counts), _Done)
+
+    async def tell_progress(self, every_s: float) -> None:
+        """Has `on_progress` told that often at most, for measurements and tests; until then every 0.25 s."""
+        await self._ask(command_line("tell_progress", between_ms=round(every_s * 1000)), _Done)
 
     async def exact(self, horizon: int | None = None) -> ExactValues:
         """Finite-horizon values by enumeration; IntractableError where that is not possible, and why."""
@@ -429,11 +436,11 @@ class Engine:
                 await self._restart_child()
             assert self._child is not None
             try:
-                return await self._child.ask(command, kind, deadline_s)
+                return await self._child.ask(command, kind, deadline_s, self.on_progress)
             except KilledError as error:
                 log.warning("asking again: %s", error)
                 await self._restart_child()
-                return await self._child.ask(command, kind, deadline_s)
+                return await self._child.ask(command, kind, deadline_s, self.on_progress)
             except OverdueError:
                 raise
             except AosError as error:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import sys
+from collections.abc import Callable
 from typing import Literal, Self, TypeVar
 
 import msgspec
@@ -17,7 +18,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity
 from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, ModelError, error_from_code
 from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import EngineDescription, EngineFault
+from aos_solver.child.answers import EngineDescription, EngineFault, Progress
 from aos_solver.child.blame_page import new_blame_page, running_piece
 from aos_solver.child.printed import pass_on
 from aos_solver.child.shared_memory import SharedMemory
@@ -47,6 +48,13 @@ _MEMORY_HINT = (
 
 class _FaultAnswer(msgspec.Struct, frozen=True):
     fault: EngineFault | None = None
+
+
+class _ProgressLine(msgspec.Struct, frozen=True):
+    progress: Progress
+
+
+_PROGRESS_LINE = b'{"progress":'
 
 
 class EngineStart(msgspec.Struct, frozen=True):
@@ -124,15 +132,26 @@ class EngineChild:
         """The number of the document code that runs now or ran last, 0 for none; of threads, the first's."""
         return 0 if self._blame is None else running_piece(self._blame)
 
-    async def ask(self, command: str | None, kind: type[A], deadline_s: float) -> A:
-        """The answer to a command, or to none; ModelError for a fault of model code."""
+    async def ask(
+        self,
+        command: str | None,
+        kind: type[A],
+        deadline_s: float,
+        on_progress: Callable[[Progress], None] | None = None,
+    ) -> A:
+        """The answer to a command, or to none; ModelError for a fault of model code.
+
+        `on_progress` is told how far the work is, some times a second while it goes on.
+        """
         child = self._child
         try:
             async with asyncio.timeout(deadline_s):
                 if command is not None:
                     child.stdin.write(command.encode() + b"\n")
                     await child.stdin.drain()
-                line = await child.stdout.readline()
+                while (line := await child.stdout.readline()).startswith(_PROGRESS_LINE):
+                    if on_progress is not None:
+                        on_progress(self._decoded(line, _ProgressLine).progress)
         except TimeoutError:
             text = f"the model did not finish within {deadline_s:.0f} s"
             raise await self._lost(EndlessCodeError, text) from None

@@ -42,11 +42,12 @@ struct OnlineSarsop::Solver {
   double above() const { return outlook.above(sarsop.graph().min_value()); }
   double below() const { return outlook.below(sarsop.graph().max_value()); }
 
-  // `trial` returns whether there is more to find out.
+  // `trial(is_enough)` returns whether there is more to find out. `is_enough` also cuts a trial short.
   template <class Trial>
   std::uint64_t repeat(std::uint64_t max_work, const IsOver& is_over, Trial&& trial) {
     const std::uint64_t before = sarsop.graph().work();
-    while (trial() && (max_work == 0 || sarsop.graph().work() - before < max_work) && !is_over()) {}
+    const auto is_enough = [&] { return (max_work > 0 && sarsop.graph().work() - before >= max_work) || is_over(); };
+    while (trial(is_enough) && !is_enough()) {}
     return sarsop.graph().work() - before;
   }
 
@@ -68,14 +69,14 @@ bool OnlineSarsop::move_to(const std::vector<std::pair<std::uint32_t, double>>& 
 }
 
 std::uint64_t OnlineSarsop::improve(std::uint64_t max_work, const IsOver& is_over) {
-  return solver_->repeat(max_work, is_over, [&] {
-    return !solver_->is_closed() && solver_->sarsop.improve(solver_->precision(), is_over);
+  return solver_->repeat(max_work, is_over, [&](const auto& is_enough) {
+    return !solver_->is_closed() && solver_->sarsop.improve(solver_->precision(), is_enough);
   });
 }
 
 std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, const IsOver& is_over) {
   return solver_->repeat(0, is_over,
-                         [&] { return solver_->sarsop.improve_below(action, solver_->precision(), is_over); });
+                         [&](const auto& is_enough) { return solver_->sarsop.improve_below(action, solver_->precision(), is_enough); });
 }
 
 std::vector<ActionBounds> OnlineSarsop::action_bounds() {

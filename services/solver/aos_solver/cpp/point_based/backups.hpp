@@ -110,7 +110,7 @@ class Backups {
         }
         graph_.count_work(move.observation_branches[observation_branch].successors.size());
       }
-      graph_.count_work(move.flows.elements.size());
+      graph_.count_work(2 * move.flows.elements.size());
       for (std::size_t state = 0; state < values.size(); ++state) {
         double sum = 0;
         for (const auto& flow : move.flows[state]) {
@@ -119,6 +119,8 @@ class Backups {
         values[state] += model_.discount * sum - 2 * graph_.rounding() * (size + std::abs(move.rewards[state]));
       }
     }
+    constexpr std::uint64_t per_vector = 1400;
+    graph_.count_work(per_vector + move.targets / 8 + 2 * move.rewards.size() + 10 * move.observation_branches.size());
     graph_.add_vector(node.region, {branch.action, length, std::move(values)});
     ++vectors_added;
     graph_.refresh_lower(node);

@@ -51,6 +51,7 @@ class BeliefGraph {
   // The node of a belief over the region's states (by local number, ascending; normalised).
   std::uint32_t node_of(std::uint32_t region, std::uint32_t left, const Belief& belief) {
     const BeliefKey key = key_of(region, left, belief, kept_bits_);
+    work_ += per_look_up + 2 * belief.size();
     const auto [entry, is_new] = index_.try_emplace(key, static_cast<std::uint32_t>(nodes_.size()));
     if (!is_new) return entry->second;
     bytes_ += sizeof(Node) + belief.size() * (sizeof(double) + sizeof(std::uint32_t)) + 64;
@@ -63,7 +64,7 @@ class BeliefGraph {
     node.corner = bound.corner_of(node.belief);
     node.upper = std::min(bound.of(node.belief, node.corner), *std::max_element(informed.begin(), informed.end()));
     node.seen_changes = bound.changes();
-    work_ += belief.size() * (model_.actions + 1 + bound.points());
+    work_ += per_node + belief.size() * (model_.actions + 1 + bound.points());
     refresh_lower(node);
     return entry->second;
   }
@@ -72,7 +73,7 @@ class BeliefGraph {
   const Node& operator[](std::uint32_t number) const { return nodes_[number]; }
   std::size_t size() const { return nodes_.size(); }
   std::size_t bytes() const { return bytes_; }
-  // The number of multiplications so far.
+  // The number of operations so far: multiplications with their look-ups, and what else takes as long as these.
   std::uint64_t work() const { return work_; }
   void count_work(std::uint64_t work) { work_ += work; }
   // The error of the longest sum, relative to the absolute values in it.
@@ -122,6 +123,7 @@ class BeliefGraph {
   void expand(Node& node) {
     if (node.is_expanded) return;
     node.is_expanded = true;
+    work_ += model_.actions * (node.belief.size() + per_branch);
     const std::vector<double> informed = informed_values(node);
     for (std::uint32_t action = 0; action < model_.actions; ++action) {
       if (informed[action] < node.lower) continue;
@@ -180,7 +182,7 @@ class BeliefGraph {
   }
 
   void refresh_lower(Node& node) {
-    ++work_;
+    work_ += per_look;
     const LowerBound& bound = lower_[node.region];
     if (bound[node.vector].is_gone()) node.seen_vectors = 0;
     if (node.seen_vectors == bound.size()) return;
@@ -199,6 +201,7 @@ class BeliefGraph {
       }
       node.seen_vectors = bound.initial();
     }
+    work_ += per_passed * (bound.size() - node.seen_vectors);
     for (; node.seen_vectors < bound.size(); ++node.seen_vectors) {
       const AlphaVector& vector = bound[node.seen_vectors];
       if (!vector.is_gone() && vector.length <= node.left) take(node.seen_vectors);
@@ -208,6 +211,8 @@ class BeliefGraph {
 
   void refresh_upper(Node& node) {
     UpperBound& bound = upper_of(node.region, node.left);
+    work_ += per_look;
+    if (bound.changes() != node.seen_changes) work_ += per_spread * node.belief.size();
     work_ += std::min<std::size_t>(bound.changes() - node.seen_changes, bound.points()) * node.belief.size();
     node.upper = bound.of(node.belief, node.corner, node.upper, node.seen_changes);
     node.seen_changes = bound.changes();
@@ -234,6 +239,19 @@ class BeliefGraph {
   }
 
  private:
+  // What takes time whatever the size of a belief.
+  static constexpr std::uint64_t per_node = 1400;    // a new one
+  static constexpr std::uint64_t per_look_up = 200;  // of a belief
+  static constexpr std::uint64_t per_branch = 90;
+  static constexpr std::uint64_t per_look = 30;      // at a bound that may have changed
+  static constexpr std::uint64_t per_vector = 35;
+  static constexpr std::uint64_t per_passed = 2;     // vector that does not count
+  static constexpr std::uint64_t per_cleared = 8;    // numbers that an operation clears
+  // Of each state of a belief, what is more than a multiplication:
+  static constexpr std::uint64_t per_weight = 3;
+  static constexpr std::uint64_t per_normalised = 6;
+  static constexpr std::uint64_t per_spread = 2;
+
   static double size_of(const ActionValues& values) {
     double size = 0;
     for (const double value : values) size = std::max(size, std::abs(value));
@@ -256,7 +274,7 @@ class BeliefGraph {
   const Move& move(const Node& node, std::uint32_t action) const { return regions_.all[node.region].moves[action]; }
 
   double value_of(const AlphaVector& vector, const Node& node) {
-    work_ += node.belief.size();
+    work_ += per_vector + node.belief.size();
     const double value = expected(vector.values, node.belief) - rounding_ * vector.size;
     return vector.length == node.left ? value : value + tail(vector.length, node.left);
   }
@@ -328,11 +346,11 @@ class BeliefGraph {
   }
 
   void add_successors(const Belief& belief, std::uint32_t left, const Move& move, Branch& branch) {
-    work_ += posterior_.predict(belief, move);
+    work_ += posterior_.predict(belief, move) + move.targets / per_cleared;
     for (std::uint32_t number = 0; number < move.observation_branches.size(); ++number) {
       const ObservationBranch& observation_branch = move.observation_branches[number];
       const double total = posterior_.observe(observation_branch);
-      work_ += observation_branch.successors.size();
+      work_ += per_look + per_weight * observation_branch.successors.size();
       if (total > negligible_) {
         add_successor(observation_branch.region, left, number, total, branch);
       } else if (total > 0) {
@@ -349,6 +367,7 @@ class BeliefGraph {
   // Adds the successor for the posterior belief, whose weights sum to `total`.
   void add_successor(std::uint32_t region, std::uint32_t left, std::uint32_t observation_branch, double total, Branch& branch) {
     const std::uint32_t number = node_of(region, left, posterior_.normalised(total, negligible_));
+    work_ += per_normalised * nodes_[number].belief.size();
     const double share = posterior_.share_of(nodes_[number].belief) * (1 - 4 * rounding_);
     const double rest = std::max(0.0, total - share) + 8 * rounding_ * total;
     branch.successors.push_back({share, observation_branch, number});

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/progress.hpp"
 #include "point_based/regions.hpp"
 #include "point_based/rounding.hpp"
 
@@ -78,6 +79,7 @@ class InitialBounds {
     Gathered gathered;
     gathered.slot_of.assign(model_.observations, 0);
     for (std::size_t left = 1; left <= model_.horizon; ++left) {
+      aos::progress::tell("computing first bounds", left, model_.horizon);
       ActionValues above(informed[0].size(), 0.0);
       ActionValues below = above;
       const ActionValues& later = informed.back();

@@ -43,8 +43,8 @@ class OnlineSarsop {
   // and the missing part is worth nothing. Returns whether the model's starts can lead to this belief.
   bool move_to(const std::vector<std::pair<std::uint32_t, double>>& belief);
 
-  // Runs at least one trial, until `is_over()`, until `max_work` is done (0: no limit), or until nothing is
-  // left to find out. Returns the work: the number of multiplications for predictions and for alpha vectors.
+  // Runs trials until `is_over()`, until `max_work` is done (0: no limit), or until nothing is left to find out. The
+  // last trial may be cut short. Returns the work in operations (belief_graph.hpp).
   std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over);
   // Runs trials below an action that is being carried out, without a limit of the work. Returns the work.
   std::uint64_t improve_below(std::uint32_t action, const IsOver& is_over);

@@ -1,4 +1,5 @@
 // The engine as a child process. It reads commands as lines of text (command.hpp) and answers each by a line of JSON.
+// Lines of progress may come before the answer.
 //
 // The answers go to a descriptor of their own; what model code prints goes to standard error. The process dies with its
 // parent. A fault of model code is an answer. After a crash, the blame page tells which document code ran.
@@ -11,6 +12,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -18,6 +20,7 @@
 #include <string_view>
 
 #include "aos/base/fault.hpp"
+#include "aos/base/progress.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/commands.hpp"
 #include "aos/child/watchdog.hpp"
@@ -71,6 +74,14 @@ inline bool has_input() {
   return ::poll(&input, 1, 0) > 0;
 }
 
+// Lines of progress come before the answer.
+inline std::FILE* told = nullptr;
+inline void say_progress(const char* what, std::uint64_t done, std::uint64_t all) {
+  std::fprintf(told, "{\"progress\":{\"what\":\"%s\",\"done\":%llu,\"all\":%llu}}\n", what,
+               static_cast<unsigned long long>(done), static_cast<unsigned long long>(all));
+  std::fflush(told);
+}
+
 inline void say(std::FILE* out, const JsonWriter& json) {
   std::fwrite(json.text().data(), 1, json.text().size(), out);
   std::fputc('\n', out);
@@ -90,6 +101,7 @@ int run_child(int argc, char** argv) {
   detail::share_blame(argv[1]);
   watchdog::start(std::atoi(argv[5]));
   std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
+  detail::told = out;
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
 
   const std::string_view policy_text = argv[4];
@@ -113,7 +125,9 @@ int run_child(int argc, char** argv) {
     std::string_view text{line, static_cast<std::size_t>(length)};
     if (!text.empty() && text.back() == '\n') text.remove_suffix(1);
     json.clear();
+    progress::tell_to(detail::say_progress);
     detail::guarded(json, [&] { commands->answer(Command{text}, json); });
+    progress::tell_to(nullptr);  // nobody reads while nothing is asked
     watchdog::allow(0);
     detail::say(out, json);
     commands->go_on_pondering(detail::has_input);

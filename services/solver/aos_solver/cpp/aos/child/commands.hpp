@@ -1,11 +1,13 @@
 // The commands of an engine child. Every answer is a JSON object.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "aos/base/json.hpp"
+#include "aos/base/progress.hpp"
 #include "aos/child/belief_commands.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/planning_commands.hpp"
@@ -47,6 +49,7 @@ class Commands {
     const std::string_view name = command.name();
     if (command.optional_text("max_seconds")) watchdog::allow(command.number<double>("max_seconds"));
     if (name == "describe") return describe(json);
+    if (name == "tell_progress") return tell_progress(json, command);
     if (name == "summary") return beliefs_.summary(json);
     if (name == "reset_belief") return beliefs_.reset(json);
     if (name == "draw_belief") return beliefs_.draw(json);
@@ -74,6 +77,12 @@ class Commands {
     if (name == "rate") return write_code_rate<Model>(json, command);
     if (name == "rate_by_table") return write_table_rate<Model>(json, command);
     throw BadCommand{"unknown command: " + std::string{name}};
+  }
+
+  // From now on, answers that take long are preceded by lines of progress, one in so many milliseconds.
+  static void tell_progress(JsonWriter& json, const Command& command) {
+    progress::between = std::chrono::milliseconds{command.number<int>("between_ms")};
+    json.begin_object().end_object();
   }
 
   template <class IsOver>

@@ -84,7 +84,8 @@ class PlanningCommands {
     const auto is_over = [=] { return std::chrono::steady_clock::now() - start > limit; };
     StateSpace<Model> space;
     space.reach_within(belief(), horizon);
-    ExactEvaluation<Model> evaluation{space, {.beliefs = command.number<std::uint64_t>("beliefs"), .is_over = is_over}};
+    const ObservableValues<Model> observable{space, horizon};
+    ExactEvaluation<Model> evaluation{space, observable, {.beliefs = command.number<std::uint64_t>("beliefs"), .is_over = is_over}};
     const auto values = evaluation.action_values(belief(), horizon);
     json.begin_object().key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
@@ -198,7 +199,8 @@ class PlanningCommands {
     beliefs_.write_predicted(json, best, belief);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const std::chrono::duration<double> processor{processor_time() - processor_start};
-    json.member("seconds", spent.count()).member("cpu_seconds", processor.count()).end_object();
+    json.member("seconds", spent.count()).member("cpu_seconds", processor.count());
+    json.member("preparation_s", search.preparing().count()).member("search_s", search.searching().count()).end_object();
   }
 
   // The actions that the command bars, by their numbers among `numbers`.

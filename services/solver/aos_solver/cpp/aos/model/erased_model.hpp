@@ -117,8 +117,8 @@ struct ErasedModel {
     return compiled_model.violations(before.bytes, next.bytes, action);
   }
   // The discounted return of one rollout: see rollout.hpp.
-  static double rollout(const State& state, int horizon, Sampler& random) {
-    return compiled_model.rollout(state.bytes, horizon, random);
+  static double rollout(const State& state, int& left, Sampler& random) {
+    return compiled_model.rollout(state.bytes, left, random);
   }
   // Writes to `odds` the probability with which a rollout takes each action first.
   static void rollout_odds(const State& state, double* odds, Sampler& random) {

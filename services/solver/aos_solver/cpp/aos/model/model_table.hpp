@@ -69,7 +69,7 @@ struct ModelTable {
   void (*correct)(const void* before, void* next, int action, DirectedDraws& random);
   bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
   Violations (*violations)(const void* before, const void* next, int action);
-  double (*rollout)(const void* state, int horizon, Sampler& random);
+  double (*rollout)(const void* state, int& left, Sampler& random);
   void (*rollout_odds)(const void* state, double* odds, int count, Sampler& random);
 };
 
@@ -159,8 +159,8 @@ constexpr ModelTable table_of() {
         return 0;
       },
       .rollout =
-          [](const void* state, int horizon, Sampler& random) {
-            const double value = aos::rollout<Model>(*static_cast<const State*>(state), horizon, random);
+          [](const void* state, int& left, Sampler& random) {
+            const double value = aos::rollout<Model>(*static_cast<const State*>(state), left, random);
             blame::over();
             return value;
           },

@@ -89,9 +89,9 @@ void rollout_odds(const typename Model::State& state, double* odds, int count, S
   for (int action = 0; action < count; ++action) odds[action] = total > 0 ? odds[action] / total : 1.0 / count;
 }
 
-// The discounted return of at most `horizon` steps from `start` on.
+// The discounted return of at most `left` steps from `start` on. `left` becomes the number of steps that were not taken.
 template <class Model>
-AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon, Sampler& random) {
+AOS_INLINING_ALL double rollout(const typename Model::State& start, int& left, Sampler& random) {
   thread_local std::vector<double> sums_of_weights;
   const int count = Model::action_count();
   if constexpr (Model::has_rollout_policy) sums_of_weights.resize(static_cast<std::size_t>(count));
@@ -117,7 +117,8 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
     draw_action();
     return Model::step(state, action, model_draws);
   };
-  for (; horizon > 0 && Model::ending(state) == Ending::running; --horizon) {
+  int to_go = left;
+  for (; to_go > 0 && Model::ending(state) == Ending::running; --to_go) {
     if constexpr (Model::has_state_heuristic) {
       if (draws.flag(heuristic_ending)) {
         sum += discount * Model::state_value(state, model_draws);
@@ -130,6 +131,7 @@ AOS_INLINING_ALL double rollout(const typename Model::State& start, int horizon,
     discount *= Model::discount;
   }
   random = draws;
+  left = to_go;
   return sum;
 }
 

@@ -21,6 +21,7 @@
 
 #include "aos/base/clock.hpp"
 #include "aos/base/mixed.hpp"
+#include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/action_values.hpp"
@@ -54,6 +55,7 @@ class BeliefTree {
     for (const auto& [state, weight] : space_.weights_of(belief)) root_.emplace_back(state, static_cast<float>(weight));
     const std::uint64_t last_run = tables_.runs() + max_prepared_runs;
     for (std::size_t i = 0; i < root_.size() && tables_.runs() < last_run; ++i) {
+      progress::tell("finding out what observations tell", i, root_.size());
       const std::uint32_t state = root_[i * spreading % root_.size()].first;
       for (std::size_t action = 0; action < space_.actions(); ++action) tables_.fill(space_.rows().row(state, action));
     }
@@ -63,8 +65,7 @@ class BeliefTree {
   // Begins another mission, which does not depend on earlier ones.
   void start_over() { tables_.forget(); }
 
-  // Runs the search for the belief of `prepare`. Work is counted in outcomes that are weighed and states that are
-  // valued; `horizon` of them are a simulation. Returns the number of simulations.
+  // Runs the search for the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(Budget budget, int horizon, Sampler& random, const BarredActions& barred) {
     const auto start = PlanningClock::now();
     barred_ = barred;
@@ -76,13 +77,13 @@ class BeliefTree {
     if (root_.empty()) return 0;
     add_node(root_, horizon);
     constexpr std::uint64_t between_looks = 16;
-    const std::uint64_t limit = budget.simulations * static_cast<std::uint64_t>(horizon);
+    const Operations limit = budget.operations(horizon);
     const bool has_limit = budget.simulations > 0 || budget.seconds <= 0;
     for (std::uint64_t i = 1; horizon > 1 && !(has_limit && work_ >= limit); ++i) {
       simulate(random);
       if (i % between_looks == 0 && budget.seconds > 0 && seconds_since(start) >= budget.seconds) break;
     }
-    return work_ / static_cast<std::uint64_t>(horizon) + 1;
+    return Budget::simulations_of(work_, horizon);
   }
 
   // An estimate for each action. Values are over the whole belief, whose ended part counts as 0.
@@ -108,6 +109,11 @@ class BeliefTree {
   }
 
  private:
+  static constexpr Operations per_value = 15;    // of an action in a state
+  static constexpr Operations per_outcome = 40;  // that is weighed by an observation
+  static constexpr Operations per_visit = 60;
+  static constexpr Operations per_action = 10;   // that is compared with others
+
   struct ActionNode {
     double q = 0;
     double reward = 0;
@@ -155,7 +161,7 @@ class BeliefTree {
         action.reward += weight / total * space_.rows().rewards[row];
       }
     }
-    work_ += belief.size();
+    work_ += per_value * belief.size() * space_.actions();
     nodes_[number].value = nodes_[number].first_value = value(number);
     return number;
   }
@@ -167,7 +173,7 @@ class BeliefTree {
     for (int left = horizon_; left > 1; --left) {
       const std::size_t a = choose(node);
       visits_.push_back({node, a});
-      ++work_;
+      work_ += per_visit + per_action * space_.actions();
       ++nodes_[node].n;
       ActionNode& action = actions_of(node)[a];
       if (++action.n == 1) action.running = running(node, a);
@@ -200,7 +206,7 @@ class BeliefTree {
   bool draw_child(std::uint32_t node, std::size_t a, int left, Sampler& random) {
     const std::span states{states_.data() + nodes_[node].first, states_.data() + nodes_[node].last};
     const bool goes_on = next_.draw(states, a, node == 0, random);
-    work_ += next_.work();
+    work_ += per_outcome * next_.work();
     if (!goes_on) return false;
     const std::vector<std::uint32_t>& known = actions_of(node)[a].children;
     const std::uint64_t hash = hash_of(next_.after());
@@ -313,7 +319,7 @@ class BeliefTree {
   SmallBelief root_;
   int horizon_ = 0;
   BarredActions barred_;
-  std::uint64_t work_ = 0;
+  Operations work_ = 0;
   std::vector<Node> nodes_;
   std::vector<ActionNode> actions_;  // of the nodes in turn
   SmallBelief states_;               // of the nodes in turn

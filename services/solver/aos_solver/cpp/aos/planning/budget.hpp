@@ -13,12 +13,28 @@ namespace aos {
 inline constexpr std::uint32_t no_node = 0xffffffffu;
 inline constexpr int max_search_threads = 32;
 
-// A simulation is one path from the belief of up to `horizon` steps of the model. POMCP counts its descents with their
-// rollouts. DESPOT counts the steps of scenarios, default policies and rollouts, and divides them by the horizon.
+// Work is counted in operations. An operation is about one multiplication with its look-ups in memory, a nanosecond or so.
+// It is counted and not timed, so that the same seed gives the same decision on every machine.
+using Operations = std::uint64_t;
+
+inline constexpr Operations operations_of_step = 100;  // of the model, with what a search does for it
+
+// A simulation is the work of a path from the belief of `horizon` steps of the model, in all planners. Where POMCP values
+// new histories by rollouts, it is one descent with its rollout.
 struct Budget {
   std::uint64_t simulations = 0;  // 0: no limit
   double seconds = 0;             // 0: no limit
   int threads = 1;                // 1 to `max_search_threads`
+
+  Operations operations(int horizon) const { return simulations * operations_of_simulation(horizon); }
+  static Operations operations_of_simulation(int horizon) {
+    return operations_of_step * static_cast<Operations>(horizon > 0 ? horizon : 1);
+  }
+  // How many simulations were begun by so much work.
+  static std::uint64_t simulations_of(Operations work, int horizon) {
+    const Operations each = operations_of_simulation(horizon);
+    return (work + each - 1) / each;
+  }
 };
 
 // Actions that a decision may not take, since they cannot be carried out now. Later decisions may take them.

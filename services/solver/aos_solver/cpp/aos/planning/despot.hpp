@@ -50,19 +50,19 @@ class Despot {
         actions_(with_room_for<ActionNode>(max_node_bytes / sizeof(ActionNode))),
         scenarios_(with_room_for<Scenario<Model>>(max_scenario_bytes / scenario_bytes())) {}
 
-  // Runs the search and returns how many simulations it took, as budget.hpp counts them.
+  // Prepares the values of states. The first decision may take some seconds here, later ones take next to nothing.
+  void prepare(const Belief<Model>& belief, int horizon) { evaluation_.prepare(belief, horizon); }
+
+  // Searches from the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {
     using Seconds = std::chrono::duration<double>;
-    // The first decision may take some seconds here, which no budget counts. Later ones take next to nothing.
-    evaluation_.prepare(belief, horizon);
     budget_ = budget;
     latest_ = budget.seconds > 0
                   ? PlanningClock::now() + std::chrono::duration_cast<PlanningClock::duration>(Seconds{budget.seconds})
                   : PlanningClock::time_point::max();
     horizon_ = horizon;
     barred_ = barred;
-    steps_ = 0;
     nodes_.clear();
     actions_.clear();
     scenarios_.clear();
@@ -130,8 +130,7 @@ class Despot {
   bool may_go_on() const {
     return (budget_.simulations == 0 || simulations() < budget_.simulations) && PlanningClock::now() < latest_;
   }
-  std::uint64_t simulations() const { return all_steps() / static_cast<std::uint64_t>(std::max(horizon_, 1)); }
-  std::uint64_t all_steps() const { return steps_ + evaluation_.steps(); }
+  std::uint64_t simulations() const { return Budget::simulations_of(evaluation_.work(), horizon_); }
 
   // The discounted share of the scenarios that come to where the tree ends, by the best actions.
   double beyond_action(const ActionNode& action) const {
@@ -183,15 +182,15 @@ class Despot {
     scenario_count_ = outcomes_.size();
   }
 
-  // How many scenarios the budget allows, by the time or the steps that the fewest scenarios took.
+  // How many scenarios the budget allows, by the time or the work that the fewest scenarios took.
   std::size_t affordable_scenarios(PlanningClock::duration spent) const {
     double share = 1;  // of max_scenarios
     const auto affordable_share = [&](double budget, double spent_on_fewest) {
       return share_of_first_look * budget * min_scenarios / (spent_on_fewest * action_count() * max_evaluated);
     };
     if (budget_.simulations > 0) {
-      const double budget = static_cast<double>(budget_.simulations) * horizon_;
-      share = affordable_share(budget, static_cast<double>(std::max<std::uint64_t>(all_steps(), 1)));
+      const auto budget = static_cast<double>(budget_.operations(horizon_));
+      share = affordable_share(budget, static_cast<double>(std::max<Operations>(evaluation_.work(), 1)));
     } else if (budget_.seconds > 0) {
       share = affordable_share(budget_.seconds, std::chrono::duration<double>(spent).count());
     }
@@ -247,16 +246,14 @@ class Despot {
     outcomes_.clear();
     for (std::size_t i = node.first_scenario; i < node.first_scenario + node.scenarios; ++i) {
       Observed<Model> outcome{scenarios_[i], default_observation};
-      Sampler draws = evaluation_.draws(outcome.scenario.number, depth);
-      const Step step = Model::step(outcome.scenario.state, a, draws);
+      bool has_ended = false;
+      const Step step = evaluation_.step(outcome.scenario, a, depth, has_ended);
       const double earned = evaluation_.earned(scenarios_[i].seen, a, depth, step.reward);
       reward += earned;
       squares += earned * earned;
-      ++steps_;
       immediate += step.reward;
       outcome.observation = step.observation;
-      if (Model::ending(outcome.scenario.state) != Ending::running || depth + 1 == horizon_) continue;
-      outcome.scenario.seen = evaluation_.seen_next(outcome.scenario.seen, a, outcome.scenario.state);
+      if (has_ended || depth + 1 == horizon_) continue;
       outcomes_.push_back(outcome);
     }
     sort_by_observation(outcomes_, 0, outcomes_.size());
@@ -376,7 +373,6 @@ class Despot {
   PlanningClock::time_point latest_;
   int horizon_ = 0;
   BarredActions barred_;
-  std::uint64_t steps_ = 0;  // of scenarios
   std::size_t scenario_count_ = 0;
   double origin_ = 0;  // the value that all others are relative to
   double penalty_ = 0;

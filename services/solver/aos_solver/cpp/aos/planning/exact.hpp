@@ -17,15 +17,17 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/planning/budget.hpp"
 #include "aos/planning/state_space.hpp"
 
 namespace aos {
 
-// The limits of an evaluation: distinct beliefs, outcomes that are visited (0: no limit), and `is_over`.
+// The limits of an evaluation: distinct beliefs, work (0: no limit), and `is_over`.
 struct ExactLimits {
   std::uint64_t beliefs = 0;
-  std::uint64_t outcomes = 0;
+  Operations work = 0;
   std::function<bool()> is_over = [] { return false; };
 };
 
@@ -42,11 +44,53 @@ struct ExactValue {
   }
 };
 
+// The fully observable (MDP) values of a space's states, by decisions to go, from 0 on. Bounds of exact values.
+template <class Model>
+class ObservableValues {
+ public:
+  ObservableValues() = default;
+  ObservableValues(const StateSpace<Model>& space, int horizon) { prepare(space, horizon); }
+
+  // Computes the values for fewer than `horizon` decisions, or none if there are too many. What is known is kept.
+  void prepare(const StateSpace<Model>& space, int horizon) {
+    constexpr std::size_t max_values = 4'000'000;
+    if (numbering_ != space.numbering()) layers_.clear();
+    numbering_ = space.numbering();
+    if (space.size() * static_cast<std::size_t>(horizon) > max_values) return layers_.clear();
+    if (layers_.empty()) layers_.emplace_back(space.size(), 0.0);
+    for (auto left = static_cast<int>(layers_.size()); left < horizon; ++left) {
+      progress::tell("computing values of states", static_cast<std::uint64_t>(left), static_cast<std::uint64_t>(horizon));
+      std::vector<double> values(space.size(), std::numeric_limits<double>::infinity());
+      for (std::uint32_t state = 0; state < space.rows().states; ++state) {
+        double best = -std::numeric_limits<double>::infinity();
+        for (std::size_t action = 0; action < space.actions(); ++action) {
+          best = std::max(best, value(space.rows(), state, action, layers_.back()));
+        }
+        values[state] = best;
+      }
+      layers_.push_back(std::move(values));
+    }
+  }
+  std::size_t layers() const { return layers_.size(); }
+  const std::vector<double>& layer(int left) const { return layers_[static_cast<std::size_t>(left)]; }
+  // The value of an action, from those of the states after it.
+  static double value(const point_based::FlatModel& rows, std::uint32_t state, std::size_t action, const std::vector<double>& later) {
+    const std::size_t row = rows.row(state, action);
+    return rows.rewards[row] + Model::discount * rows.later_value(row, later);
+  }
+
+ private:
+  Numbering numbering_;
+  std::vector<std::vector<double>> layers_;
+};
+
 template <class Model>
 class ExactEvaluation {
  public:
-  // The space must list all that `horizon` decisions can lead to from the beliefs that are evaluated.
-  ExactEvaluation(const StateSpace<Model>& space, ExactLimits limits) : space_(space), limits_(std::move(limits)) {}
+  // The space must list all that `horizon` decisions can lead to from the beliefs that are evaluated. `values` are
+  // prepared for that horizon.
+  ExactEvaluation(const StateSpace<Model>& space, const ObservableValues<Model>& values, ExactLimits limits)
+      : space_(space), observable_(values), limits_(std::move(limits)) {}
 
   // The value of every action at a belief with `horizon` decisions to go. Throws NotEnumerable at a limit.
   std::vector<ExactValue> action_values(const Belief<Model>& belief, int horizon) {
@@ -55,7 +99,6 @@ class ExactEvaluation {
     const Weighted root = space_.weights_of(belief);
     std::vector<ExactValue> values(space_.actions());
     if (horizon <= 0 || root.empty()) return values;
-    prepare_mdp_values(horizon);
     for (std::size_t action = 0; action < values.size(); ++action) values[action] = action_value(root, action, horizon);
     return values;
   }
@@ -71,7 +114,7 @@ class ExactEvaluation {
     if (total <= 0) return found;
     for (auto& part : root) part.second /= total;
     limits_ = std::move(limits);
-    if (limits_.outcomes > 0) limits_.outcomes += walked_;
+    if (limits_.work > 0) limits_.work += work_;
     limits_.beliefs += evaluated_;
     Sampler random{1};
     try {
@@ -92,9 +135,13 @@ class ExactEvaluation {
   }
 
   std::uint64_t beliefs() const { return evaluated_; }
-  std::uint64_t outcomes() const { return walked_; }
+  Operations work() const { return work_; }
 
  private:
+  static constexpr Operations per_outcome = 80;  // that is added to a posterior
+  static constexpr Operations per_bound = 10;    // of an action in a state
+  static constexpr Operations per_belief = 300;
+
   using Weighted = std::vector<std::pair<std::uint32_t, double>>;
 
   struct BeliefKey {
@@ -106,28 +153,6 @@ class ExactEvaluation {
   };
 
   const point_based::FlatModel& rows() const { return space_.rows(); }
-
-  // Computes the fully observable (MDP) values of states, by decisions to go.
-  void prepare_mdp_values(int horizon) {
-    constexpr std::size_t max_values = 4'000'000;
-    if (space_.size() * static_cast<std::size_t>(horizon) > max_values) return;
-    if (mdp_values_.empty()) mdp_values_.emplace_back(space_.size(), 0.0);
-    for (auto left = static_cast<int>(mdp_values_.size()); left < horizon; ++left) {
-      std::vector<double> values(space_.size(), std::numeric_limits<double>::infinity());
-      for (std::uint32_t state = 0; state < rows().states; ++state) {
-        double best = -std::numeric_limits<double>::infinity();
-        for (std::size_t action = 0; action < space_.actions(); ++action) {
-          best = std::max(best, mdp_value(state, action, mdp_values_.back()));
-        }
-        values[state] = best;
-      }
-      mdp_values_.push_back(std::move(values));
-    }
-  }
-  double mdp_value(std::uint32_t state, std::size_t action, const std::vector<double>& later) const {
-    const std::size_t row = rows().row(state, action);
-    return rows().rewards[row] + Model::discount * rows().later_value(row, later);
-  }
 
   // Posteriors are not normalised here: a weight is the probability of getting to that state.
   ExactValue action_value(const Weighted& belief, std::size_t action, int horizon) {
@@ -149,11 +174,11 @@ class ExactEvaluation {
       for (const auto& outcome : rows().outcomes[rows().row(state, action)]) {
         for (const auto& likelihood : rows().likelihoods[outcome.sensing]) {
           result[likelihood.observation][outcome.next] += weight * outcome.probability * likelihood.probability;
-          ++walked_;
+          work_ += per_outcome;
         }
       }
     }
-    if (limits_.outcomes > 0 && walked_ > limits_.outcomes) throw NotEnumerable{"there are more outcomes than the budget"};
+    if (limits_.work > 0 && work_ > limits_.work) throw NotEnumerable{"there are more outcomes than the budget"};
     return result;
   }
 
@@ -206,6 +231,7 @@ class ExactEvaluation {
     const BeliefKey key = key_of(belief);
     if (const auto found = known.find(key); found != known.end()) return scaled(found->second, total);
     if (++evaluated_ > limits_.beliefs) throw NotEnumerable{"more beliefs than the budget can be reached"};
+    if (evaluated_ % 64 == 0) progress::tell("evaluating beliefs", evaluated_);
     if (evaluated_ % 64 == 0 && limits_.is_over()) throw NotEnumerable{"it takes longer than allowed"};
     const ExactValue best = best_of_actions(belief, horizon);
     known.emplace(key, best);
@@ -216,6 +242,7 @@ class ExactEvaluation {
   // Evaluates the actions in the order of their bounds.
   ExactValue best_of_actions(const Weighted& belief, int horizon) {
     std::vector<std::pair<double, std::size_t>> order;
+    work_ += per_belief + per_bound * belief.size() * space_.actions();
     for (std::size_t action = 0; action < space_.actions(); ++action) order.emplace_back(-bound(belief, action, horizon), action);
     std::sort(order.begin(), order.end());
     ExactValue best = action_value(belief, order.front().second, horizon);
@@ -228,12 +255,12 @@ class ExactEvaluation {
 
   // An upper bound of the action's value; infinite if none is known.
   double bound(const Weighted& belief, std::size_t action, int horizon) const {
-    if (static_cast<std::size_t>(horizon) > mdp_values_.size()) return std::numeric_limits<double>::infinity();
-    const std::vector<double>& later = mdp_values_[static_cast<std::size_t>(horizon - 1)];
+    if (static_cast<std::size_t>(horizon) > observable_.layers()) return std::numeric_limits<double>::infinity();
+    const std::vector<double>& later = observable_.layer(horizon - 1);
     double sum = 0;
     double magnitude = 0;
     for (const auto& [state, weight] : belief) {
-      const double value = weight * mdp_value(state, action, later);
+      const double value = weight * ObservableValues<Model>::value(rows(), state, action, later);
       sum += value;
       magnitude += std::abs(value);
     }
@@ -253,10 +280,10 @@ class ExactEvaluation {
   }
 
   const StateSpace<Model>& space_;
+  const ObservableValues<Model>& observable_;
   ExactLimits limits_;
   std::uint64_t evaluated_ = 0;
-  std::uint64_t walked_ = 0;
-  std::vector<std::vector<double>> mdp_values_;  // by decisions to go and state
+  Operations work_ = 0;
   std::unordered_map<std::size_t, std::unordered_map<BeliefKey, ExactValue, KeyHash>> values_;
 };
 

@@ -21,18 +21,24 @@ class ExactSearch {
  public:
   explicit ExactSearch(const StateSpace<Model>& space) : space_(space) {}
 
-  // Tries to compute the values with a share of the budget. A failure returns false and puts off the next tries.
-  bool search(const Belief<Model>& belief, Budget budget, int horizon) {
+  // Whether this decision makes a try. If so, bounds are prepared for it, which takes long at the first decision only.
+  bool prepare(int horizon) {
     if (put_off_ > 0) {
       --put_off_;
       return false;
     }
+    observable_.prepare(space_, horizon);
+    return true;
+  }
+
+  // Tries to compute the values with a share of the budget. A failure returns false and puts off the next tries.
+  bool search(const Belief<Model>& belief, Budget budget, int horizon) {
+    evaluation_.emplace(space_, observable_, limits_of(budget, horizon));
+    budget_ = budget;
+    horizon_ = horizon;
     try {
-      evaluation_.emplace(space_, limits_of(budget, horizon));
       values_ = evaluation_->action_values(belief, horizon);
       error_ = evaluation_->error(horizon);
-      budget_ = budget;
-      horizon_ = horizon;
       failures_ = 0;
       return true;
     } catch (const NotEnumerable&) {
@@ -51,9 +57,9 @@ class ExactSearch {
     for (const double loss : losses) mean_loss_ += loss / count;
     for (const double loss : losses) squares += (loss - mean_loss_) * (loss - mean_loss_);
     if (count > 1) loss_error_ = std::sqrt(squares / (count - 1) / count);
-    const std::uint64_t outcomes = evaluation_->outcomes();
+    const std::uint64_t taken = simulations();
     evaluation_.reset();
-    return outcomes / static_cast<std::uint64_t>(horizon_) + 1;
+    return taken;
   }
   // What missions return that plan anew at each step. Bounds are those of the best way of deciding.
   std::vector<ActionEstimate> values() const {
@@ -64,6 +70,8 @@ class ExactSearch {
     }
     return result;
   }
+  // How many simulations the last try has taken so far.
+  std::uint64_t simulations() const { return Budget::simulations_of(evaluation_->work(), horizon_); }
   std::vector<ActionEstimate> estimates() const {
     std::vector<ActionEstimate> estimates;
     for (const ExactValue& value : values_) estimates.push_back({value.value, 1, 0, 0, value.value - error_, value.value + error_});
@@ -88,8 +96,7 @@ class ExactSearch {
   static ExactLimits limits_of(Budget budget, int horizon) {
     ExactLimits limits{.beliefs = max_beliefs};
     if (budget.simulations > 0) {
-      const double outcomes = share_of_budget * static_cast<double>(budget.simulations) * horizon;
-      limits.outcomes = static_cast<std::uint64_t>(outcomes) + 1;
+      limits.work = static_cast<Operations>(share_of_budget * static_cast<double>(budget.operations(horizon))) + 1;
     }
     if (budget.seconds > 0) {
       limits.is_over = [start = PlanningClock::now(), seconds = share_of_budget * budget.seconds] {
@@ -100,6 +107,7 @@ class ExactSearch {
   }
 
   const StateSpace<Model>& space_;
+  ObservableValues<Model> observable_;
   std::vector<ExactValue> values_;  // by action
   double error_ = 0;                // of the values, at most
   double mean_loss_ = 0;

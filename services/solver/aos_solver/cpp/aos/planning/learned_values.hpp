@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/reflection.hpp"
@@ -90,6 +91,7 @@ class LearnedValues final : public StateValues<Model> {
   static constexpr std::size_t max_example_bytes = std::size_t{32} << 20;  // of the states of a round
   static constexpr std::size_t max_cells = 20'000'000;    // of all rows
   static constexpr int attempts_to_go_on = 8;  // of a walk, at each step
+  static constexpr std::size_t walks_between_looks = 64;  // at the progress
   static constexpr int sweeps = 30;
   static constexpr int max_compared = 24;  // actions; a policy takes the best of these
   static constexpr int tests = 64;
@@ -130,6 +132,7 @@ class LearnedValues final : public StateValues<Model> {
     const std::size_t more = std::min(successors / action_count(), max_example_bytes / Model::state_bytes());
     const std::size_t wanted = examples_.size() + std::max<std::size_t>(more, 100);
     for (std::size_t walks = 0; examples_.size() < wanted && walks < 4 * wanted; ++walks) {
+      if (walks % walks_between_looks == 0) progress::tell("learning what states are worth", examples_.size(), wanted);
       State state = belief.sample(random);
       const int stop = random.below(horizon_);
       const int at_random = has_values && walks % 2 == 1 ? random.below(stop + 1) : stop;
@@ -248,7 +251,8 @@ class LearnedValues final : public StateValues<Model> {
       const State& state = belief.sample(random);
       if (Model::ending(state) != Ending::running) continue;
       promised += value(state, horizon_);
-      at_random += Model::rollout(state, horizon_, random);
+      int left = horizon_;
+      at_random += Model::rollout(state, left, random);
       earned += earned_by_values(state, random);
     }
     return earned > at_random && earned >= (promised + at_random) / 2;
@@ -294,7 +298,9 @@ class LearnedValues final : public StateValues<Model> {
       double sum = 0;
       for (int i = 0; i < rollouts; ++i) {
         State next = now;
-        sum += Model::step(next, action, random).reward + Model::discount * Model::rollout(next, left - 1, random);
+        int after = left - 1;
+        sum += Model::step(next, action, random).reward;
+        sum += Model::discount * Model::rollout(next, after, random);
         steps += static_cast<std::size_t>(left);
       }
       return sum;

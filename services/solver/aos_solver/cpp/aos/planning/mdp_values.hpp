@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/planning/state_space.hpp"
 #include "aos/planning/state_values.hpp"
@@ -46,6 +47,7 @@ class MdpValues final : public StateValues<Model> {
   bool knows(int horizon) const { return values_of_ == space_.numbering() && horizon == horizon_ && is_prepared_; }
 
   std::size_t states() const { return space_.size(); }
+  const StateSpace<Model>& space() const { return space_; }
 
   // The number of a state; `no_state` if the state is not listed. Such a state has the highest value.
   std::uint32_t number_of(const State& state) const { return space_.find(state); }
@@ -115,6 +117,7 @@ class MdpValues final : public StateValues<Model> {
     double change = 0;
     int decisions = 0;
     while (decisions < horizon_) {
+      progress::tell("computing values of states", static_cast<std::uint64_t>(decisions), static_cast<std::uint64_t>(horizon_));
       std::vector<double> values(space_.size());
       change = one_more_decision(layers_.back(), values);
       if (!has_room) layers_.clear();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "aos/base/clock.hpp"
 #include "aos/base/random.hpp"
 #include "aos/base/rounded_text.hpp"
 #include "aos/belief/belief.hpp"
@@ -41,30 +43,29 @@ inline std::optional<PlannerKind> planner_kind(std::string_view name) {
 template <class Model>
 class Planner {
  public:
-  // Chooses the planner and searches. See Pomcp, Despot, PointBased and ExactSearch.
+  // Chooses the planner, prepares it and searches. See Pomcp, Despot, PointBased and ExactSearch.
   std::uint64_t search(PlannerKind kind, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {
     // Actions that were barred have few visits in the tree and would be neglected further.
     if (barred != barred_) forget();
     barred_ = barred;
     horizon_ = horizon;
+    searching_ = {};
+    tried_in_vain_ = 0;
+    const auto start = thread_time();
     used_ = chosen_kind(kind, belief, budget, horizon);
-    switch (used_) {
-      case PlannerKind::exact: return exact_.play(belief, exact_.best(barred));
-      case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred);
-      case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred);
-      case PlannerKind::sarsop: {
-        const std::uint64_t simulations = point_based_.search(budget);
-        why_ += "; " + bounds_text(horizon);
-        return simulations;
-      }
-      default: {
-        const std::uint64_t simulations = pomcp_.search(belief, budget, horizon, random, barred);
-        if (const std::string source = pomcp_.value_source(); !source.empty()) why_ += "; " + source;
-        return simulations;
-      }
-    }
+    if (used_ == PlannerKind::despot) despot().prepare(belief, horizon);
+    if (used_ == PlannerKind::pomcp) pomcp_.prepare(belief, horizon, budget.threads, random);
+    const auto prepared = thread_time();
+    preparing_ = prepared - start - searching_;
+    const std::uint64_t simulations = searched(belief, budget, horizon, random);
+    searching_ += thread_time() - prepared;
+    return simulations + tried_in_vain_;
   }
+
+  // This thread's processor time of the last search, and that of the lists, values and first bounds before it, which no budget counts.
+  std::chrono::duration<double> searching() const { return searching_; }
+  std::chrono::duration<double> preparing() const { return preparing_; }
 
   // The planner of the last search, and why it was that one.
   const char* name() const { return planner_names[static_cast<std::size_t>(used_)]; }
@@ -123,7 +124,10 @@ class Planner {
   // Searches below the action that is being carried out, if the last planner can use that.
   template <class IsOver>
   void ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random, IsOver&& is_over) {
-    if (used_ == PlannerKind::pomcp) pomcp_.ponder(action, belief, budget, horizon, random, is_over);
+    if (used_ == PlannerKind::pomcp) {
+      pomcp_.prepare(belief, horizon, budget.threads, random);
+      pomcp_.ponder(action, belief, budget, horizon, random, is_over);
+    }
     if (used_ == PlannerKind::sarsop) point_based_.ponder(action, budget, is_over);
   }
   // How many simulations of earlier searches serve the next one.
@@ -150,6 +154,25 @@ class Planner {
   }
 
  private:
+  // Searches by the planner that was chosen and prepared.
+  std::uint64_t searched(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
+    switch (used_) {
+      case PlannerKind::exact: return exact_.play(belief, exact_.best(barred_));
+      case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred_);
+      case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred_);
+      case PlannerKind::sarsop: {
+        const std::uint64_t simulations = point_based_.search(budget);
+        why_ += "; " + bounds_text(horizon);
+        return simulations;
+      }
+      default: {
+        const std::uint64_t simulations = pomcp_.search(belief, budget, horizon, random, barred_);
+        if (const std::string source = pomcp_.value_source(); !source.empty()) why_ += "; " + source;
+        return simulations;
+      }
+    }
+  }
+
   // Also sets `why_`.
   PlannerKind chosen_kind(PlannerKind asked_for, const Belief<Model>& belief, Budget budget, int horizon) {
     if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon);
@@ -167,7 +190,7 @@ class Planner {
       return PlannerKind::pomcp;
     }
     why_ = "all " + std::to_string(space_.size()) + " states can be listed";
-    if (space_.lists_observations() && belief.is_exact() && exact_.search(belief, budget, horizon)) {
+    if (fits_exact_search(belief, budget, horizon)) {
       why_ += ", and every observation of " + std::to_string(horizon) + " decisions fits the budget";
       return PlannerKind::exact;
     }
@@ -180,6 +203,15 @@ class Planner {
       return space_.lists_observations() ? PlannerKind::despot : belief_tree_or_pomcp(belief, horizon);
     }
     return PlannerKind::sarsop;
+  }
+
+  bool fits_exact_search(const Belief<Model>& belief, Budget budget, int horizon) {
+    if (!space_.lists_observations() || !belief.is_exact() || !exact_.prepare(horizon)) return false;
+    const auto start = thread_time();
+    const bool fits = exact_.search(belief, budget, horizon);
+    searching_ += thread_time() - start;
+    if (!fits) tried_in_vain_ = exact_.simulations();
+    return fits;
   }
 
   PlannerKind belief_tree_or_pomcp(const Belief<Model>& belief, int horizon) {
@@ -229,6 +261,9 @@ class Planner {
   int horizon_ = 1;       // of the last search
   BarredActions barred_;  // in the last search
   std::string why_;
+  std::uint64_t tried_in_vain_ = 0;  // simulations of exact search
+  std::chrono::nanoseconds preparing_{};
+  std::chrono::nanoseconds searching_{};
 };
 
 }  // namespace aos

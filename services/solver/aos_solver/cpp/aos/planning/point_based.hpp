@@ -75,7 +75,8 @@ class PointBased {
   // Runs trials from the prepared belief. Returns how many simulations these count as.
   std::uint64_t search(Budget budget) {
     if (running_ <= 0 || (budget.simulations == 0 && budget.seconds <= 0)) return 0;
-    const std::uint64_t simulations = simulations_of(search_->improve(work_of(budget), until(budget, [] { return false; })));
+    const Operations work = search_->improve(budget.operations(horizon_), until(budget, [] { return false; }));
+    const std::uint64_t simulations = Budget::simulations_of(work, horizon_);
     known_ += simulations;
     return simulations;
   }
@@ -84,7 +85,8 @@ class PointBased {
   template <class IsOver>
   void ponder(int action, Budget budget, IsOver&& is_over) {
     if (running_ <= 0 || budget.seconds <= 0) return;
-    known_ += simulations_of(search_->improve_below(static_cast<std::uint32_t>(action), until(budget, is_over)));
+    const Operations work = search_->improve_below(static_cast<std::uint32_t>(action), until(budget, is_over));
+    known_ += Budget::simulations_of(work, horizon_);
   }
 
   // The lower bounds of the actions, by which the decision is made. `n` counts the trials that began with the action, and 1
@@ -118,8 +120,6 @@ class PointBased {
  private:
   static constexpr double next_to_nothing = 0.01;
   static constexpr double little = 0.1;
-  // A step of a state through a search tree takes as long as this many multiplications.
-  static constexpr std::uint64_t work_per_step = 100;
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
     point_based::FlatModel model = flat_model();
@@ -172,13 +172,6 @@ class PointBased {
     for (const double reward : model.rewards) largest = std::max(largest, std::abs(reward));
     const double decisions = std::min(static_cast<double>(horizon_), 1 / (1 - Model::discount));
     return NumberCells::error * largest * decisions * decisions;
-  }
-
-  std::uint64_t work_of(Budget budget) const {
-    return budget.simulations * static_cast<std::uint64_t>(horizon_) * work_per_step;
-  }
-  std::uint64_t simulations_of(std::uint64_t work) const {
-    return work / (static_cast<std::uint64_t>(horizon_) * work_per_step) + 1;
   }
 
   template <class IsOver>

@@ -22,6 +22,7 @@
 #include "aos/planning/prior_values.hpp"
 #include "aos/planning/search_threads.hpp"
 #include "aos/planning/simulated_state.hpp"
+#include "aos/planning/step_cost.hpp"
 #include "aos/planning/step_table.hpp"
 #include "aos/planning/tree_search.hpp"
 #include "aos/planning/wide_values.hpp"
@@ -35,13 +36,27 @@ class Pomcp {
 
   Pomcp(const StateSpace<Model>& space, MdpValues<Model>& values) : space_(space), values_(values) {}
 
-  // Runs the search and returns how many simulations it took.
+  // Finds out what states are worth, and lists the steps of a small model. The first decision may take long here.
+  void prepare(const Belief<Model>& belief, int horizon, int threads, Sampler& random) {
+    threads_.prepare(threads);
+    state_values_ = known_values(belief, horizon, random);
+    const auto worth = [&](const State& state) { return state_values_->value(state, horizon); };
+    mdp_value_ = state_values_ != nullptr ? mean_value(belief, worth) : 0;
+    prior_.clear();
+    has_table_ = false;
+    if (belief.probability_of(Ending::running) <= 0) return;
+    if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
+    if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
+    has_table_ = source_ == ValueSource::listed && steps_.prepare(space_, belief);
+  }
+
+  // Searches from the belief of `prepare`. Returns how many simulations it took, as budget.hpp counts them.
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred = {}) {
     return search(belief, budget, horizon, random, barred, -1, [] { return false; });
   }
 
-  // Searches below one action while it is carried out, until `is_over()`, which is called every millisecond or so.
+  // Searches below one action while it is carried out, from the belief of `prepare`, until `is_over()`, which is called every millisecond or so.
   template <class IsOver>
   std::uint64_t ponder(int action, const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        IsOver&& is_over) {
@@ -124,25 +139,34 @@ class Pomcp {
   static constexpr std::uint64_t fewest_rollouts = 10;
   static constexpr std::uint64_t most_rollouts = 100;
 
+  static constexpr Operations cost_by_table = 40;
+  static constexpr Operations cost_of_value = 60;  // of a state that code has stepped
+  static constexpr Operations cost_of_listed_worth = 20;
+
+  // Where states are listed, steps by code are compared with steps by the list. Elsewhere all planners step by code.
+  Operations cost_of_code() {
+    if (source_ != ValueSource::listed) return operations_of_step;
+    if (step_cost_ == 0) step_cost_ = cost_of_step<Model>();
+    return step_cost_;
+  }
+
   template <class IsOver>
   std::uint64_t search(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random,
                        const BarredActions& barred, int first, IsOver&& is_over) {
-    const StateValues<Model>* const values = known_values(belief, horizon, random);
     const auto start = PlanningClock::now();
-    const auto worth = [&](const State& state) { return values->value(state, horizon); };
-    mdp_value_ = values != nullptr ? mean_value(belief, worth) : 0;
-    threads_.prepare(budget.threads);
-    prior_.clear();
     if (belief.probability_of(Ending::running) <= 0) return 0;
-    if (source_ == ValueSource::learned) prior_ = learned_prior(estimates_, belief, horizon, random);
-    if (source_ == ValueSource::listed && space_.leaves_out_observations()) prior_ = listed_prior(values_, space_, belief);
-    if (source_ == ValueSource::none && first < 0) roll_out(belief, budget, horizon, Sampler{Sampler{random}.bits()});
-    for (const auto& tree : threads_.trees()) tree->begin(horizon, prior_, source_ == ValueSource::wide, barred);
-    if (source_ == ValueSource::listed && steps_.prepare(space_, belief)) {
+    if (rolls_out() && first < 0) roll_out(belief, budget, horizon, Sampler{Sampler{random}.bits()});
+    const Operations step_cost = has_table_ ? cost_by_table : cost_of_code() + (rolls_out() ? 0 : cost_of_value);
+    const Operations worth_cost = source_ == ValueSource::listed ? cost_of_listed_worth : step_cost;
+    for (const auto& tree : threads_.trees()) {
+      tree->begin(horizon, prior_, source_ == ValueSource::wide, barred, step_cost, worth_cost);
+    }
+    threads_.count_by(rolls_out() ? 0 : Budget::operations_of_simulation(horizon));
+    if (has_table_) {
       const auto start_state = [&](Sampler& own) { return ListedState<Model>{steps_, values_, own}; };
       return threads_.simulate(start_state, budget, start, random, first, is_over);
     }
-    const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), values}; };
+    const auto start_state = [&](Sampler& own) { return ComputedState<Model>{belief.sample(own), state_values_}; };
     return threads_.simulate(start_state, budget, start, random, first, is_over);
   }
 
@@ -171,7 +195,8 @@ class Pomcp {
     for (std::uint64_t i = 0; i < std::clamp(wanted, fewest_rollouts, most_rollouts); ++i) {
       State state = belief.sample(random);
       if (Model::ending(state) != Ending::running) continue;
-      sum += Model::rollout(state, horizon, random);
+      int left = horizon;
+      sum += Model::rollout(state, left, random);
       ++count;
     }
     rolled_out_ = count > 0 ? sum / count : 0;
@@ -194,10 +219,14 @@ class Pomcp {
   const StateSpace<Model>& space_;
   MdpValues<Model>& values_;
   StepTable<Model> steps_;
+  Operations step_cost_ = 0;  // 0: not known yet
   WideValues<Model> wide_values_;
   LearnedValues<Model> estimates_;
-  ValueSource source_ = ValueSource::none;  // of the last search
-  std::vector<double> prior_;  // of the last search
+  // Of the last preparation:
+  ValueSource source_ = ValueSource::none;
+  const StateValues<Model>* state_values_ = nullptr;  // null if nothing is known of what states are worth
+  bool has_table_ = false;  // of steps
+  std::vector<double> prior_;
   double mdp_value_ = 0;
   double rolled_out_ = 0;  // what rollouts return from the belief, where they value new histories
 };

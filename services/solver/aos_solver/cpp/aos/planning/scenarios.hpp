@@ -1,5 +1,6 @@
 // Scenarios: states with all their future randomness, and bounds of their values. The draws of a step depend
-// on the scenario and the depth alone, so that actions are compared under equal luck.
+// on the scenario and the depth alone, so that actions are compared under equal luck. Where the outcomes of steps are
+// listed, a step is a draw from the list, whatever the documents' code takes.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +14,9 @@
 #include "aos/belief/belief.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
 #include "aos/planning/mdp_values.hpp"
+#include "aos/planning/step_cost.hpp"
 
 namespace aos {
 
@@ -91,13 +94,23 @@ class ScenarioEvaluation {
   void prepare(const Belief<Model>& belief, int horizon) {
     horizon_ = horizon;
     has_values_ = values_.prepare(belief, horizon);
+    has_list_ = has_values_ && values_.space().lists_observations();
+    if (has_values_ && code_cost_ == 0) code_cost_ = cost_of_step<Model>();
   }
   std::uint32_t seen(const State& state) const { return has_values_ ? values_.number_of(state) : 0; }
-  // The number of the state to which an action has led from the state with the number `before`.
-  std::uint32_t seen_next(std::uint32_t before, int action, const State& state) const {
-    if (!has_values_) return 0;
-    const std::uint32_t next = values_.certain_next(before, action);
-    return next != no_state ? next : values_.number_of(state);
+
+  // Steps a scenario and counts the work. `has_ended` tells whether the mission is over then.
+  Step step(Scenario<Model>& scenario, int action, int depth, bool& has_ended) {
+    Sampler luck = draws(scenario.number, depth);
+    if (has_list_ && scenario.seen != no_state) return listed_step(scenario, action, luck, has_ended);
+    work_ += step_cost() + (has_values_ ? cost_of_number : 0);
+    const Step step = Model::step(scenario.state, action, luck);
+    has_ended = Model::ending(scenario.state) != Ending::running;
+    if (has_values_ && !has_ended) {
+      const std::uint32_t next = values_.certain_next(scenario.seen, action);
+      scenario.seen = next != no_state ? next : values_.number_of(scenario.state);
+    }
+    return step;
   }
 
   // The value that returns are relative to: the state's MDP value, or 0 without MDP values.
@@ -110,7 +123,7 @@ class ScenarioEvaluation {
   // Begins a decision with new luck for all scenarios.
   void start(std::uint64_t seed) {
     seed_ = seed;
-    steps_ = 0;
+    work_ = 0;
   }
 
   Sampler draws(std::uint32_t scenario, int depth) const {
@@ -141,12 +154,17 @@ class ScenarioEvaluation {
     });
     return bounds_;
   }
-  // How many steps of the model evaluations have taken since `start`. A rollout counts with all steps that it may take.
-  std::uint64_t steps() const { return steps_; }
+  // The work since `start`. Where nothing but rollouts values states, a rollout counts with all steps that it may take.
+  Operations work() const { return work_; }
   // The standard deviation of the returns in the history evaluated last.
   double deviation() const { return best_.deviation(); }
 
  private:
+  static constexpr Operations per_listed_step = 50 + sizeof(Scenario<Model>) / 4;  // it is copied
+  static constexpr Operations cost_of_number = 60;  // of a state, in the list
+  static constexpr Operations per_outcome = 2;      // that is passed over
+  static constexpr Operations per_action = 1;       // of each scenario, where the best one on average is looked for
+
   // The mean and the deviation of returns, and the mean of the highest returns found.
   class Earnings {
    public:
@@ -177,15 +195,53 @@ class ScenarioEvaluation {
     return std::max<std::size_t>((last - first) / max_evaluated, 1);
   }
 
+  // Where states are listed, steps by code are compared with steps by the list. Elsewhere all planners step by code.
+  Operations step_cost() const { return has_values_ ? code_cost_ : operations_of_step; }
+
+  Step listed_step(Scenario<Model>& scenario, int action, Sampler& luck, bool& has_ended) {
+    const point_based::FlatModel& rows = values_.space().rows();
+    const std::size_t row = rows.row(scenario.seen, static_cast<std::size_t>(action));
+    work_ += per_listed_step;
+    Step step{rows.rewards[row], default_observation};
+    double place = luck.uniform();
+    for (const auto& outcome : rows.outcomes[row]) {
+      work_ += per_outcome;
+      if (place >= outcome.probability) {
+        place -= outcome.probability;
+        continue;
+      }
+      scenario.seen = outcome.next;
+      place /= outcome.probability;
+      const auto likelihoods = rows.likelihoods[outcome.sensing];
+      std::uint32_t seen = likelihoods.back().observation;
+      for (const auto& likelihood : likelihoods) {
+        work_ += per_outcome;
+        if (place < likelihood.probability) {
+          seen = likelihood.observation;
+          break;
+        }
+        place -= likelihood.probability;
+      }
+      step.observation = static_cast<Observation>(seen);  // by its number: histories need no more
+      has_ended = false;
+      return step;
+    }
+    has_ended = true;
+    return step;
+  }
+
   void roll_out(const Scenario<Model>& scenario, int depth, Earnings& earnings) {
     const int count = has_values_ ? 1 : rollouts_per_scenario;
+    const bool is_listed = has_list_ && scenario.seen != no_state;
+    const State start = is_listed ? values_.space()[scenario.seen] : scenario.state;
     double sum = 0;
     double highest = -std::numeric_limits<double>::infinity();
     Sampler random = draws(scenario.number, depth + horizon_);
-    steps_ += static_cast<std::uint64_t>(count) * static_cast<std::uint64_t>(horizon_ - depth);
     for (int i = 0; i < count; ++i) {
-      State state = scenario.state;
-      const double found = Model::rollout(state, horizon_ - depth, random);
+      int left = horizon_ - depth;
+      const int allowed = left;
+      const double found = Model::rollout(start, left, random);
+      work_ += step_cost() * static_cast<Operations>(has_values_ ? allowed - left : allowed);
       sum += found;
       highest = std::max(highest, found);
     }
@@ -213,16 +269,15 @@ class ScenarioEvaluation {
   void follow(std::size_t first, std::size_t last, int depth, double discount) {
     if (first == last || depth == horizon_) return;
     const int action = best_on_average(first, last);
-    steps_ += last - first;
+    work_ += (last - first) * per_action * static_cast<Operations>(Model::action_count());
     for (std::size_t i = first; i < last;) {
       Follower& follower = followers_[i];
-      State& state = follower.scenario.state;
-      Sampler random = draws(follower.scenario.number, depth);
-      const Step step = Model::step(state, action, random);
-      earned_[follower.index] += discount * earned(follower.scenario.seen, action, depth, step.reward);
+      const std::uint32_t before = follower.scenario.seen;
+      bool has_ended = false;
+      const Step step = this->step(follower.scenario, action, depth, has_ended);
+      earned_[follower.index] += discount * earned(before, action, depth, step.reward);
       follower.observation = step.observation;
-      if (Model::ending(state) == Ending::running) {
-        follower.scenario.seen = seen_next(follower.scenario.seen, action, state);
+      if (!has_ended) {
         ++i;
       } else {
         follower = followers_[--last];
@@ -239,9 +294,11 @@ class ScenarioEvaluation {
 
   MdpValues<Model>& values_;
   bool has_values_ = false;
+  bool has_list_ = false;  // of outcomes with what is observed
+  Operations code_cost_ = 0;
   int horizon_ = 0;
   std::uint64_t seed_ = 0;
-  std::uint64_t steps_ = 0;
+  Operations work_ = 0;
   std::vector<ScenarioBounds> bounds_;
   std::vector<double> earned_;  // by scenario
   Earnings best_;

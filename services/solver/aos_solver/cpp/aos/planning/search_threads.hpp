@@ -37,6 +37,10 @@ class SearchThreads {
   }
   const std::vector<std::unique_ptr<Tree>>& trees() const { return trees_; }
 
+  // How a budget in simulations is counted: by the work in the tree, with so many operations to a simulation, or by
+  // descents if there are none, since each of these has a rollout.
+  void count_by(Operations operations_of_simulation) { each_ = operations_of_simulation; }
+
   // Simulates from `start_state(random)`, a state of simulated_state.hpp, until the budget is spent or
   // `is_over()`. Returns the number of simulations. `first` is that of TreeSearch.
   template <class StartState, class IsOver>
@@ -50,10 +54,10 @@ class SearchThreads {
         others.emplace_back([&, i, seed] {
           blame::use_line(static_cast<int>(i));
           Sampler own{seed};
-          works[i] = work(*trees_[i], start_state, share(budget, i), start, own, first, is_over);
+          works[i] = work(*trees_[i], start_state, share(budget, i), each_, start, own, first, is_over);
         });
       }
-      works[0] = work(*trees_[0], start_state, share(budget, 0), start, random, first, is_over);
+      works[0] = work(*trees_[0], start_state, share(budget, 0), each_, start, random, first, is_over);
     }
     std::uint64_t simulations = 0;
     for (const Work& done : works) {
@@ -81,19 +85,22 @@ class SearchThreads {
   }
 
   template <class StartState, class IsOver>
-  static Work work(Tree& tree, const StartState& start_state, Budget budget, PlanningClock::time_point start,
-                   Sampler& random, int first, IsOver&& is_over) {
+  static Work work(Tree& tree, const StartState& start_state, Budget budget, Operations each,
+                   PlanningClock::time_point start, Sampler& random, int first, IsOver&& is_over) {
     constexpr std::uint64_t between_looks = 64;
+    constexpr Operations start_cost = 30;
     Work done;
     try {
       const bool has_limit = budget.simulations > 0 || budget.seconds <= 0;
+      std::uint64_t descents = 0;
       while (!has_limit || done.simulations < budget.simulations) {
-        if (done.simulations % between_looks == 0) {
-          if (is_over() || (budget.seconds > 0 && is_enough(tree, budget.seconds, start, done.simulations, first))) break;
+        if (descents % between_looks == 0) {
+          if (is_over() || (budget.seconds > 0 && is_enough(tree, budget.seconds, start, descents, first))) break;
         }
-        ++done.simulations;
+        ++descents;
         auto state = start_state(random);
         if (!state.has_ended()) tree.simulate(state, first, random);
+        done.simulations = each == 0 ? descents : (tree.work() + descents * start_cost + each - 1) / each;
       }
     } catch (...) {
       done.fault = std::current_exception();
@@ -112,6 +119,7 @@ class SearchThreads {
   }
 
   std::vector<std::unique_ptr<Tree>> trees_;
+  Operations each_ = 0;
 };
 
 }  // namespace aos

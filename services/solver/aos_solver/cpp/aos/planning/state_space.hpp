@@ -17,6 +17,7 @@
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/mixed.hpp"
+#include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
@@ -35,6 +36,8 @@ struct SpaceLimits {
 };
 // Of later tries, which hold up a mission: together with what planners prepare then they take 0.1 to 0.3 seconds.
 inline constexpr SpaceLimits later_limits{.states = 16'000, .outcomes = 500'000, .work = 1'500'000};
+
+inline constexpr std::uint32_t states_between_looks = 256;  // at the progress
 
 // Tells which number stands for which state: in two equal numberings, the numbers are the same.
 struct Numbering {
@@ -192,6 +195,7 @@ class StateSpace {
   void list_rows_before(std::size_t end) {
     if (reports_numbers_) draws_.report_to(&reports_);
     for (; listed_ < end; ++listed_) {
+      if (listed_ % states_between_looks == 0) progress::tell("listing states", listed_, numbers_.size());
       for (std::size_t action = 0; action < rows_.actions; ++action) add_row(listed_, static_cast<int>(action));
     }
     rows_.states = listed_;

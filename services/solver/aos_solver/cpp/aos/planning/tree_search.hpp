@@ -42,14 +42,22 @@ class TreeSearch {
 
   // Begins a decision. `prior` is how much less each action is worth than the best one; empty if nothing is
   // known before the search. With `first_state_tells`, the first state of a history tells what its actions are worth.
-  // The `barred` actions are not tried at the root.
-  void begin(int horizon, const std::vector<double>& prior, bool first_state_tells, const BarredActions& barred) {
+  // The `barred` actions are not tried at the root. A step of the model costs `step_cost`, and
+  // what an action is worth in a state `worth_cost`.
+  void begin(int horizon, const std::vector<double>& prior, bool first_state_tells, const BarredActions& barred,
+             Operations step_cost, Operations worth_cost) {
+    step_cost_ = step_cost + (reports_numbers_ ? per_numbers : 0);
+    worth_cost_ = worth_cost;
     horizon_ = horizon;
     barred_ = barred;
     prior_ = prior;
     first_state_tells_ = first_state_tells;
     record_ = RootRecord{action_count()};
+    work_ = 0;
   }
+
+  // The work of all simulations since `begin`, without that of rollouts.
+  Operations work() const { return work_; }
 
   // Runs one simulation from a running state (simulated_state.hpp), which the simulation changes. `first` is
   // the first action; -1 leaves the choice to the search.
@@ -59,6 +67,7 @@ class TreeSearch {
     const HistoryNode& root = tree_.history(0);
     spread_.count(tree_.actions(root)[root.best]);
     if (first < 0) first = turn();
+    work_ += per_descent;
     const double seen = descend(state, first < 0 ? choose(0) : static_cast<std::uint32_t>(first), random);
     record_.add_return(seen);
     spread_.add(seen);
@@ -109,6 +118,14 @@ class TreeSearch {
   }
 
  private:
+  // Of a simulation, of each of its steps through the tree, and of each action that a step chooses from.
+  static constexpr Operations per_descent = 50;
+  static constexpr Operations per_visit = 80;
+  static constexpr Operations per_history = 150;  // a new one
+  static constexpr Operations per_action = 2;
+  static constexpr Operations per_numbers = 150;  // that a step reports
+  static constexpr Operations few_paths = 4;  // of a step whose expected reward is computed
+
   struct Visit {
     std::uint32_t history;
     std::uint32_t action;
@@ -133,6 +150,7 @@ class TreeSearch {
           visits_.size() < expected_steps ? state.expected_reward(static_cast<int>(a), rewards_) : std::nullopt;
       Step step = step_of(state, static_cast<int>(a), random, drawn);
       if (expected) step.reward = *expected;
+      work_ += step_cost_ + per_visit + per_action * action_count() + (expected ? few_paths * step_cost_ : 0);
       if (visits_.empty()) record_.add_reward(a, step.reward);
       const bool goes_on = --left > 0 && !state.has_ended();
       const double before = value;
@@ -144,7 +162,10 @@ class TreeSearch {
       const Observation seen = reports_numbers_ ? cells_.cell(action, step.observation, drawn) : step.observation;
       std::uint32_t child = tree_.find_child(action, seen);
       const bool is_new = child == no_node;
-      if (is_new) child = tree_.add_child(action, seen);
+      if (is_new) {
+        child = tree_.add_child(action, seen);
+        work_ += per_history;
+      }
       if (is_new || stays_leaf(child) || !give_actions(child, state, random)) {
         if (child != no_node && !prior_.empty()) ask(child, state, random);
         later = state.leaf(left, random);
@@ -264,6 +285,7 @@ class TreeSearch {
     const HistoryNode& history = tree_.history(number);
     if (history.n + asked_states < visits_of_leaf() || !tree_.give_actions(number)) return;
     odds_.resize(action_count());
+    work_ += action_count() * worth_cost_;
     state.advantages(odds_.data(), random);
     ActionNode* const actions = tree_.actions(tree_.history(number));
     for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q += odds_[a] / asked_states;
@@ -284,6 +306,7 @@ class TreeSearch {
     if (state.rollout_odds(odds_.data(), random)) {
       share_exploration(actions, odds_);
     } else if (first_state_tells_ && number != 0) {
+      work_ += action_count() * worth_cost_;
       state.advantages(odds_.data(), random);
       for (std::uint32_t a = 0; a < action_count(); ++a) actions[a].q = odds_[a];
     }
@@ -296,6 +319,9 @@ class TreeSearch {
   bool reports_numbers_ = Model::reports_numbers();
   ObservationCells cells_;
   int horizon_ = 0;
+  Operations step_cost_ = 0;
+  Operations worth_cost_ = 0;
+  Operations work_ = 0;
   BarredActions barred_;
   std::vector<double> prior_;
   ExpectedRewards<Model> rewards_;

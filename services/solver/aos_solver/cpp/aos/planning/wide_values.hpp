@@ -23,6 +23,7 @@
 #include "aos/base/enumerator.hpp"
 #include "aos/base/fault.hpp"
 #include "aos/base/observed_numbers.hpp"
+#include "aos/base/progress.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/step.hpp"
@@ -169,7 +170,10 @@ class WideValues final : public StateValues<Model> {
     }
     // If a sampled belief has most of its states only once, there are more.
     if (belief.is_drawn() && 2 * numbers_.size() > belief.particles().size()) return false;
-    for (std::uint32_t number = 0; number < numbers_.size(); ++number) add_rows(number);
+    for (std::uint32_t number = 0; number < numbers_.size(); ++number) {
+      if (number % states_between_looks == 0) progress::tell("listing states without observations", number, numbers_.size());
+      add_rows(number);
+    }
     first_.push_back(words_.size());
     return numbers_.size() > 0;
   }
@@ -265,6 +269,7 @@ class WideValues final : public StateValues<Model> {
     const auto count = static_cast<std::uint32_t>(numbers_.size());
     values_.assign(count, 0);
     for (int sweep = 0; sweep < horizon; ++sweep) {
+      progress::tell("computing values of states", static_cast<std::uint64_t>(sweep), static_cast<std::uint64_t>(horizon));
       float change = 0;
       float scale = 0;
       highest_ = -std::numeric_limits<float>::infinity();

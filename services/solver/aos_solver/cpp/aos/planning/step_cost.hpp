@@ -1,0 +1,73 @@
+// What a step by the documents' code costs beside a step by a list of outcomes, counted and not timed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+
+#include "aos/base/directed.hpp"
+#include "aos/base/observed_numbers.hpp"
+#include "aos/base/random.hpp"
+#include "aos/model/blame.hpp"
+#include "aos/model/step.hpp"
+#include "aos/planning/budget.hpp"
+
+namespace aos {
+
+// Draws at random, and counts what the draws cost.
+class CountedDraws final : public DirectedDraws {
+ public:
+  explicit CountedDraws(std::uint64_t seed) : random_(seed) { report_to(&ignored_numbers); }
+
+  int choose(const double* weights, int count, double total) override {
+    takes_sensing();
+    cost_ += per_choice + static_cast<double>(count);
+    return random_.choose(weights, count, total);
+  }
+  double uniform() override {
+    takes_sensing();
+    cost_ += per_number;
+    return random_.uniform();
+  }
+  int below(int bound) { return random_.below(bound); }
+  double cost() const { return cost_; }
+
+ private:
+  static constexpr double per_choice = 10;
+  static constexpr double per_number = 25;
+
+  Sampler random_;
+  double cost_ = 0;
+};
+
+// The mean cost of a step in operations, from walks of random actions from initial states. Steps that write a text cost
+// most, by the draws that the text is made of.
+template <class Model>
+Operations cost_of_step() {
+  constexpr int walks = 16;
+  constexpr int longest = 16;
+  constexpr double per_step = 50;
+  constexpr double per_text = 4;  // times as much as its draws
+  if (Model::action_count() == 0) return 0;
+  CountedDraws draws{1};
+  Sampler starts{1};
+  int steps = 0;
+  double cost = 0;
+  try {
+    for (int walk = 0; walk < walks; ++walk) {
+      typename Model::State state{};
+      Model::initial(state, starts);
+      for (int i = 0; i < longest && Model::ending(state) == Ending::running; ++i, ++steps) {
+        const double before = draws.cost();
+        const Step step = Model::step(state, draws.below(Model::action_count()), draws);
+        const bool is_text = step.observation < default_observation;
+        cost += per_step + (is_text ? per_text : 1) * (draws.cost() - before);
+      }
+    }
+  } catch (...) {
+    blame::at(0);
+  }
+  return static_cast<Operations>(steps == 0 ? per_step : cost / steps);
+}
+
+}  // namespace aos

@@ -1,0 +1,84 @@
+// What a budget in simulations buys in each planner: budget.hpp. Work is counted here, and no clock is asked.
+#include "aos/planning/planner.hpp"
+
+#include <initializer_list>
+
+#include "check.hpp"
+#include "worlds.hpp"
+
+namespace {
+
+using aos::PlannerKind;
+using units::TableModel;
+
+constexpr int horizon = 10;
+constexpr std::uint64_t simulations = 2000;
+
+// A world whose states cannot be listed, and which counts its steps.
+struct Unlisted : TableModel {
+  inline static std::uint64_t steps = 0;
+
+  static aos::Step step(State& state, int action, aos::Sampler& random) {
+    ++steps;
+    return TableModel::step(state, action, random);
+  }
+  static aos::Step step(State&, int, aos::Enumerator&) { throw aos::NotEnumerable{"there is a continuous draw"}; }
+  static aos::Step step(State&, int, aos::DirectedDraws&) { throw aos::NotEnumerable{"there is a continuous draw"}; }
+  static double rollout(const State& state, int& left, aos::Sampler& random) {
+    return aos::rollout<Unlisted>(state, left, random);
+  }
+  static void rollout_odds(const State& state, double* odds, aos::Sampler& random) {
+    aos::rollout_odds<Unlisted>(state, odds, action_count(), random);
+  }
+};
+
+// The steps that a planner takes of a prepared search.
+template <class Search>
+double steps_of(Search& search, const aos::Belief<Unlisted>& belief) {
+  aos::Sampler random{1};
+  Unlisted::steps = 0;
+  search.search(belief, {.simulations = simulations}, horizon, random);
+  return static_cast<double>(Unlisted::steps);
+}
+
+TEST("POMCP and DESPOT take as many steps of a model that cannot be listed, up to a factor of three") {
+  const units::Problem tiger = units::tiger();
+  Unlisted::take(tiger);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<Unlisted>::drawn(random);
+  aos::StateSpace<Unlisted> space;
+  aos::MdpValues<Unlisted> values{space};
+  aos::Pomcp<Unlisted> pomcp{space, values};
+  pomcp.prepare(belief, horizon, 1, random);
+  aos::Despot<Unlisted> despot{values};
+  despot.prepare(belief, horizon);
+  const double of_pomcp = steps_of(pomcp, belief);
+  const double of_despot = steps_of(despot, belief);
+  EXPECT(of_pomcp < 3 * of_despot);
+  EXPECT(of_despot < 3 * of_pomcp);
+}
+
+TEST("No planner takes much more than its budget in simulations, and POMCP takes all of it") {
+  const units::Problem problem = units::corridor_with_exits(30, 3);
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<TableModel>::initial(random);
+  for (const PlannerKind kind : {PlannerKind::pomcp, PlannerKind::despot, PlannerKind::sarsop, PlannerKind::automatic}) {
+    aos::Planner<TableModel> planner;
+    aos::Sampler own{1};
+    const std::uint64_t taken = planner.search(kind, belief, {.simulations = simulations}, horizon, own);
+    EXPECT(taken <= simulations * 11 / 10);
+    if (kind == PlannerKind::pomcp) EXPECT(taken >= simulations);
+  }
+}
+
+TEST("A search by POMCP that ends all at once still comes to an end") {
+  const units::Problem problem = units::corridor_with_exits(1, 1);
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<TableModel>::initial(random);
+  aos::Planner<TableModel> planner;
+  EXPECT_EQUAL(planner.search(PlannerKind::pomcp, belief, {.simulations = 50}, horizon, random), 50u);
+}
+
+}  // namespace
