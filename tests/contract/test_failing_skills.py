@@ -84,6 +84,10 @@ async def test_an_adapter_that_leaves_makes_its_skills_unavailable(system: Syste
     system.adapter.withdraw("/sense")
     state = await system.state_when(lambda state: "sense" in state.unavailable)
     assert state.unavailable["sense"] == "no adapter answers calls of /sense"
+    assert state.announced["sense"] == 1
+    await system.adapter.announce("/sense")
+    state = await system.state_when(lambda state: "sense" not in state.unavailable)
+    assert state.announced["sense"] == 2
 
 
 async def test_nothing_moves_while_a_skill_may_still_be_moving(system: System) -> None:

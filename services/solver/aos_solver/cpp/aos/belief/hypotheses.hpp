@@ -24,7 +24,7 @@
 #include "aos/base/json.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/belief/gathering.hpp"
+#include "aos/belief/posteriors.hpp"
 #include "aos/belief/saved_history.hpp"
 #include "aos/model/step.hpp"
 
@@ -33,24 +33,10 @@ namespace aos {
 inline constexpr std::size_t max_hypotheses = 16;
 inline constexpr std::size_t max_hypothetical_states = 4 * max_weighted_states;  // of all hypotheses together
 
-// Whether two beliefs are the same but for rounding.
-template <class Model>
-bool are_alike(const Belief<Model>& left, const Belief<Model>& right) {
-  Gathering<Model> difference;
-  for (const auto& [state, weight] : left.particles()) difference.add(state, weight);
-  for (const auto& [state, weight] : right.particles()) difference.add(state, -weight);
-  return std::ranges::all_of(difference.particles(), [](const auto& each) { return std::abs(each.weight) < 1e-9; });
-}
-
-// A skill by its name, and what it reported: the response and the numbers beside it.
-using Report = std::pair<std::string, std::string>;
-
 template <class Model>
 class Hypotheses {
  public:
-  // A belief after an observation, and the logarithm of the observation's probability. The belief is empty if the
-  // observation is impossible.
-  using Posterior = std::pair<Belief<Model>, double>;
+  using Posteriors = aos::Posteriors<Model>;
 
   explicit Hypotheses(Belief<Model> belief) { all_.push_back({1, {}, std::move(belief)}); }
 
@@ -58,21 +44,8 @@ class Hypotheses {
   const Belief<Model>& belief() const { return mixture_ ? *mixture_ : all_.front().belief; }
   // The belief in which nothing ran that was not observed; null where that is the belief itself.
   const Belief<Model>* cautious() const { return cautious_ ? &*cautious_ : nullptr; }
-  std::size_t size() const { return all_.size(); }
 
-  // What an observation makes of each hypothesis and of the cautious belief.
-  struct Posteriors {
-    std::vector<Posterior> each;
-    std::optional<Posterior> cautious;
-
-    bool hypotheses_are_empty() const {
-      return std::ranges::all_of(each, [](const Posterior& one) { return one.first.particles().empty(); });
-    }
-    bool has_cautious() const { return cautious && !cautious->first.particles().empty(); }
-    // Whether the observation is impossible, whatever ran.
-    bool are_empty() const { return hypotheses_are_empty() && !has_cautious(); }
-  };
-  // `posterior_of(belief)` gives a Posterior.
+  // `posterior_of(belief)` gives a belief and the logarithm of the observation's probability, as Posteriors have them.
   template <class PosteriorOf>
   Posteriors posteriors(PosteriorOf&& posterior_of) const {
     Posteriors found;
@@ -300,7 +273,7 @@ class Hypotheses {
     if (!are_alike(cautious, belief())) cautious_ = std::move(cautious);
   }
 
-  void follow_cautiously(const Belief<Model>& before, Posterior found, double log_probability, double refuted_below,
+  void follow_cautiously(const Belief<Model>& before, typename Posteriors::One found, double log_probability, double refuted_below,
                          bool is_discredited) {
     auto& [posterior, log_likelihood] = found;
     const bool is_possible = !posterior.particles().empty();
