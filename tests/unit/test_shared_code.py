@@ -11,7 +11,7 @@ from scripted_models import ScriptedModel, scripted, text_project
 from aos_deploy.language_server.symbols import read_bundle
 from aos_protocol.diagnostics import Diagnostic
 from aos_registry.convert import Dialect, convert, without_origins
-from aos_registry.load import load_files
+from aos_registry.load import load_files, read_bundle_files
 from aos_registry.outline import outline
 from aos_runtime.cpp_shared import shared_code
 from aos_solver.building.compiler_messages import read_messages
@@ -198,6 +198,34 @@ def test_a_variable_that_only_shapes_what_a_function_reads_matters() -> None:
     assert [variable.name for variable in program(*alone).irrelevant] == ["best"]
     whole = "return state.is_dug[plot] ? Firm -> auto& all = state; return all.is_dug[plot] ? Firm"
     assert program(*alone, whole).irrelevant == ()
+
+
+@pytest.mark.parametrize(
+    "name", ["armadillo-finer", "turtlebot-noisy", "bench/laser", "bench/rocksample-7-8"]
+)
+def test_draws_behind_a_function_are_taken_for_no_less_than_written_out(bundles: Path, name: str) -> None:
+    written, behind = {}, {}
+    for file, data in read_bundle_files(bundles / name)[0].items():
+        text = data.decode()
+        written[file] = data
+        if not file.endswith(".am"):
+            text = text.replace("AOS.Bernoulli(", "falls(")
+        shared = "shared_code:\nbool falls(double p) { return AOS.Bernoulli(p); }\nhorizon:"
+        behind[file] = text.replace("horizon:", shared, 1).encode()
+    programs = []
+    for texts in (written, behind):
+        project = load_files(texts).project
+        assert project is not None
+        lowered, findings = lower(project)
+        assert lowered is not None, findings
+        programs.append(lowered)
+    one, other = programs
+    assert [(v.name, v.type) for v in one.particle] == [(v.name, v.type) for v in other.particle]
+    assert {v.name for v in other.irrelevant} <= {v.name for v in one.irrelevant}
+    for skill, its_other in zip(one.skills, other.skills, strict=True):
+        assert its_other.has_certain_rewards <= skill.has_certain_rewards
+        assert its_other.has_alike_groundings <= skill.has_alike_groundings
+        assert its_other.keeps_state >= skill.keeps_state
 
 
 def test_the_emitted_functions_stand_at_the_documents_lines() -> None:
