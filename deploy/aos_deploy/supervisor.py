@@ -43,6 +43,8 @@ ROUTER = Program(name="router", module="aos_runtime.router", start_s=ROUTER_S)
 _CANCEL_TIMEOUT_S = 2.5
 _HOST_S = 2.0
 """What a program on another host may take longer to end than one here."""
+_MISTAKES = (2, 126, NOT_STARTED)
+"""Statuses that programs and shells have for a command line that is wrong, which stays wrong."""
 _RESTART_S = 0.2
 """Before the first restart of a program; each further one waits twice as long."""
 
@@ -132,18 +134,20 @@ class Supervisor:
         for program in (ROUTER, *self._programs):
             if program not in later:
                 await self._spawn(program)
+        self._beside(self._start_in_order(later))
         self.bus = self._bus = await Bus.open(
             self._base.endpoint, sender="aos-up", connect_timeout_s=ROUTER.start_s
         )
         self._is_ready(self._running[ROUTER.name])
         self._beside(self._follow_presence(self.bus))
-        self._beside(self._start_in_order(later))
 
     async def _start_in_order(self, programs: list[Program]) -> None:
         """Each program of the user's own when those before it are ready, then the adapters."""
         for program in sorted(programs, key=lambda each: not each.is_own):
             if program.is_own:
                 await check_port_is_free(program.name, program.ready)
+            else:
+                await self._running[ROUTER.name].ready.wait()
             await self._spawn(program)
             if program.is_own:
                 await self._running[program.name].ready.wait()
@@ -277,7 +281,9 @@ class Supervisor:
         program, was_ready = running.program, running.ready.is_set()
         if program.on_exit == "ignore" and was_ready:
             return IGNORED
-        may_start_again = was_ready or (program.command and status != NOT_STARTED)
+        # Before it was ready, only what the next start may find otherwise is tried again.
+        is_mistake = status in _MISTAKES or self._run.fault(program.name) is not None
+        may_start_again = was_ready or (program.command and not is_mistake)
         if may_start_again and running.starts <= program.restarts:
             return STARTED_AGAIN
         # What an adapter served is unavailable; the mission goes on with the rest.

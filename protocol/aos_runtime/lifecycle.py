@@ -14,6 +14,7 @@ import logging
 import os
 import signal
 import sys
+import traceback
 from collections.abc import Awaitable, Callable, Coroutine
 from pathlib import Path
 from typing import Any, Generic, NoReturn, TypeVar
@@ -26,6 +27,7 @@ from aos_protocol.messages import Fault
 from aos_runtime.bus import Bus
 from aos_runtime.bus_config import LEASE_S
 from aos_runtime.clock import Clock, SystemClock
+from aos_runtime.code_places import place_of
 from aos_runtime.older_python import BaseExceptionGroup
 from aos_runtime.parent import die_with_parent
 from aos_runtime.service_settings import ServiceSettings, fault_path
@@ -114,8 +116,10 @@ def run_process(
         status = 1
     except Exception as error:
         _log.exception("ended by a defect")
-        text = f"{settings.service} ended by a defect: {type(error).__name__}: {error}"
-        _leave_fault(settings, Fault("AOS606", text))
+        text = f"ended by a defect: {type(error).__name__}: {error}"
+        place = place_of(traceback.extract_tb(error.__traceback__))
+        hint = f"It was raised in {place}; the log has all of it"
+        _leave_fault(settings, Fault("AOS606", text, hint))
         status = 1
     else:
         status = 0

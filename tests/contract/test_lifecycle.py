@@ -82,7 +82,7 @@ async def test_a_defect_is_left_as_one_line_and_logged_whole(host: Host) -> None
     async with host.running("garden", "broken") as child:
         assert await child.wait() == 1
         assert b"Traceback" in await child.stderr.read()
-    assert host.fault("garden").message == "garden ended by a defect: RuntimeError: a defect"
+    assert host.fault("garden").message == "ended by a defect: RuntimeError: a defect"
 
 
 async def test_a_second_service_of_a_name_is_refused(host: Host, bus: Bus, keys: Keys) -> None:

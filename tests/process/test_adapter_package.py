@@ -119,7 +119,7 @@ def test_a_command_that_is_wrong_is_told(
 ) -> None:
     command = [python, "-m", "aos_runtime.adapters", *words]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=HANG_S)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert done.stderr.startswith(said)
 
 

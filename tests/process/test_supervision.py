@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Callable
 
 import pytest
@@ -66,7 +67,9 @@ async def test_a_fault_at_the_start_comes_out_whole(system: System) -> None:
 
 async def test_a_defect_in_a_service_is_told_in_one_line(system: System) -> None:
     error = await system.error(small("registry"), small("skills", "broken"))
-    assert str(error) == "AOS606: skills: skills ended by a defect: RuntimeError: a defect"
+    assert error.code == "AOS606"
+    assert error.message == "skills: ended by a defect: RuntimeError: a defect"
+    assert re.search(r"It was raised in \S+small_service\.py:\d+; the log has all of it", error.hint)
     assert "Traceback" in system.run.log("skills").read_text()
 
 

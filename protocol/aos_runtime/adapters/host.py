@@ -31,6 +31,7 @@ from aos_protocol.messages import (
 )
 from aos_protocol.spelling import did_you_mean
 from aos_runtime.adapters.adapter import Adapter, Answer, Call, Observed
+from aos_runtime.adapters.blocking import ends_if_blocked
 from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.ledger import Ledger
 from aos_runtime.adapters.sendable import sendable
@@ -57,8 +58,15 @@ async def serve_adapter(service: Service[AdapterSettings]) -> None:
     host = Host(service)
     try:
         await host.run()
-    finally:
+    except Exception:
+        try:
+            await host.close()
+        except Exception:  # What ended `run` is the reason, and may be the reason of this, too.
+            _log.exception("the adapter did not close")
+        raise
+    except BaseException:
         await host.close()
+        raise
 
 
 def load_adapter(name: str, host: Host) -> Adapter:
@@ -254,8 +262,10 @@ class Host:
             self.publish,
         )
         self._ledger.start(request)
+        may_take_s = call.deadline_s + self._settings.cancel_s
         try:
-            answer = await self._run(call)
+            with ends_if_blocked(call.path, may_take_s):
+                answer = await self._run(call)
             result = self._result(call, binding, answer)
         except AosError as error:
             self._ledger.fail(call.id, error)

@@ -7,7 +7,7 @@ import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import msgspec
 
@@ -20,6 +20,7 @@ USAGE = """usage: python -m aos_runtime.adapters MODULE:CLASS [NAME=VALUE]...
 CLASS of MODULE, or of a FILE.py, is the adapter; it finds each NAME in host.options. aos-up tells the rest
 by the environment; by hand, name AOS_ENDPOINT (such as tcp/127.0.0.1:7447), AOS_ROBOT and AOS_ADAPTER."""
 
+_USAGE_STATUS = 2
 _MUST_BE_TOLD = ("AOS_ENDPOINT", "AOS_ROBOT", "AOS_ADAPTER")
 
 
@@ -34,10 +35,10 @@ def settings_told(
         return None
     module, _, name = words[0].rpartition(":") if words else ("", "", "")
     if not module or not name or any("=" not in word for word in words[1:]):
-        sys.exit(USAGE)
+        _end(USAGE)
     missing = [variable for variable in _MUST_BE_TOLD if not environment.get(variable)]
     if missing:
-        sys.exit(f"{', '.join(missing)} is not in the environment\n{USAGE}")
+        _end(f"{', '.join(missing)} is not in the environment\n{USAGE}")
     settings = _bound(environment)
     folder = Path.cwd()
     if module.endswith(".py"):
@@ -63,7 +64,12 @@ def _bound(environment: Mapping[str, str]) -> AdapterSettings:
     try:
         return msgspec.json.decode(Path(path).read_bytes(), type=AdapterSettings)
     except (OSError, msgspec.MsgspecError) as error:
-        sys.exit(f"{path}: {error}")
+        _end(f"{path}: {error}")
+
+
+def _end(text: str) -> NoReturn:
+    sys.stderr.write(f"{text}\n")
+    sys.exit(_USAGE_STATUS)
 
 
 def _run_dir(settings: AdapterSettings, environment: Mapping[str, str]) -> Path:

@@ -1,0 +1,53 @@
+"""Adapters that hold up their event loop: such a call cannot be cancelled, and nothing else can be called."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import sys
+import threading
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from aos_runtime.code_places import place_of
+
+__all__ = ["ends_if_blocked"]
+
+_ANSWER_S = 5.0
+"""How long the loop may take to answer: after a pause of the whole process it has to catch up first."""
+
+_log = logging.getLogger("aos.adapter")
+
+
+@contextmanager
+def ends_if_blocked(what: str, after_s: float) -> Iterator[None]:
+    """Ends the process if the event loop stands still when the block has lasted for so many seconds.
+
+    Whoever started it can then start it again. The log says where the loop stood.
+    """
+    loop, thread = asyncio.get_running_loop(), threading.get_ident()
+
+    def end() -> None:
+        turns = threading.Event()
+        loop.call_soon_threadsafe(turns.set)
+        if turns.wait(_ANSWER_S):
+            return
+        place = place_of(traceback.extract_stack(sys._current_frames().get(thread)))
+        _log.critical(
+            "%s holds up everything at %s, and cannot be stopped: the process ends. "
+            "In an `async def`, await what takes time, or hand it to asyncio.to_thread",
+            what,
+            place,
+        )
+        logging.shutdown()
+        os._exit(1)
+
+    timer = threading.Timer(after_s, end)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

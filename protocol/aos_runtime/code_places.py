@@ -1,0 +1,18 @@
+"""Where in somebody's Python something happened: the innermost line that is in no library."""
+
+from __future__ import annotations
+
+import sysconfig
+from collections.abc import Iterable
+from traceback import FrameSummary
+
+__all__ = ["place_of"]
+
+_LIBRARIES = (sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), "<")
+
+
+def place_of(frames: Iterable[FrameSummary]) -> str:
+    """File and line of a stack, the outermost frame first."""
+    stack = list(frames)
+    own = [frame for frame in stack if not frame.filename.startswith(_LIBRARIES)] or stack
+    return f"{own[-1].filename}:{own[-1].lineno}" if own else "code without a place"
