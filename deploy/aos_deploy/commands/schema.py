@@ -31,6 +31,6 @@ def schema(
 ) -> None:
     """Print a JSON Schema for editors.
 
-    How an editor uses it: docs/editors.md in the sources of AOS.
+    docs/editors.md says how an editor uses it.
     """
     typer.echo(json.dumps(SCHEMAS[name](), indent=2))

@@ -194,6 +194,18 @@ TEST("Exact values are those that can be worked out by hand") {
   EXPECT_NEAR(three[0].value, -1 - 0.95 + 0.95 * 0.95 * (same * open - (1 - same)), 1e-12);
 }
 
+TEST("A belief that is a little wrong has values that may be wrong by what the largest rewards are worth") {
+  const Problem tiger = units::tiger();
+  const Belief belief = initial_belief(tiger);
+  Space space;
+  EXPECT(space.reach(belief));
+  EXPECT_EQUAL(space.slack(belief, 3), 0);
+  const Belief rough = Belief::of({belief.particles(), {}, {}}, 1e-7, false);
+  EXPECT(rough.is_exact());
+  EXPECT_NEAR(space.slack(rough, 2), 2e-7 * 100 * 1.95, 1e-15);
+  EXPECT(!Belief::of({belief.particles(), {}, {}}, 1e-5, false).is_exact());
+}
+
 TEST("Exact values that exceed the budget are refused, and no wrong ones given") {
   const Problem tiger = units::tiger();
   const Belief belief = initial_belief(tiger);

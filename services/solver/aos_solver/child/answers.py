@@ -152,7 +152,7 @@ class ExactValue(msgspec.Struct, frozen=True):
 class ExactValues(msgspec.Struct, frozen=True):
     """Finite-horizon values of all actions, and how many beliefs and states it took.
 
-    Rounding has moved no value by more than `error`.
+    Rounding, and what the belief and endless loops leave out, have moved no value by more than `error`.
     """
 
     actions: tuple[ExactValue, ...]

@@ -92,7 +92,7 @@ class PlanningCommands {
       json.begin_object().member("action", Model::action_name(action));
       json.member("q", values[static_cast<std::size_t>(action)].value).end_object();
     }
-    json.end_array().member("error", evaluation.error(horizon)).member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
+    json.end_array().member("error", evaluation.error(horizon) + space.slack(belief(), horizon)).member("beliefs", evaluation.beliefs()).member("states", space.size()).end_object();
   }
 
   void reach(JsonWriter& json, const Command& command) const {

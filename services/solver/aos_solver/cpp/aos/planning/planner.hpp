@@ -84,24 +84,13 @@ class Planner {
   // What a decision tells: an estimate of what is returned over the next `horizon` decisions, beginning with each action,
   // while the mission plans anew at each of them (action_values.hpp). `estimates` are those by which `choice` was made.
   std::vector<ActionEstimate> values(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
-    switch (used_) {
-      case PlannerKind::exact: return exact_.values();
-      case PlannerKind::sarsop: return point_based_.values(std::move(estimates), choice);
-      case PlannerKind::despot: {
-        bound(belief, estimates);
-        for (ActionEstimate& estimate : estimates) estimate.standard_error = despot_->error(belief);
-        return values_of_tree(std::move(estimates), despot_->reach(belief), choice);
-      }
-      case PlannerKind::belief_tree: {
-        bound(belief, estimates);
-        return values_of_tree(std::move(estimates), belief_tree_.reach(belief), choice);
-      }
-      default: {
-        bound(belief, estimates);
-        const TreeReach reach = pomcp_.reach(estimates, choice, belief);
-        return values_of_tree(std::move(estimates), reach, choice);
-      }
+    std::vector<ActionEstimate> values = values_of_belief(belief, std::move(estimates), choice);
+    const double slack = space_.slack(belief, horizon_);
+    for (ActionEstimate& value : values) {
+      value.at_least -= slack;
+      value.at_most += slack;
     }
+    return values;
   }
   // The action to take: the one with the highest estimate among those with reliable values.
   int choice(const std::vector<ActionEstimate>& estimates, const BarredActions& barred = {}) const {
@@ -162,7 +151,7 @@ class Planner {
       case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred_);
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = point_based_.search(budget);
-        why_ += "; " + bounds_text(horizon);
+        why_ += "; " + bounds_text(horizon, space_.slack(belief, horizon));
         return simulations;
       }
       default: {
@@ -228,8 +217,31 @@ class Planner {
     return space_.leaves_out_observations() ? space_.observations_obstacle() : point_based_.prepare(belief, horizon);
   }
 
-  std::string bounds_text(int horizon) const {
-    const auto [lower, upper] = point_based_.bounds();
+  // The values if the belief is what it should be.
+  std::vector<ActionEstimate> values_of_belief(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
+    switch (used_) {
+      case PlannerKind::exact: return exact_.values();
+      case PlannerKind::sarsop: return point_based_.values(std::move(estimates), choice);
+      case PlannerKind::despot: {
+        bound(belief, estimates);
+        for (ActionEstimate& estimate : estimates) estimate.standard_error = despot_->error(belief);
+        return values_of_tree(std::move(estimates), despot_->reach(belief), choice);
+      }
+      case PlannerKind::belief_tree: {
+        bound(belief, estimates);
+        return values_of_tree(std::move(estimates), belief_tree_.reach(belief), choice);
+      }
+      default: {
+        bound(belief, estimates);
+        const TreeReach reach = pomcp_.reach(estimates, choice, belief);
+        return values_of_tree(std::move(estimates), reach, choice);
+      }
+    }
+  }
+
+  std::string bounds_text(int horizon, double slack) const {
+    const auto [lowest, highest] = point_based_.bounds();
+    const double lower = lowest - slack, upper = highest + slack;
     const std::string scope = point_based_.is_endless() ? "without a horizon" : "with " + std::to_string(horizon) + " decisions to go";
     if (point_based_.tells_by_cells()) {
       return scope + " the belief is worth at least " + rounded_down(lower) + ", telling numbers by " +

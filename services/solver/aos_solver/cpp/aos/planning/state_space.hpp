@@ -108,8 +108,18 @@ class StateSpace {
   // Whether the rows have no observations, and why.
   bool leaves_out_observations() const { return skips_sensing_; }
   const std::string& observations_obstacle() const { return observations_obstacle_; }
-  // What rows leave out of loops without end: at most so much of the probability of each.
-  double most_left_out() const { return most_left_out_; }
+  // How far bounds of the value of `horizon` decisions have to be widened, since the belief is not quite the exact one and
+  // rows leave out improbable rounds of loops. No decision is taken to earn more than the largest expected reward. A
+  // drawn belief has no bound, so its bounds are those of its particles.
+  double slack(const Belief<Model>& belief, int horizon) const {
+    const double wrong = belief.is_drawn() ? 0 : belief.error_bound();
+    if (wrong <= 0 && most_left_out_ <= 0) return 0;
+    double largest = 0;
+    for (const double reward : rows_.rewards) largest = std::max(largest, std::abs(reward));
+    double decisions = 0;
+    for (int left = 0; left < horizon; ++left) decisions = 1 + Model::discount * decisions;
+    return (2 * wrong + horizon * most_left_out_) * largest * decisions;
+  }
   const NumberReports& reports() const { return reports_; }
   bool reaches(Ending ending) const { return reached_[static_cast<std::size_t>(ending)]; }
 
@@ -279,7 +289,7 @@ class StateSpace {
   std::uint64_t restarts_ = 0;
   bool reached_[ending_count]{};
   std::size_t work_ = 0;
-  double most_left_out_ = 0;
+  double most_left_out_ = 0;  // of the probability of a row
   bool skips_sensing_ = false;
   std::string observations_obstacle_;
   std::string obstacle_;
