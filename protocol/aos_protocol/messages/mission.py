@@ -72,9 +72,10 @@ class BeliefSummary(Message, frozen=True):
 
     `over_probability` is that of a mission that is over and is neither a goal nor a failure.
     `states` is the number of distinct states; `effective_states` is how many of equal weight would tell as
-    much. No event's probability is further than `error_bound` from what Bayes' rule gives: 0 where the belief
-    is exact, 1 where steps had to be sampled and nothing is certain. `cautious` has the chances of the
-    endings if nothing ran that was not observed; None where nothing sets that belief apart from this one.
+    much. No event's probability is further than `error_bound` from what Bayes' rule gives; it is 1 where
+    steps had to be sampled and nothing is certain. `is_exact`: it is a millionth at most. `cautious` has the
+    chances of the endings if nothing ran that was not observed; None where nothing sets that belief apart
+    from this one.
     """
 
     marginals: tuple[Marginal, ...]
