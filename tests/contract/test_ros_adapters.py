@@ -182,6 +182,7 @@ async def lab(
         bind={
             "/sum": Binding(target="/lab/add", result={"total": "sum"}),
             "/count": Binding(target={"action": "/lab/count", "type": FIBONACCI}),
+            "/wave": Binding(target="/lab/wave"),
         },
         serves_others=True,
     )
@@ -228,6 +229,13 @@ async def test_services_and_actions_of_the_robot_are_skills(lab: Lab) -> None:
     with pytest.raises(AosError, match=r"AddTwoInts_?Request has no field c") as raised:
         await lab.call("/sum", {"c": 1}, 3)
     assert raised.value.code == "AOS502"
+
+
+async def test_what_the_robot_lacks_is_logged_with_what_it_serves(lab: Lab) -> None:
+    await lab.until_served("/sum")
+    await lab.until_served("/count")
+    log = (lab.folder / "robot.log").read_text()
+    assert "no node serves /lab/wave; served are /lab/add, /lab/count" in log
 
 
 async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -> None:

@@ -103,7 +103,7 @@ class DdsNode(Ros2Node):
             raise SkillError(
                 f"no ROS 2 node serves {service} in domain {self._domain} of DDS",
                 code="AOS505",
-                hint=f"Served are: {', '.join(self._services()) or 'none'}",
+                hint=f"Served are: {', '.join(self.services()) or 'none'}",
             )
         theirs = ros_type(found.type_name).removesuffix("_Request")
         if type_name and theirs != type_name:
@@ -164,7 +164,7 @@ class DdsNode(Ros2Node):
             return None
         return found
 
-    def _services(self) -> list[str]:
+    def services(self) -> list[str]:
         topics = {one.topic for one in self._participant.endpoints.values() if not one.is_writer}
         return sorted(
             topic.removeprefix("rq").removesuffix("Request") for topic in topics if topic.startswith("rq/")

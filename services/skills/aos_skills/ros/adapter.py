@@ -65,6 +65,7 @@ class RosAdapter:
         self._ways = {path: way_to(path, binding.target) for path, binding in host.bound.items()}
         self._topics: dict[str, Callable[[], None] | None] = {}
         self._serving: set[str] = set()
+        self._told_missing = ""
         self._tasks: list[asyncio.Task[None]] = []
         self._has_new_names = asyncio.Event()
         self.node: RosNode
@@ -115,6 +116,7 @@ class RosAdapter:
                     wait.cancel()
 
     async def _serve_what_is_there(self) -> None:
+        self._say_what_is_missing()
         for path, way in list(self._ways.items()):
             kind = self.node.kind_of(way.name)
             is_there = bool(kind) and way.kind in ("", kind)
@@ -134,6 +136,16 @@ class RosAdapter:
                 self._serving.discard(path)
                 self.host.withdraw(path)
                 _log.warning("nobody serves %s any more", way.name)
+
+    def _say_what_is_missing(self) -> None:
+        """Once for each change; `aos-up` shows the end of the log if a path stays without a server."""
+        missing = [way.name for way in self._ways.values() if not self.node.kind_of(way.name)]
+        if not missing:
+            return
+        told = f"no node serves {', '.join(missing)}; served are {', '.join(self.node.served()) or 'none'}"
+        if told != self._told_missing:
+            self._told_missing = told
+            _log.warning("%s", told)
 
     async def _listen_to_what_is_there(self) -> None:
         renamed: dict[str, str] = self.host.options.get("topics", {})

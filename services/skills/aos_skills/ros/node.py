@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 from typing import Any, NamedTuple, Protocol
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "RosNode",
     "RunGoal",
     "TopicFound",
+    "named_skills",
 ]
 
 DISCOVERY_S = 5.0
@@ -117,6 +118,10 @@ class RosNode(Protocol):
         """Serves an action until closed. Any number of goals may run: `run` refuses what it cannot."""
         ...
 
+    def served(self) -> list[str]:
+        """The names of all services and actions that some node serves now, without those of every node."""
+        ...
+
     def kind_of(self, name: str) -> str:
         """What some node serves under a name now: "service", "action", or "" for nothing."""
         ...
@@ -136,3 +141,16 @@ class RosNode(Protocol):
     async def close(self) -> None:
         """Leaves the others."""
         ...
+
+
+_GOAL = "/_action/send_goal"
+_OF_EVERY_NODE = (
+    "/describe_parameters", "/get_parameter_types", "/get_parameters", "/list_parameters", "/set_parameters",
+    "/set_parameters_atomically", "/get_type_description", "/get_loggers", "/set_logger_level",
+)  # fmt: skip
+
+
+def named_skills(services: Iterable[str]) -> list[str]:
+    """Of the names of services those that may be skills, actions by their own names."""
+    whole = {name.removesuffix(_GOAL) for name in services if "/_action/" not in name or name.endswith(_GOAL)}
+    return sorted(name for name in whole if not name.endswith(_OF_EVERY_NODE))

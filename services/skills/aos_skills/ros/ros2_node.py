@@ -9,7 +9,16 @@ from typing import Self
 
 from aos_skills.ros import action_client
 from aos_skills.ros.action_server import ActionServer
-from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, ActionEnd, Fields, Qos, RunGoal, TopicFound
+from aos_skills.ros.node import (
+    DEFAULT_QOS,
+    DISCOVERY_S,
+    ActionEnd,
+    Fields,
+    Qos,
+    RunGoal,
+    TopicFound,
+    named_skills,
+)
 from aos_skills.ros.types import RosTypes
 
 __all__ = ["Ros2Node"]
@@ -68,6 +77,10 @@ class Ros2Node(ABC):
         """Whether some node serves it now."""
 
     @abstractmethod
+    def services(self) -> list[str]:
+        """The names of all that some node serves now."""
+
+    @abstractmethod
     async def changed(self) -> None: ...
 
     @abstractmethod
@@ -98,6 +111,9 @@ class Ros2Node(ABC):
 
     def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
         ActionServer(self, action, type_name, run)
+
+    def served(self) -> list[str]:
+        return named_skills(self.services())
 
     def kind_of(self, name: str) -> str:
         if self.serves(name):

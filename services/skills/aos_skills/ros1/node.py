@@ -19,6 +19,7 @@ from aos_skills.ros.node import (
     Qos,
     RunGoal,
     TopicFound,
+    named_skills,
 )
 from aos_skills.ros1.process import Ros1Process
 
@@ -164,6 +165,9 @@ class Ros1Node:
     def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
         self._goals[action] = run
         self._process.tell("serve_action", name=action, type=_ros1(type_name))
+
+    def served(self) -> list[str]:
+        return named_skills([*self._names["services"], *self._names["actions"]])
 
     def kind_of(self, name: str) -> str:
         if name in self._names["services"]:

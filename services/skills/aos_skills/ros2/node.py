@@ -118,7 +118,7 @@ class Node(Ros2Node):
         """The node's end of a service, whose type is as it is defined here."""
         server = await self.graph.wait_for(Kind.SERVER, service, timeout_s)
         if server is None:
-            known = ", ".join(sorted(self.graph.names(Kind.SERVER))) or "none"
+            known = ", ".join(self.services()) or "none"
             raise SkillError(
                 f"no ROS 2 node serves {service} in domain {self.domain}",
                 code="AOS505",
@@ -150,6 +150,9 @@ class Node(Ros2Node):
         await self.graph.changed()
 
     # --- what they share -----------------------------------------------------------------------------
+
+    def services(self) -> list[str]:
+        return sorted(self.graph.names(Kind.SERVER))
 
     def serves(self, service: str) -> bool:
         return bool(self.graph.find(Kind.SERVER, service))
