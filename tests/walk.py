@@ -25,7 +25,7 @@ _BLOCK = re.compile(r"<!-- (.*?) -->\n```\w*\n(.*?)```", re.DOTALL)
 _PORT = "bus: {listen: tcp/127.0.0.1:0}\n"
 """Other systems may run where this one does."""
 
-_TAKES_ITS_TIME = "await asyncio.sleep(10)"
+_TAKES_ITS_TIME = "await asyncio.sleep(5)"
 _WAITS = "while not pathlib.Path({pushed!r}).exists(): await asyncio.sleep(0.05)"
 """A look of the tutorial's robot lasts until the bundle is pushed, however long that takes here."""
 

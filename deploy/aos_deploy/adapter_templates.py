@@ -60,7 +60,7 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
     else:
         budget = "time_s: 0.2, seed: 1}    # seconds for each decision"
     lines = [
-        f"# The robot {name}: what runs when aos-up starts it. Every key: docs/deploy-file.md.",
+        f"# The robot {name}: what runs when aos-up starts it. Every key: `aos schema deploy`.",
         "aos: 1",
         f"robot: {name}",
         f"bundles: [{bundle}]",
@@ -77,7 +77,7 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
         lines += ["adapters:", "  robot: external"]
     elif kind == "class":
         lines += [
-            "# In the robot's own Python, with the package aos-adapter (docs/adapters/command.md):",
+            "# In the robot's own Python, with the package aos-adapter:",
             f"#   robot: {{command: [python3, -m, aos_runtime.adapters, '{program}:Robot']}}",
             "adapters:",
             f"  robot: {{class: '{program.removesuffix('.py')}:Robot'}}",
@@ -90,7 +90,7 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
                 if kind == "ros2"
                 else []
             ),
-            f"# Every option: docs/adapters/{kind}.md.",
+            f"# Every option: in the sources of AOS, docs/adapters/{kind}.md.",
             "adapters:",
             "  robot:",
             f"    {kind}: {value}    # {meaning}",

@@ -15,6 +15,7 @@ import msgspec
 
 from aos_deploy.adapters import TAKEN, AdapterPlan, played_by_model, read_adapters
 from aos_deploy.constraints import snippet_of
+from aos_deploy.deploy_folder import deploy_file_at
 from aos_deploy.own_programs import ProgramPart, check_programs
 from aos_deploy.typed import known_names, read_structure
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
@@ -168,7 +169,11 @@ class Deployment(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def read_deploy_file(path: Path) -> Deployment:
-    """The deployment a file describes; DeployError AOS801 with all diagnostics if it has errors."""
+    """The deployment a file describes; DeployError AOS801 with all diagnostics if it has errors.
+
+    In place of the file a folder with one deploy file may be given.
+    """
+    path = deploy_file_at(path)
     named = str(path)
     node, findings = read_yaml(path, named)
     deployment = None

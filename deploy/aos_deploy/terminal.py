@@ -19,10 +19,18 @@ from rich.progress import (
 
 __all__ = ["console", "progress", "waiting"]
 
+_PIPED_COLUMNS = 1000
 
-def console(*, stderr: bool = False) -> Console:
-    """Standard output or standard error. With NO_COLOR not even bold or dim is left (see no-color.org)."""
-    return Console(stderr=stderr, color_system=None if os.environ.get("NO_COLOR") else "auto")
+
+def console(*, stderr: bool = False, is_wide: bool = False) -> Console:
+    """Standard output or standard error. With NO_COLOR not even bold or dim is left (see no-color.org).
+
+    What `is_wide` is cut nowhere where nobody has said how wide it may be: in a pipe or a file.
+    """
+    shown = Console(stderr=stderr, color_system=None if os.environ.get("NO_COLOR") else "auto")
+    if is_wide and not shown.is_terminal and not os.environ.get("COLUMNS"):
+        shown.width = _PIPED_COLUMNS
+    return shown
 
 
 def progress(*columns: ProgressColumn) -> Progress:

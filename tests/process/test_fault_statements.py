@@ -144,3 +144,51 @@ async def test_a_fault_is_told_at_its_statement(name: str, document: str, cache_
     assert (diagnostic.span.file, diagnostic.span.line) == (file, line_of(text, name))
     assert fault.code == code
     assert message in fault.message
+
+
+BOARD = """project: board
+horizon: 4
+
+define_type: Mark
+enum_members: None, Ours, Theirs
+
+state_variable: Mark[] cells
+code:
+state.cells = {None, None, None};
+state_variable: int unrelated
+code:
+state.unrelated = 7;
+
+extrinsic_code:
+int cell = AOS.SampleDiscrete(vector<double>{0.4, 0.3, 0.3});
+while (state_.cells[cell] != None) {  // on a full board
+    cell = AOS.SampleDiscrete(vector<double>{0.4, 0.3, 0.3});
+}
+state_.cells[cell] = Theirs;
+"""
+DRAW = """project: board
+
+dynamic_model:
+for (int i = 0; i < 3; i++) {
+    if (state__.cells[i] == None) { state__.cells[i] = Ours; break; }
+}
+__moduleResponse = drawn;
+"""
+
+
+async def test_a_loop_that_cannot_end_is_told_with_the_state_in_which_it_cannot(cache_dir: Path) -> None:
+    drawing = ANSWERING.replace("ward", "board").replace("response: ok", "response: drawn")
+    built = await built_text({"board.ef": BOARD, "draw.sd": DRAW, "draw.am": drawing}, cache_dir)
+    async with engine_of(built) as running:
+        await running.reset_world(1)
+        await running.step_world(0)  # Theirs, then ours; with their second mark the board is full.
+        await running.step_world(0)
+        with pytest.raises(ModelError) as caught:
+            await running.step_world(0)
+    (diagnostic,) = caught.value.diagnostics
+    assert (diagnostic.span.file, diagnostic.span.line) == ("board.ef", line_of(BOARD, "on a full board"))
+    message, _, values = diagnostic.message.partition(", with ")
+    assert message == "this code does not come to an end"
+    marks = sorted(value.partition("=")[2] for value in values.split(", "))
+    assert marks == ["Ours", "Theirs", "Theirs"]
+    assert values.startswith("state_.cells[0]=")

@@ -372,3 +372,40 @@ bind:
     programs = {program.name: program for program in programs_of_deployment(deployment)}
     assert "base" not in programs
     assert programs["arm"].argv(Path("settings.json"))[-2:] == ["./arm", "--fast"]
+
+
+# --- a folder in place of the file ---------------------------------------------------------------------
+
+
+def test_a_folder_with_one_deploy_file_stands_for_it(folder: Path) -> None:
+    (folder / "rover.yaml").write_text(HEAD)
+    (folder / "tests.yaml").write_text("aos: 1\nmissions: []\n")
+    assert read_deploy_file(folder).path == folder / "rover.yaml"
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(DeployError) as caught:
+        read_deploy_file(path)
+    assert caught.value.code == "AOS801"
+    return str(caught.value)
+
+
+def test_a_folder_with_several_deploy_files_is_refused_with_their_names(folder: Path) -> None:
+    for name in ("a", "b"):
+        (folder / f"{name}.yaml").write_text(HEAD)
+    assert f"has 2 deploy files. Name one: {folder / 'a.yaml'}, {folder / 'b.yaml'}" in refusal(folder)
+
+
+def test_a_bundle_is_refused_with_the_deploy_file_beside_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    told = refusal(Path("bundle"))
+    assert told.endswith("no deploy file. Write one for it: aos new adapter model --in bundle")
+    (folder / "rover.yaml").write_text(HEAD)
+    assert refusal(Path("bundle")).endswith("no deploy file. Name one that has it: rover.yaml")
+
+
+def test_a_folder_of_anything_else_is_refused_with_what_to_give(folder: Path) -> None:
+    (folder / "empty").mkdir()
+    assert "is a folder without a deploy file. Name a deploy file" in refusal(folder / "empty")

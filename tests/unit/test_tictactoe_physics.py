@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import random
 import socket
+import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -180,3 +182,38 @@ def test_a_person_is_asked_until_they_name_an_empty_cell(make: Make) -> None:
     assert cell == 1
     assert said[0].startswith("\nO ? ?\n? ? ?\n? ? ?\nYour cell (2, 3, 4, 5, 6, 7, 8, 9): ")
     assert len(said) == 3
+
+
+@pytest.mark.parametrize(
+    ("marks", "skill", "last"),
+    [
+        ("OO?XX?XOX", "/draw", "O O O\nX X ?\nX O X\nThe robot has won."),
+        ("OO?XX??OX", "/look", "O O ?\nX X X\n? O X\nYou have won."),
+    ],
+)
+def test_play_shows_a_person_the_last_board_and_who_has_won(
+    make: Make, marks: str, skill: str, last: str
+) -> None:
+    world = make(opponent="person", port=0)
+    person = world._opponent
+    assert isinstance(person, PersonAtTerminal)
+    world.marks, world.is_robots_turn = marks, skill == "/draw"
+    command = [sys.executable, "-m", "aos_skills.pybullet.worlds.tictactoe.play", "--port", str(person.port)]
+    playing = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    assert playing.stdin is not None
+    assert playing.stdout is not None
+    assert any(line.startswith("Connected.") for line in playing.stdout)
+    playing.stdin.write("6\n")
+    playing.stdin.flush()
+    call(world, skill, {"cell": 2} if skill == "/draw" else {})
+    world.close()
+    try:
+        said, _ = playing.communicate("9\n", timeout=HANG_S)
+    finally:
+        playing.kill()
+    assert last in said
+    assert said.rstrip().endswith("The game has ended.")
+    assert "Traceback" not in said
+    assert playing.returncode == 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import msgspec
@@ -21,6 +21,22 @@ from aos_solver.child.engine import Engine
 from aos_solver.hot_plug import build_project
 
 __all__ = ["Calibration", "calibrate"]
+
+
+def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
+    """Where the records contradict what is no number to be estimated."""
+    for each in estimates:
+        excluded = [outcome for outcome in each.outcomes if outcome.is_excluded and not outcome.is_inside]
+        for outcome in excluded:
+            yield (
+                f"{each.draw.span}: the documents exclude {outcome.outcome}, and the records have it "
+                f"{outcome.count:.0f} times: a weight of 0 is changed by hand only"
+            )
+        if each.draw.is_initial and not each.is_inside and not excluded:
+            yield (
+                f"{each.draw.span}: this draw decides what there is at the start, and the records begin "
+                "otherwise: it is changed by hand only"
+            )
 
 
 class Calibration(msgspec.Struct, frozen=True):
@@ -66,7 +82,7 @@ async def calibrate(
     finally:
         await engine.close()
     estimates = estimate(draws.draws, lattices, on_sweep)
-    patch, by_hand = patch_of((each for each in estimates if not each.is_inside), files, paths)
+    patch, by_hand = patch_of((each for each in estimates if each.is_contradicted), files, paths)
     return Calibration(
         missions=len(missions),
         steps=sum(lattice.steps for lattice in lattices),
@@ -74,5 +90,5 @@ async def calibrate(
         estimates=estimates,
         skipped=draws.skipped,
         patch=patch,
-        by_hand=by_hand,
+        by_hand=(*by_hand, *_not_proposed(estimates)),
     )

@@ -32,7 +32,7 @@ class Draw(msgspec.Struct, frozen=True):
     """A draw: `places` are the places of its weights in the documents, as they stand there in `texts`.
 
     A Bernoulli has one number, the probability of its second outcome, `true`. `skill` is empty in the
-    environment's code.
+    environment's code; `is_initial` in its initial belief, where a draw decides what there is at the start.
     """
 
     variable: str
@@ -43,6 +43,7 @@ class Draw(msgspec.Struct, frozen=True):
     weights: tuple[float, ...]
     places: tuple[Span, ...]
     texts: tuple[str, ...]
+    is_initial: bool = False
 
 
 class Skipped(msgspec.Struct, frozen=True):
@@ -93,7 +94,9 @@ class _Search:
     def environment(self, environment: Environment) -> Environment:
         """With the variables of all draws so far and of its own."""
         extrinsic = self._section(environment.extrinsic_changes, "", "state_")
+        before = len(self.draws)
         initial = self._section(environment.initial_belief, "", "state")
+        self.draws[before:] = [msgspec.structs.replace(d, is_initial=True) for d in self.draws[before:]]
         span = environment.span
         variables = tuple(
             StateVariable(draw.variable, "int", span, default_code=_code(f"state.{draw.variable} = 0;", span))

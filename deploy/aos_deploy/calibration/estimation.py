@@ -7,6 +7,7 @@ that the interval is as much wider as the records say less.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import msgspec
@@ -20,6 +21,9 @@ from aos_deploy.trials.intervals import CONFIDENCE, Interval
 __all__ = ["DrawEstimate", "Estimate", "estimate"]
 
 PRIOR = 0.5
+LEAST_DIFFERENCE = 0.1
+"""Whether a number is wrong by less than this, nobody asks."""
+NORMAL_QUANTILE = 1.96
 SWEEPS, FIRST_SWEEPS = 600, 150
 QUANTILE_SAMPLES = 400_000
 SEED = 1
@@ -30,7 +34,7 @@ Numbers = npt.NDArray[np.float64]
 class Estimate(msgspec.Struct, frozen=True):
     """Of one outcome: how often it was drawn, as far as is known, and its probability.
 
-    `document` is the probability that the documents give it.
+    `document` is the probability that the documents give it; with 0 they exclude it, which no record changes.
     """
 
     outcome: str
@@ -43,22 +47,37 @@ class Estimate(msgspec.Struct, frozen=True):
         """Whether the document's number is one that the records allow."""
         return self.probability.low <= self.document <= self.probability.high
 
+    @property
+    def is_excluded(self) -> bool:
+        """Whether the documents say that it never comes."""
+        return self.document == 0.0
+
 
 class DrawEstimate(msgspec.Struct, frozen=True):
     """Of all outcomes of a draw, or of draws that share their numbers.
 
-    With `is_counted` the records leave none of them open.
+    With `is_counted` the records leave none of them open. `records_to_tell` is about how many it would take
+    to contradict the document's numbers: if they are as wrong as the records have it, or by 0.1 if less.
     """
 
     draw: Draw
     count: float
     is_counted: bool
     outcomes: tuple[Estimate, ...]
+    records_to_tell: int = 0
 
     @property
     def is_inside(self) -> bool:
         """Whether the records allow the document's numbers; they do where they say nothing."""
         return not self.count or all(outcome.is_inside for outcome in self.outcomes)
+
+    @property
+    def is_contradicted(self) -> bool:
+        """Whether the records are reason to change a number: one of an outcome that comes now and then."""
+        possible = [outcome for outcome in self.outcomes if not outcome.is_excluded]
+        if not self.count or len(possible) < 2 or self.draw.is_initial:
+            return False
+        return any(not each.is_inside and _is_improbable(each, self.count) for each in possible)
 
 
 class _Parameters:
@@ -67,6 +86,21 @@ class _Parameters:
     def __init__(self, draws: Sequence[Draw]) -> None:
         self.of_draw = [next(i for i, other in enumerate(draws) if other.places == d.places) for d in draws]
         self.sizes = [len(draw.outcomes) for draw in draws]
+        self.possible = [_document(draw) > 0 for draw in draws]
+
+    def start(self) -> list[Numbers]:
+        """All outcomes that the documents allow, equally likely."""
+        return [mask / max(mask.sum(), 1) for mask in self.possible]
+
+    def drawn_from(self, counts: Sequence[Numbers], random: np.random.Generator) -> list[Numbers]:
+        """Probabilities by these counts. What the documents exclude stays impossible."""
+        drawn = []
+        for count, mask in zip(counts, self.possible, strict=True):
+            probabilities = np.zeros(len(count))
+            if mask.any():
+                probabilities[mask] = random.dirichlet(count[mask] + PRIOR)
+            drawn.append(probabilities)
+        return drawn
 
     def odds(self, drawn: npt.NDArray[np.int64], probabilities: Sequence[Numbers]) -> Numbers:
         """Of each state of a layer: by how much its draws are likelier than with equal probabilities."""
@@ -98,7 +132,7 @@ def estimate(
                 parameters.count(layer[:1], fixed)
         else:
             open_ones.append(lattice)
-    sweeps = _sweeps(parameters, fixed, open_ones, draws, random, on_sweep)
+    sweeps = _sweeps(parameters, fixed, open_ones, random, on_sweep)
     found = []
     for number, draw in enumerate(draws):
         if parameters.of_draw[number] == number:
@@ -115,7 +149,6 @@ def _sweeps(
     parameters: _Parameters,
     fixed: list[Numbers],
     lattices: Sequence[Lattice],
-    draws: Sequence[Draw],
     random: np.random.Generator,
     on_sweep: Callable[[int, int], None],
 ) -> list[list[Numbers]]:
@@ -123,7 +156,7 @@ def _sweeps(
     if not lattices:
         return [fixed]
     alike = _alike(lattices)
-    probabilities = [np.full(len(draw.outcomes), 1 / len(draw.outcomes)) for draw in draws]
+    probabilities = parameters.start()
     kept = []
     total = FIRST_SWEEPS + SWEEPS
     for sweep in range(total):
@@ -133,7 +166,7 @@ def _sweeps(
             for _ in range(missions):
                 for layer in _one_way(lattice, forward, random):
                     parameters.count(layer, counts)
-        probabilities = [random.dirichlet(count + PRIOR) for count in counts]
+        probabilities = parameters.drawn_from(counts, random)
         if sweep >= FIRST_SWEEPS:
             kept.append(counts)
         on_sweep(sweep + 1, total)
@@ -192,7 +225,35 @@ def _of_draw(draw: Draw, counts: Numbers, random: np.random.Generator) -> DrawEs
             Estimate(outcome, float(hits.mean()), _interval(hits, totals, random), float(document[number]))
         )
     is_counted = bool((counts == counts[0]).all())
-    return DrawEstimate(draw, float(totals.mean()), is_counted, tuple(estimates))
+    needed = max((_records_to_tell(each, totals.mean()) for each in estimates), default=0)
+    return DrawEstimate(draw, float(totals.mean()), is_counted, tuple(estimates), needed)
+
+
+def _records_to_tell(estimate: Estimate, records: float) -> int:
+    """About how many records would put the document's number outside the interval; 0 for what is excluded."""
+    if estimate.is_excluded or estimate.document == 1.0:
+        return 0
+    document = estimate.document
+    share = (estimate.count + PRIOR) / (records + 2 * PRIOR)
+    if abs(share - document) < LEAST_DIFFERENCE:
+        share = document + LEAST_DIFFERENCE * (1 if document < 0.5 else -1)
+    variance = max(document * (1 - document), share * (1 - share))
+    return math.ceil(NORMAL_QUANTILE**2 * variance / (share - document) ** 2)
+
+
+def _is_improbable(outcome: Estimate, records: float) -> bool:
+    """Whether so many, or so few, of the records come in less than 2.5 of 100 cases by the document's number.
+
+    Of few records Jeffreys's interval leaves out more than that.
+    """
+    n, hits, p = round(records), round(outcome.count), outcome.document
+
+    def probability(k: int) -> float:
+        ways = math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1)
+        return math.exp(ways + k * math.log(p) + (n - k) * math.log1p(-p))
+
+    of_each = [probability(k) for k in range(n + 1)]
+    return min(sum(of_each[: hits + 1]), sum(of_each[hits:])) < (1 - CONFIDENCE) / 2
 
 
 def _document(draw: Draw) -> Numbers:

@@ -6,27 +6,41 @@ import difflib
 from collections.abc import Iterable, Mapping
 
 from aos_deploy.calibration.draws import Draw
-from aos_deploy.calibration.estimation import PRIOR, DrawEstimate
+from aos_deploy.calibration.estimation import PRIOR, DrawEstimate, Estimate
 from aos_protocol.diagnostics import Span
 
 __all__ = ["patch_of", "proposed_numbers"]
 
 _DIGITS = 4
+_SAME = 0.5 * 10.0**-_DIGITS
 
 
 def proposed_numbers(estimate: DrawEstimate) -> tuple[float, ...]:
     """In place of the draw's numbers; the weights of a discrete draw make 1.
 
-    An outcome that the documents allow and that never came keeps half a record's weight: with 0 its first
-    coming would be impossible.
+    An outcome outside its interval gets its share of the records. Those inside share the rest as the
+    documents have them. What the documents exclude stays 0. An outcome that they allow and that never came
+    keeps half a record's weight: with 0 its first coming would be impossible.
     """
-    hits = [outcome.count or (PRIOR if outcome.document > 0 else 0.0) for outcome in estimate.outcomes]
-    shares = [round(each / sum(hits), _DIGITS) for each in hits]
+    possible = [outcome for outcome in estimate.outcomes if not outcome.is_excluded]
+    inside = [outcome for outcome in possible if outcome.is_inside]
+    hits = {outcome.outcome: outcome.count or PRIOR for outcome in possible}
+    rest = max(sum(outcome.count for outcome in inside), PRIOR * len(inside))
+    total = rest + sum(hits[outcome.outcome] for outcome in possible if not outcome.is_inside)
+    weight_inside = sum(outcome.document for outcome in inside)
+
+    def share(outcome: Estimate) -> float:
+        if outcome.is_excluded:
+            return 0.0
+        of_document = rest * outcome.document / weight_inside if outcome.is_inside else 0.0
+        return round((of_document or hits[outcome.outcome]) / total, _DIGITS)
+
+    shares = [share(outcome) for outcome in estimate.outcomes]
     if estimate.draw.kind == "Bernoulli":
         return (shares[1],)
     largest = shares.index(max(shares))
-    rest = 1 - sum(share for number, share in enumerate(shares) if number != largest)
-    shares[largest] = round(rest, _DIGITS)
+    others = sum(each for number, each in enumerate(shares) if number != largest)
+    shares[largest] = round(1 - others, _DIGITS)
     return tuple(shares)
 
 
@@ -41,7 +55,8 @@ def patch_of(
     for estimate in estimates:
         draw: Draw = estimate.draw
         for span, old, new in zip(draw.places, draw.texts, proposed_numbers(estimate), strict=True):
-            edits.setdefault(span.file, []).append((span, old, f"{new:g}"))
+            if abs(float(old.rstrip("fF")) - new) >= _SAME:
+                edits.setdefault(span.file, []).append((span, old, f"{new:g}"))
     parts: list[str] = []
     left_out: list[str] = []
     for name, changes in sorted(edits.items()):

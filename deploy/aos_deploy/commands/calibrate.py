@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -95,10 +96,10 @@ def _print(result: Calibration) -> None:
                 f"{outcome.count:.{0 if estimate.is_counted else 1}f} of {estimate.count:.0f}",
                 f"{interval.value:.3f} [{interval.low:.3f}, {interval.high:.3f}]" if estimate.count else "",
                 f"{outcome.document:.3f}",
-                _verdict(estimate, number),
+                _verdict(estimate, number, result.missions),
             )
         table.add_section()
-    console().print(table)
+    console(is_wide=True).print(table)
     for skipped in result.skipped:
         typer.echo(f"{skipped.span}: not estimated: {skipped.why}")
     for remark in result.remarks[:SHOWN_REMARKS]:
@@ -110,7 +111,17 @@ def _print(result: Calibration) -> None:
     typer.echo(result.patch.rstrip() or "no number is one that the records do not allow")
 
 
-def _verdict(estimate: DrawEstimate, number: int) -> str:
+def _verdict(estimate: DrawEstimate, number: int, missions: int) -> str:
     if not estimate.count:
-        return "no record"
-    return "inside" if estimate.outcomes[number].is_inside else "OUTSIDE"
+        return "no record" if number == 0 else ""
+    if not estimate.outcomes[number].is_inside:
+        return "OUTSIDE"
+    return "inside" if number or not estimate.is_inside else f"inside; {_to_tell(estimate, missions)}"
+
+
+def _to_tell(estimate: DrawEstimate, missions: int) -> str:
+    """What the records are too few for, in missions that come to this draw as often as these."""
+    missing = estimate.records_to_tell - estimate.count
+    if missing <= 0:
+        return "enough records"
+    return f"to tell otherwise: about {count(math.ceil(missing * missions / estimate.count), 'more mission')}"

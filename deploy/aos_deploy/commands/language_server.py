@@ -16,7 +16,7 @@ def serve() -> None:
     """Check documents while they are written.
 
     Speaks the Language Server Protocol over standard input and output.
-    Editors start it by themselves; docs/editors.md has the settings.
+    Editors start it by themselves; docs/editors.md in the sources of AOS has the settings.
     """
     from aos_deploy.language_server.server import language_server  # The protocol's types take a while.
 

@@ -31,6 +31,6 @@ def schema(
 ) -> None:
     """Print a JSON Schema for editors.
 
-    docs/editors.md says how an editor uses it.
+    How an editor uses it: docs/editors.md in the sources of AOS.
     """
     typer.echo(json.dumps(SCHEMAS[name](), indent=2))

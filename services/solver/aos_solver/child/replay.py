@@ -49,22 +49,33 @@ async def at_its_statement(
         return fault
     place = fault.diagnostics[0].span
     trace = traced(built.emitted)
-    if not trace.has_later_statements(built.emitted.snippets.index(place) + 1):
+    is_endless = isinstance(fault, EndlessCodeError)  # Then only the replay tells the state.
+    if not is_endless and not trace.has_later_statements(built.emitted.snippets.index(place) + 1):
         return fault
     try:
         slow = await build(trace.emitted, cache_dir=built.cache_dir, kind="unoptimized")
-        span = await _Replay(fault, place, trace, slow, start).statement(commands)
+        found = await _Replay(fault, place, trace, slow, start).statement(commands)
     except AosError as error:
         log.info("the statement of a fault was not found: %s", error)
         return fault
-    return fault if span is None else _moved(fault, span)
+    return fault if found is None else _moved(fault, found)
 
 
-def _moved(fault: CodeFaultError, span: Span) -> AosError:
+class _Found(msgspec.Struct, frozen=True):
+    """The statement of a fault, and what was said of it when it came again."""
+
+    span: Span
+    message: str
+
+
+def _moved(fault: CodeFaultError, found: _Found) -> AosError:
     (told,) = fault.diagnostics
     hint = "Look at this statement"
-    diagnostic = msgspec.structs.replace(told, span=span, hint=hint)
-    return error_from_code(fault.code, f"{span}: {told.message}", hint=hint, diagnostics=(diagnostic,))
+    # Of code that does not come to an end the state is known now.
+    message = found.message if found.message.startswith(told.message) else told.message
+    diagnostic = msgspec.structs.replace(told, span=found.span, message=message, hint=hint)
+    text = f"{found.span}: {message}"
+    return error_from_code(fault.code, text, hint=hint, diagnostics=(diagnostic,))
 
 
 class _Replay:
@@ -86,18 +97,18 @@ class _Replay:
         self._start = start
         self._samples: deque[int] = deque(maxlen=_LAST_SAMPLES)
 
-    async def statement(self, commands: Sequence[str]) -> Span | None:
+    async def statement(self, commands: Sequence[str]) -> _Found | None:
         """Where the same fault comes again."""
         found = await self._fault_of([_with_one_thread(command) for command in commands])
-        if found is None:
-            found = await self._fault_of(
-                [command_line("rate", seconds=_RANDOM_ACTIONS_S, seed=self._start.seed)]
-            )
-            if found is not None and not self._is_in_the_piece(found):
-                return None
-        return found
+        if found is not None and found.message.startswith(self._fault.diagnostics[0].message):
+            return found
+        # It did not come again, or only as a question that took too long.
+        by_chance = await self._fault_of(
+            [command_line("rate", seconds=_RANDOM_ACTIONS_S, seed=self._start.seed)]
+        )
+        return by_chance if by_chance is not None and self._is_in_the_piece(by_chance.span) else found
 
-    async def _fault_of(self, commands: Sequence[str]) -> Span | None:
+    async def _fault_of(self, commands: Sequence[str]) -> _Found | None:
         periods = _HANG_PERIODS if isinstance(self._fault, EndlessCodeError) else HANG_PERIODS
         child = await EngineChild.launch(self._built, self._start, periods)
         try:
@@ -105,7 +116,8 @@ class _Replay:
             for command in commands:
                 await self._asked(child, command)
         except ModelError as error:
-            return self._span_of(error)
+            span = self._span_of(error, is_told_by_code=child.is_running)
+            return None if span is None else _Found(span, error.diagnostics[0].message)
         finally:
             await child.close()
         return None
@@ -126,10 +138,11 @@ class _Replay:
             await asyncio.wait({asking}, timeout=_SAMPLE_PERIOD_S)
         return asking.result()
 
-    def _span_of(self, error: ModelError) -> Span | None:
+    def _span_of(self, error: ModelError, *, is_told_by_code: bool) -> Span | None:
         if error.code != self._fault.code or not error.diagnostics:
             return None
-        if not isinstance(error, EndlessCodeError):
+        # Code that told its state told the head of its loop as well.
+        if is_told_by_code or not isinstance(error, EndlessCodeError):
             return error.diagnostics[0].span
         # What never ends is the first of the statements that still run in the end: the head of its loop.
         if not self._samples or any(not self._is_number_in_the_piece(number) for number in self._samples):

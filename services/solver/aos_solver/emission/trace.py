@@ -21,6 +21,9 @@ _RESULTS = ("__reward", "__moduleResponse")
 """The reward is looked at first, so it has to be the last that tells of itself when the section is over."""
 
 
+_STATE = re.compile(r"\b(state_{0,3})\s*(?:\.|->)\s*(\w+)")
+
+
 class TracedModel(msgspec.Struct, frozen=True):
     """`emitted.snippets` are the pieces' places and after them those of the statements.
 
@@ -80,10 +83,22 @@ class _Tracing:
     @property
     def start(self) -> str:
         """Before the first statement; the names are the piece's own, since sections have several."""
-        return "".join(f"aos::blame::Giving {self._giver(name)}{{{name}}}; " for name in self._given)
+        givers = "".join(f"aos::blame::Giving {self._giver(name)}{{{name}}}; " for name in self._given)
+        return f"{self._showing}{givers}"
+
+    @property
+    def _showing(self) -> str:
+        """What tells the state if the piece does not end: the copies and variables that it names."""
+        named: dict[str, list[str]] = {}
+        for copy, variable in _STATE.findall(self._piece.text):
+            named.setdefault(copy, []).append(variable)
+        if not named:
+            return ""
+        copies = ", ".join(f'{{"{copy}", {copy}, {{{_shown(named[copy])}}}}}' for copy in sorted(named))
+        return f"aos::blame::Showing aos_showing_{self._piece.number}{{{{{copies}}}}}; "
 
     def _before(self, statement: Statement) -> str:
-        return f"aos::blame::at({self._place(statement)})"
+        return f"aos::blame::statement({self._place(statement)})"
 
     def _after(self, statement: Statement) -> str:
         given = [name for name in self._given if _sets(statement.text, name)]
@@ -96,6 +111,13 @@ class _Tracing:
         key = (statement.line, statement.column)
         self.spans.setdefault(key, self._piece.locate(*key))
         return self._places + 1 + list(self.spans).index(key)
+
+
+def _shown(variables: list[str]) -> str:
+    """The variables' names as C++ lists them; none, which stands for all, where objects are gone through."""
+    if any(name.endswith("Objects") for name in variables):
+        return ""
+    return ", ".join(f'"{name}"' for name in dict.fromkeys(variables))
 
 
 def _sets(code: str, name: str) -> bool:

@@ -31,5 +31,6 @@ def draw(world: TicTacToe, fields: dict[str, Any]) -> dict[str, Any]:
         world.marks = marked(world.marks, cell, "O")
         world.circled.append(cell)
     world.is_robots_turn = False
+    world.tell_end()
     board = board_in(world.picture())
     return {"success": board is not None and board[cell] == "O"}

@@ -12,6 +12,7 @@ from aos_skills.pybullet.worlds.tictactoe.rules import empty_cells
 __all__ = ["PersonAtTerminal"]
 
 LOOK_EVERY_S = 0.05
+_ENDS = {"X": "You have won.", "O": "The robot has won.", None: "Nobody has won."}
 
 
 class PersonAtTerminal:
@@ -32,6 +33,7 @@ class PersonAtTerminal:
         self._listener.settimeout(0)
         self.port: int = self._listener.getsockname()[1]
         self._terminal: socket.socket | None = None
+        self._has_told_end = False
 
     def __call__(self, board: str) -> int:
         """Returns when a cell was typed. What ends the skill's call, ends the waiting."""
@@ -42,9 +44,8 @@ class PersonAtTerminal:
                 is_asked, typed = False, b""
                 self._accept()
             if self._terminal is not None and not is_asked:
-                rows = (board[start : start + 3] for start in (0, 3, 6))
                 numbers = ", ".join(str(cell + 1) for cell in cells)
-                self._say("\n" + "\n".join(" ".join(row) for row in rows) + f"\nYour cell ({numbers}): ")
+                self._say(f"{_drawn(board)}\nYour cell ({numbers}): ")
                 is_asked = True
             typed += self._heard()
             if b"\n" in typed:
@@ -54,6 +55,16 @@ class PersonAtTerminal:
                 is_asked, typed = False, b""
             self._scene.wait(LOOK_EVERY_S)
             time.sleep(LOOK_EVERY_S)
+
+    def tell_end(self, board: str, won: str | None, *, is_over: bool) -> None:
+        """The last board and who has won, to whoever is connected. Only the first time counts."""
+        if self._has_told_end:
+            return
+        self._has_told_end = True
+        if self._terminal is None:
+            self._accept()
+        ended = _ENDS[won] if is_over else "The game was ended before it was over."
+        self._say(f"{_drawn(board)}\n{ended}\n")
 
     def close(self) -> None:
         """Hangs up."""
@@ -91,3 +102,8 @@ class PersonAtTerminal:
         if heard == b"":
             self._hang_up()
         return heard
+
+
+def _drawn(board: str) -> str:
+    """The board in three lines."""
+    return "\n" + "\n".join(" ".join(board[start : start + 3]) for start in (0, 3, 6))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import codecs
 import socket
 import sys
 import threading
@@ -20,10 +21,13 @@ def main() -> None:
     if world is None:
         sys.exit(f"play: nobody listens on port {options.port}: start aos-up deploy/tictactoe-person.yaml")
     sys.stdout.write("Connected. You draw crosses. Cells are 1 to 9, row by row; wait until you are asked.\n")
+    sys.stdout.flush()
     threading.Thread(target=send_lines, args=(world,), daemon=True).start()
-    while heard := world.recv(1000):
-        sys.stdout.write(heard.decode())
-        sys.stdout.flush()
+    try:
+        show(world)
+    except KeyboardInterrupt:
+        sys.stdout.write("\nYou have left; somebody else may connect.\n")
+        return
     sys.stdout.write("\nThe game has ended.\n")
 
 
@@ -38,10 +42,27 @@ def connected(port: int) -> socket.socket | None:
     return None
 
 
+def show(world: socket.socket) -> None:
+    """What the world says, until it hangs up: also in the middle of a line that was typed."""
+    decoder = codecs.getincrementaldecoder("utf-8")("replace")
+    while True:
+        try:
+            heard = world.recv(1000)
+        except ConnectionError:
+            return
+        if not heard:
+            return
+        sys.stdout.write(decoder.decode(heard))
+        sys.stdout.flush()
+
+
 def send_lines(world: socket.socket) -> None:
     """What is typed, line by line."""
     for line in sys.stdin:
-        world.sendall(line.encode())
+        try:
+            world.sendall(line.encode())
+        except OSError:
+            return  # The world has hung up, which `show` says.
 
 
 if __name__ == "__main__":

@@ -61,6 +61,7 @@ class TicTacToe(World):
     def close(self) -> None:
         super().close()
         if isinstance(self._opponent, PersonAtTerminal):
+            self._tell_person()
             self._opponent.close()
 
     def stop(self) -> None:
@@ -101,7 +102,18 @@ class TicTacToe(World):
         self.board.cross(cell, self._person)
         self.marks = marked(self.marks, cell, "X")
         self.is_robots_turn = True
+        self.tell_end()
         self.scene.wait(PERSON_DRAWS_S)
+
+    def tell_end(self) -> None:
+        """Lets a person know once the game is over."""
+        if self.is_over:
+            self._tell_person()
+
+    def _tell_person(self) -> None:
+        if isinstance(self._opponent, PersonAtTerminal):
+            won = winner(self.marks, self.file.rules)
+            self._opponent.tell_end(self.marks, won, is_over=self.is_over)
 
     def picture(self) -> np.ndarray[Any, np.dtype[np.uint8]]:
         """The board as the camera sees it now, from about its place and in about its light: RGB."""

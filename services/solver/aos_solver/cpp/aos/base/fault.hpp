@@ -5,7 +5,7 @@
 
 namespace aos {
 
-// `code` is one of the codes AOS214 and AOS215 of aos_protocol.errors; the document place comes from blame.hpp.
+// `code` is one of the codes AOS211, AOS214 and AOS215 of aos_protocol.errors; the document place comes from blame.hpp.
 struct ModelFault {
   std::string code;
   std::string text;

@@ -38,6 +38,11 @@ inline void look(int) {
     const bool goes_on = blame::page[thread * blame::line_words] != 0 && ends == seen[thread].ends;
     seen[thread] = {ends, goes_on ? seen[thread].periods + 1 : 0};
     if (!goes_on || seen[thread].periods < max_periods * running) continue;
+    if (blame::tells_state && !blame::is_state_wanted) {
+      blame::is_state_wanted = true;  // Its next statement ends it. Code without one has as much time again.
+      seen[thread].periods = 0;
+      continue;
+    }
     for (std::size_t other = 0; other < seen.size(); ++other) {
       if (other != thread) blame::page[other * blame::line_words] = 0;
     }

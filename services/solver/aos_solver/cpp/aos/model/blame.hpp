@@ -33,6 +33,13 @@ inline void over() {
   page[place + 1] = page[place + 1] + 1;
 }
 
+// Traced code says that it can tell in which state it is, and is asked for that where it does not come to an end.
+inline volatile bool tells_state = false;
+inline volatile bool is_state_wanted = false;
+
+// How often document code of this thread came to an end.
+inline std::uint32_t ends() { return page[place + 1]; }
+
 // The piece that runs in this thread.
 inline std::uint32_t piece() { return page[place]; }
 

@@ -13,6 +13,7 @@
 #include <initializer_list>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <vector>
@@ -184,6 +185,8 @@ class AnyValue {
 
 // All leaves with their names, as one line.
 std::string leaves_text(AnyValue value);
+// The leaves of some members, as `name.member=value`; of all where none is named. A long text is cut.
+std::string leaves_text(const char* name, AnyValue value, std::initializer_list<std::string_view> members);
 // The text of a whole value, for the names of grounded actions.
 std::string value_text(AnyValue value);
 void write_json(JsonWriter& json, AnyValue value);

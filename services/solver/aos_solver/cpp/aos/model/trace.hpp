@@ -4,9 +4,16 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
+#include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "aos/base/fault.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/model/reflection.hpp"
 
 namespace aos::blame {
 
@@ -55,5 +62,59 @@ class Giving {
   std::uint32_t place_ = 0;
   int exceptions_ = std::uncaught_exceptions();
 };
+
+// A copy of the state that a piece names, with the variables that it names; all where it names none.
+struct Shown {
+  const char* name;
+  AnyValue state;
+  std::initializer_list<std::string_view> members;
+};
+
+// An object at the start of a piece: what can be told if the piece does not come to an end.
+class Showing {
+ public:
+  explicit Showing(std::initializer_list<Shown> copies) : copies_(copies) { tells_state = true; }
+  Showing(const Showing&) = delete;
+  Showing& operator=(const Showing&) = delete;
+  ~Showing() { innermost = before_; }
+
+  // Tells the state, at the first of the statements that go on running: the head of their loop.
+  static void tell(std::uint32_t place) {
+    constexpr int enough = 100'000;
+    thread_local std::uint32_t head = place;
+    thread_local std::uint32_t ends_before = ends();
+    thread_local int looked_at = 0;
+    if (looked_at == 0) {
+      head = place;
+      ends_before = ends();
+    }
+    head = place < head ? place : head;
+    const bool has_ended = ends() != ends_before;  // It took long and came to an end.
+    if (!has_ended && ++looked_at < enough) return;
+    is_state_wanted = false;
+    looked_at = 0;
+    if (has_ended) return;
+    at(head);
+    std::string text;
+    if (innermost != nullptr) {
+      for (const Shown& copy : innermost->copies_) {
+        const std::string values = leaves_text(copy.name, copy.state, copy.members);
+        if (!values.empty()) text += (text.empty() ? ", with " : ", ") + values;
+      }
+    }
+    throw ModelFault{"AOS211", "this code does not come to an end" + text};
+  }
+
+ private:
+  inline static thread_local const Showing* innermost = nullptr;
+  std::vector<Shown> copies_;
+  const Showing* before_ = std::exchange(innermost, this);
+};
+
+// Notes the statement that runs. Where the watchdog waits for code to end, that is told with the state.
+inline void statement(std::uint32_t place) {
+  at(place);
+  if (is_state_wanted) Showing::tell(place);
+}
 
 }  // namespace aos::blame

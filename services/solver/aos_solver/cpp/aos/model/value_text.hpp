@@ -1,6 +1,7 @@
 // Values as text, as JSON, and as the numbers of a saved state. Only support.hpp includes this file.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstddef>
@@ -42,6 +43,18 @@ std::string leaves_text(AnyValue value) {
       [&](const std::string& name, const Leaf& leaf) { text += (text.empty() ? "" : ", ") + name + "=" + leaf_text(leaf); }};
   value.visit(leaves);
   return text;
+}
+
+std::string leaves_text(const char* owner, AnyValue value, std::initializer_list<std::string_view> members) {
+  constexpr std::size_t longest = 300;
+  std::string text;
+  NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) {
+    const std::string_view member = std::string_view{name}.substr(0, name.find_first_of(".["));
+    if (members.size() > 0 && std::find(members.begin(), members.end(), member) == members.end()) return;
+    if (text.size() <= longest) text += (text.empty() ? "" : ", ") + (owner + ("." + name)) + "=" + leaf_text(leaf);
+  }};
+  value.visit(leaves);
+  return text.size() <= longest ? text : text.substr(0, longest) + " ...";
 }
 
 void visit_members(const void* state, std::span<const Member> members, ValueVisitor& visitor) {
