@@ -92,8 +92,8 @@ class _Tracing:
         named: dict[str, list[str]] = {}
         for copy, variable in _STATE.findall(self._piece.text):
             named.setdefault(copy, []).append(variable)
-        if not named:
-            return ""
+        if not named or self._piece.is_declarations:
+            return ""  # Of shared functions the caller's state is told.
         copies = ", ".join(f'{{"{copy}", {copy}, {{{_shown(named[copy])}}}}}' for copy in sorted(named))
         return f"aos::blame::Showing aos_showing_{self._piece.number}{{{{{copies}}}}}; "
 
