@@ -27,7 +27,7 @@ async def told_of_bundle(
 
     The range is that from random actions to the missions' mean.
     """
-    async with engine_of_bundle(bundle, seed, kind="thorough") as engine:
+    async with engine_of_bundle(bundle, seed) as engine:
         await engine.count_processor_time(True)
         horizon = engine.description.horizon
         limits = MissionLimits(goal_probability=NEVER, step_limit=horizon, stop_below_value=None)
