@@ -17,7 +17,7 @@ from exam.generation import named_problem, problems
 from exam.jobs import job
 from exam.problem import RUNNING, Problem
 from exam.summary import MEAN_TARGET, WORST_TARGET, Bounds, Regrets
-from exam.told import Told
+from exam.told import Told, Values
 from processes import HANG_S
 
 
@@ -65,6 +65,15 @@ def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path) -> None:
     assert len(excesses) >= 20
     assert sum(excesses) / len(excesses) <= MEAN_TARGET
     assert max(excesses) <= WORST_TARGET
+
+
+def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(executable: Path) -> None:
+    found = Values()
+    options = {"simulations": 500, "missions": 10, "planners": "auto", "truth": 0.5}
+    asked = [named_problem(name, 100) for name in ("counter/8", "late/306")]
+    for problem, answer in reports(executable, "regret", options, asked):
+        assert not found.add(problem, answer), found.told(problem, answer)
+    assert [told.planner for told in found.all_of("auto")] == ["exact", "exact"]
 
 
 def test_a_value_is_wrong_beyond_two_errors_and_a_twentieth_of_the_range() -> None:
