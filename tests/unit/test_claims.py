@@ -219,3 +219,9 @@ def test_speed_is_simulated_time_for_processor_time() -> None:
     whole = Trial(seed=1, ending="goal", goal=True, states=(line % (10.0, 1.0), line % (30.0, 2.0)))
     assert simulated_speed([whole]) == 10.0
     assert simulated_speed([Trial(seed=2, ending="goal", goal=True, states=("at=Home",))]) is None
+
+
+def test_a_claim_about_none_of_the_missions_is_said_to_have_no_case() -> None:
+    claim = Claim(says="", first="pick", when=When(some="drop"))
+    assert (judge(claim, [DELIVERED]).is_seen, judge(claim, [DELIVERED]).word) == (False, "no case")
+    assert judge(Claim(says="", first="serve"), [DELIVERED]).word == "not seen"

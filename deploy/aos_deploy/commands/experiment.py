@@ -132,8 +132,10 @@ def run(
         return
     for result in results:
         for verdict in result.verdicts:
-            seen = "seen    " if verdict.is_seen else "NOT SEEN"
-            print(f"{seen} {result.name} ({result.by}): {verdict.says}: {verdict.held} of {verdict.missions}")
+            seen = verdict.word if verdict.is_seen else verdict.word.upper()
+            print(
+                f"{seen:8} {result.name} ({result.by}): {verdict.says}: {verdict.held} of {verdict.missions}"
+            )
     print(f"the report is in {from_here(pages[0])} and {from_here(pages[1])}")
 
 

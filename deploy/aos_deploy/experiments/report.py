@@ -66,7 +66,7 @@ def _claims(results: Results) -> Iterator[str]:
                 part.name,
                 part.by,
                 verdict.says,
-                "seen" if verdict.is_seen else "**not seen**",
+                verdict.word if verdict.is_seen else f"**{verdict.word}**",
                 f"{verdict.held} of {verdict.missions}",
                 shown(verdict.share),
                 f"{verdict.wanted:.2f}",

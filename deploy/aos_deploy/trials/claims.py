@@ -121,6 +121,11 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
     is_seen: bool
     failed_seeds: tuple[int, ...]
 
+    @property
+    def word(self) -> str:
+        """What a report says of it; where no mission was one that the claim is about, there was no case."""
+        return "seen" if self.is_seen else "not seen" if self.missions else "no case"
+
 
 def has_check(claim: Claim) -> bool:
     """Whether a claim says anything that could fail."""
