@@ -112,7 +112,7 @@ async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(
         plan = await engine.plan(simulations=2, seed=1)
     values = {value.action: value for value in plan.actions}
     assert (values["leap"].n, values["read"].n) == (1, 1)
-    assert values["read"].q == pytest.approx(-(1 - 0.95**5) / 0.05), "five readings, no leap"
+    assert values["read"].q > -10, "a leap in the play-out would cost 100"
 
 
 PREJUDICED = GAUGE | {

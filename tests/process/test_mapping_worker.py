@@ -181,7 +181,7 @@ async def test_a_module_that_cannot_be_loaded_names_the_import(evaluator: Start)
 
 async def test_what_cannot_be_sent_is_refused_with_its_type(evaluator: Start) -> None:
     mapping = evaluator(HEAD + "parameter: a\ncode:\nobject()\n")
-    assert "a value of type object cannot be sent" in str(await fault_of(mapping))
+    assert "a value of type object is no plain data" in str(await fault_of(mapping))
     mapping = evaluator(HEAD + "parameter: a\ncode:\n2 ** 80\n")
     assert (await fault_of(mapping)).code == "AOS401"
 

@@ -156,6 +156,6 @@ def test_a_value_that_cannot_be_kept_fails_at_its_place_in_the_document() -> Non
     rules = "response: near\nresponse_rule: True\nassign_variable: to.pose\nvalue: print\n"
     answer = observed(loaded(rules), 1)
     assert isinstance(answer, Raised)
-    assert answer.error == "TypeError: a value of type builtin_function_or_method cannot be sent to a skill"
+    assert answer.error == "TypeError: a value of type builtin_function_or_method is no plain data"
     place = emitted(HEAD + rules).locate(answer.line, answer.column)
     assert place.line == HEAD.count("\n") + 4

@@ -140,7 +140,7 @@ double value_over_cells(std::size_t max) {
   model.observations = cells.observations();
   point_based::OnlineSarsop search{model};
   search.move_to(model.starts.front().belief);
-  search.improve(5'000'000, never);
+  search.improve(500'000'000, never);
   const auto [lower, upper] = search.bounds();
   EXPECT_NEAR(lower, upper, 0.01);
   return lower;

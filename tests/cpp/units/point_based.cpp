@@ -49,7 +49,7 @@ TEST("The bounds of the tiger close on the value that other programs give") {
   const Problem tiger = units::tiger();
   point_based::OnlineSarsop search{flat_model(tiger)};
   EXPECT(search.move_to({{0, 0.5}, {1, 0.5}}));
-  search.improve(3'000'000, never);
+  search.improve(300'000'000, never);
   const auto [lower, upper] = search.bounds();
   EXPECT(lower <= 19.3714 && 19.3713 <= upper);
   EXPECT_NEAR(upper, lower, 0.05);
