@@ -38,6 +38,7 @@ _FOLDERS = (
     _ROOT.parent / "shared/bench",
     _ROOT.parent / "shared/corpus",
 )
+_ROOTS = (_ROOT, _ROOT.parent)
 _DOCUMENTS = ("*.ef", "*.json")
 
 
@@ -125,7 +126,7 @@ async def examine_budgets(arguments: argparse.Namespace, cache_dir: Path) -> int
         try:
             ratio = await _row(Path(folder), arguments, cache_dir)
         except AosError as error:
-            print(f"| {folder} | {error} |", flush=True)
+            print(f"| {_name(Path(folder))} | {error} |", flush=True)
             continue
         too_many += ratio > MOST
     print(f"\n{too_many} bundles on which planners differ by more than {MOST:g}")
@@ -155,7 +156,9 @@ def ratio_of(costs: Sequence[Cost]) -> float:
 
 
 def _name(folder: Path) -> str:
-    return f"{folder.parent.name}/{folder.name}"
+    """From the checkout, or from the folder beside it: no two bundles have the same name."""
+    path = folder.absolute()
+    return str(next((path.relative_to(root) for root in _ROOTS if path.is_relative_to(root)), path))
 
 
 def _bundles() -> list[Path]:

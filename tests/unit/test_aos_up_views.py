@@ -13,7 +13,7 @@ from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
 from aos_deploy.terminal import console
 from aos_deploy.views import make_view
-from aos_deploy.views.lines import JsonView, PlainView
+from aos_deploy.views.lines import JsonView, PlainView, decision_line
 from aos_deploy.views.live import LiveView, Screen
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.errors import AosError, error_from_code
@@ -74,6 +74,11 @@ EVENTS: tuple[Event, ...] = (
     REFUSED,
     MissionState("m", "ended", 1, 0.95, ending="goal", remark="the goal is reached"),
 )
+
+
+def test_a_decision_without_simulations_says_that_nothing_was_searched() -> None:
+    record = msgspec.structs.replace(DECISION, planner="sarsop", simulations=0, threads=1)
+    assert decision_line(record).endswith("]  sarsop without a search in 0.25 s")
 
 
 def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) -> None:

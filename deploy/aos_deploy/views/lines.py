@@ -120,7 +120,8 @@ def _value(action: ActionValue, chosen: str) -> str:
 def effort_text(record: DecisionRecord) -> str:
     """Who decided, and with how much work; short."""
     if not record.simulations:
-        return f"{record.planner} in {record.planning_s:.2f} s"
+        by = f"{record.planner} without a search" if record.planner else ""
+        return f"{by} in {record.planning_s:.2f} s"
     by = f"{record.planner}, " if record.planner else ""
     threads = f" by {record.threads} threads" if record.threads > 1 else ""
     return f"{by}{record.simulations} simulations in {record.planning_s:.2f} s{threads}"

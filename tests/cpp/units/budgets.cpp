@@ -2,6 +2,8 @@
 #include "aos/planning/planner.hpp"
 
 #include <initializer_list>
+#include <string>
+#include <vector>
 
 #include "check.hpp"
 #include "worlds.hpp"
@@ -70,6 +72,33 @@ TEST("No planner takes much more than its budget in simulations, and POMCP takes
     EXPECT(taken <= simulations * 11 / 10);
     if (kind == PlannerKind::pomcp) EXPECT(taken >= simulations);
   }
+}
+
+TEST("A search by SARSOP that has nothing left to search says where its bounds come from") {
+  const units::Problem problem = units::corridor_with_exits(3, 1);
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const auto belief = aos::Belief<TableModel>::initial(random);
+  aos::Planner<TableModel> planner;
+  const auto search = [&] { return planner.search(PlannerKind::sarsop, belief, {.simulations = 100'000}, horizon, random); };
+  search();
+  EXPECT_EQUAL(search(), 0u);
+  EXPECT(planner.why().find("nothing was searched now") != std::string::npos);
+}
+
+TEST("A draw from weights that code computes counts as more than a flag, and more for more weights") {
+  aos::CountedDraws draws{1};
+  const auto cost = [&](auto&& draw) {
+    const double before = draws.cost();
+    draw();
+    return draws.cost() - before;
+  };
+  const std::vector<double> weights(20, 0.05);
+  const double of_flag = cost([&] { draws.flag(0.5); });
+  const double of_three = cost([&] { draws.choose(weights.data(), 3, 0.15); });
+  const double of_twenty = cost([&] { draws.choose(weights.data(), 20, 1.0); });
+  EXPECT(0 < of_flag && of_flag < of_three && of_three < of_twenty);
+  EXPECT_EQUAL(cost([&] { draws.flag(1.0); }), 0.0);
 }
 
 TEST("A search by POMCP that ends all at once still comes to an end") {

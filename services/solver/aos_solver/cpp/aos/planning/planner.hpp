@@ -152,6 +152,7 @@ class Planner {
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = point_based_.search(budget);
         why_ += "; " + bounds_text(horizon, space_.slack(belief, horizon));
+        if (simulations == 0) why_ += "; preparation and earlier searches have found these bounds, and nothing was searched now";
         return simulations;
       }
       default: {

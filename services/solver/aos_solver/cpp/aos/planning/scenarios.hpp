@@ -103,12 +103,13 @@ class ScenarioEvaluation {
   Step step(Scenario<Model>& scenario, int action, int depth, bool& has_ended) {
     Sampler luck = draws(scenario.number, depth);
     if (has_list_ && scenario.seen != no_state) return listed_step(scenario, action, luck, has_ended);
-    work_ += step_cost() + (has_values_ ? cost_of_number : 0);
+    work_ += step_cost();
     const Step step = Model::step(scenario.state, action, luck);
     has_ended = Model::ending(scenario.state) != Ending::running;
     if (has_values_ && !has_ended) {
       const std::uint32_t next = values_.certain_next(scenario.seen, action);
       scenario.seen = next != no_state ? next : values_.number_of(scenario.state);
+      work_ += next != no_state ? cost_of_certain : cost_of_number;
     }
     return step;
   }
@@ -162,6 +163,7 @@ class ScenarioEvaluation {
  private:
   static constexpr Operations per_listed_step = 50 + sizeof(Scenario<Model>) / 4;  // it is copied
   static constexpr Operations cost_of_number = 60;  // of a state, in the list
+  static constexpr Operations cost_of_certain = 15;  // of the number that the list gives a state before
   static constexpr Operations per_outcome = 2;      // that is passed over
   static constexpr Operations per_action = 1;       // of each scenario, where the best one on average is looked for
 

@@ -21,7 +21,7 @@ class CountedDraws final : public DirectedDraws {
 
   int choose(const double* weights, int count, double total) override {
     takes_sensing();
-    cost_ += per_choice + static_cast<double>(count);
+    cost_ += count > 2 ? per_choice + per_weight * count : per_flag;
     return random_.choose(weights, count, total);
   }
   double uniform() override {
@@ -33,7 +33,9 @@ class CountedDraws final : public DirectedDraws {
   double cost() const { return cost_; }
 
  private:
-  static constexpr double per_choice = 10;
+  static constexpr double per_flag = 12;
+  static constexpr double per_choice = 100;  // of weights that code computes and keeps in memory of their own
+  static constexpr double per_weight = 2.5;
   static constexpr double per_number = 25;
 
   Sampler random_;
@@ -46,7 +48,7 @@ template <class Model>
 Operations cost_of_step() {
   constexpr int walks = 16;
   constexpr int longest = 16;
-  constexpr double per_step = 50;
+  constexpr double per_step = 25;
   constexpr double per_text = 4;  // times as much as its draws
   if (Model::action_count() == 0) return 0;
   CountedDraws draws{1};

@@ -123,7 +123,7 @@ class TreeSearch {
   static constexpr Operations per_visit = 80;
   static constexpr Operations per_history = 150;  // a new one
   static constexpr Operations per_action = 2;
-  static constexpr Operations per_numbers = 150;  // that a step reports
+  static constexpr Operations per_numbers = 250;  // that a step reports
   static constexpr Operations few_paths = 4;  // of a step whose expected reward is computed
 
   struct Visit {
