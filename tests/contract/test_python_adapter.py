@@ -85,6 +85,12 @@ async def says_too_much(call):
 async def nonsense(call):
     return Observed(3)
 
+async def turn(angle):
+    return {}
+
+def beep():
+    return {}
+
 class Arm:
     def __init__(self):
         self.picks = 0
@@ -205,6 +211,7 @@ async def test_numpys_numbers_and_other_objects_become_plain_data(robot: Robot) 
         ("says_too_much", {}, "AOS510", "the field made_by of a message on /scan cannot be sent"),
         ("nonsense", {}, "AOS510", "the observation of /skill is 3, which is no word"),
         ("drive", {"z": 1}, "AOS502", "The function takes x, y; the mapping sends z"),
+        ("turn", {"angle": 1}, "AOS502", "The first argument is the call, and no field: write (call, angle)"),
     ],
 )
 async def test_what_goes_wrong_in_a_function_fails_that_call_alone(
@@ -254,6 +261,7 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
         ("nowhere.py:drive", "there is no file"),
         ("drive", "/skill is not bound to a function. Write it as /skill: {python: my_robot.py:function}"),
         ("robot.py:time", "which cannot be called"),
+        ("robot.py:beep", "takes no arguments. A function gets the call first"),
     ],
 )
 async def test_what_cannot_be_bound_ends_the_process_with_one_message(

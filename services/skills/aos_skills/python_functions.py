@@ -103,6 +103,12 @@ class PythonAdapter:
             ) from error
         if not callable(found):
             raise DeployError(f"{path} is bound to {target}, which cannot be called")
+        if not _takes_call(found):
+            short = name.rpartition(".")[2]
+            raise DeployError(
+                f"{path} is bound to {target}, which takes no arguments",
+                hint=f"A function gets the call first, and then the call's fields: def {short}(call)",
+            )
         return found  # type: ignore[no-any-return]
 
     def _module(self, path: str, place: str) -> ModuleType:
@@ -198,17 +204,29 @@ def _takes_host(kind: Any) -> bool:
         return False
 
 
+def _takes_call(function: Callable[..., Any]) -> bool:
+    """Whether the function has a place for the call; where Python cannot tell, it is supposed to."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        return True
+    kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return any(each.kind in (*kinds, inspect.Parameter.VAR_POSITIONAL) for each in parameters)
+
+
 def _fitting(function: Callable[..., Any], call: Call) -> dict[str, Any]:
     """The call's fields; SkillError AOS502 where the function does not take them."""
     signature = inspect.signature(function)
     try:
         signature.bind(call, **call.fields)
     except TypeError as error:
-        takes = ", ".join(list(signature.parameters)[1:]) or "no fields"
+        first, *others = list(signature.parameters)
+        takes = ", ".join(others) or "no fields"
         sends = ", ".join(call.fields) or "none"
+        hint = f"The function takes {takes}; the mapping sends {sends}. See `fields:` in the deploy file"
+        if first in call.fields:
+            hint = f"The first argument is the call, and no field: write (call, {sends})"
         raise SkillError(
-            f"{call.path} cannot be called with these fields: {error}",
-            code="AOS502",
-            hint=f"The function takes {takes}; the mapping sends {sends}. See `fields:` in the deploy file",
+            f"{call.path} cannot be called with these fields: {error}", code="AOS502", hint=hint
         ) from error
     return call.fields
