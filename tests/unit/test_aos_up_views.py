@@ -90,7 +90,7 @@ def test_plain_lines_tell_each_event_once(capsys: pytest.CaptureFixture[str]) ->
         "   2.00 s  skills ended: killed by SIGKILL",
         "run directory runs/x",
         "mission building: compiling the model",
-        "step  1: pick  [pick +2.71 ± 0.04 (at least +1.11, at most +3.01), serve -4.00 ± 0.50]  "
+        "step  1: pick  [pick +2.71 ± 0.04, serve -4.00 ± 0.50]  "
         "pomcp, 1000 simulations in 0.25 s by 2 threads",
         "step  1: pick -> pick_succeeded  surprise 0.50  goal 0.100",
         "pick.sd:7:2: error[AOS110]: unknown name",

@@ -7,7 +7,7 @@ import time
 from typing import Self
 
 from aos_deploy.events import Event, ServiceChanged, Told, event_json
-from aos_deploy.views.observations import observation_text, proven_text, value_text
+from aos_deploy.views.observations import observation_text, value_text
 from aos_protocol.diagnostics import render
 from aos_protocol.messages import (
     ActionValue,
@@ -97,7 +97,7 @@ def decision_line(record: DecisionRecord) -> str:
     head = f"step {record.step:2}: {record.action}"
     if record.outcome is None:
         others = sorted(record.actions, key=lambda action: -action.q)
-        values = ", ".join(_value(action, record.action) for action in others)
+        values = ", ".join(_value(action) for action in others)
         risks = "".join(f"  ({risk_text(constraint)})" for constraint in record.constraints)
         return f"{head}  [{values}]  {effort_text(record)}{risks}"
     outcome = record.outcome
@@ -110,11 +110,10 @@ def decision_line(record: DecisionRecord) -> str:
     return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"
 
 
-def _value(action: ActionValue, chosen: str) -> str:
-    """`pick +2.71 ± 0.04 (at most +3.00)`; what is proven is told of the chosen action."""
-    error = f" ± {action.stderr:.2f}" if action.stderr else ""
-    proven = proven_text(action, 2) if action.action == chosen else ""
-    return f"{action.action} {value_text(action.q, 2)}{error}" + (f" ({proven})" if proven else "")
+def _value(action: ActionValue) -> str:
+    """`pick +2.71 ± 0.04`; an error that rounds to nothing is left out."""
+    error = f" ± {action.stderr:.2f}" if action.stderr >= 0.005 else ""
+    return f"{action.action} {value_text(action.q, 2)}{error}"
 
 
 def effort_text(record: DecisionRecord) -> str:

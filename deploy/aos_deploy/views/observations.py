@@ -8,7 +8,7 @@ from typing import Any
 
 from aos_protocol.messages import ActionValue
 
-__all__ = ["at_least_text", "at_most_text", "observation_text", "proven_text", "value_text"]
+__all__ = ["at_least_text", "at_most_text", "observation_text", "value_text"]
 
 
 def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
@@ -35,12 +35,6 @@ def at_least_text(value: ActionValue, digits: int) -> str:
 def at_most_text(value: ActionValue, digits: int) -> str:
     """The proven upper bound, rounded up; nothing where none is known."""
     return "" if value.at_most is None else _rounded(value.at_most, digits, math.ceil)
-
-
-def proven_text(value: ActionValue, digits: int) -> str:
-    """`at least -1.20, at most +3.40`, what is known of it."""
-    bounds = {"at least": at_least_text(value, digits), "at most": at_most_text(value, digits)}
-    return ", ".join(f"{name} {text}" for name, text in bounds.items() if text)
 
 
 def _rounded(bound: float, digits: int, towards: Callable[[float], int]) -> str:

@@ -23,6 +23,11 @@ NUMBERS_WIDTH = 38
 """Of all but the action, the bounds and the bar, with the lines between."""
 BOUNDS_WIDTH = 24
 
+_LESS_THAN_THE_PLAN = (
+    "Some plan returns `at least` so much. A mission plans anew at each step, with a whole horizon to go: "
+    "it may put off what that plan does at its end, and return less."
+)
+
 
 def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
     """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations.
@@ -56,6 +61,8 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
         size = max(highest - lowest, 1e-9)
         table.add_row(*row, Bar(size, 0, max(value.q - lowest, 0), width=bar_width, color="cyan"))
     out.print(table)
+    if any(value.at_least is not None and value.q + 2 * value.stderr < value.at_least for value in values):
+        out.print(_LESS_THAN_THE_PLAN, style="dim")
 
 
 def print_states(run: SimulatedRun) -> None:
