@@ -32,15 +32,16 @@ _LESS_THAN_THE_PLAN = (
 def print_values(values: list[ActionValue], simulations: int, title: str) -> None:
     """The actions, best first, with a bar from the worst value to the best; `title` is for no simulations.
 
-    What is proven of values stands beside them, rounded outwards.
+    What is proven of values stands beside them, rounded outwards, where there is room.
     """
     tried = [value.q for value in values if (value.n or not simulations) and math.isfinite(value.q)]
     lowest, highest = min(tried, default=0.0), max(tried, default=0.0)
     table = Table(title=f"{simulations:,} simulations" if simulations else title)
-    out = console()
+    out = console(is_wide=True)
     # Bars give way first: actions often differ in their last letters only.
     action_width = min(max(len(value.action) for value in values), LONGEST_ACTION)
-    has_bounds = any(value.at_least is not None or value.at_most is not None for value in values)
+    has_room = action_width + NUMBERS_WIDTH + BOUNDS_WIDTH <= out.width
+    has_bounds = has_room and any(each.at_least is not None or each.at_most is not None for each in values)
     numbers_width = NUMBERS_WIDTH + (BOUNDS_WIDTH if has_bounds else 0)
     bar_width = max(min(BAR_WIDTH, out.width - action_width - numbers_width), 1)
     table.add_column("action", overflow="fold", min_width=action_width)
@@ -74,7 +75,7 @@ def print_states(run: SimulatedRun) -> None:
     rows = zip(("", *run.actions), ("", *_observations(run)), run.states, strict=True)
     for number, (action, observation, state) in enumerate(rows):
         table.add_row(str(number), Text(action), Text(observation), Text(state.rstrip()))
-    console().print(table)
+    console(is_wide=True).print(table)
 
 
 def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
@@ -97,7 +98,7 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
         )
         world = run.world_ending.value if run.world_ending is not None else "goes on"
         table.add_row(str(run.seed), world, run.ending.value, str(run.steps), f"{run.total:+.1f}", story)
-    out = console()
+    out = console(is_wide=True)
     out.print(table)
     out.print(
         f"goal in {summary['goal_rate']:.0%} of {summary['runs']:.0f} missions, "
