@@ -165,6 +165,7 @@ class ScenarioEvaluation {
   static constexpr Operations cost_of_number = 60;  // of a state, in the list
   static constexpr Operations cost_of_certain = 15;  // of the number that the list gives a state before
   static constexpr Operations per_outcome = 2;      // that is passed over
+  static constexpr Operations per_rolled_out = operations_of_step * 17 / 20;  // a step of a rollout, with which a search does nothing
   static constexpr Operations per_action = 1;       // of each scenario, where the best one on average is looked for
 
   // The mean and the deviation of returns, and the mean of the highest returns found.
@@ -243,7 +244,7 @@ class ScenarioEvaluation {
       int left = horizon_ - depth;
       const int allowed = left;
       const double found = Model::rollout(start, left, random);
-      work_ += step_cost() * static_cast<Operations>(has_values_ ? allowed - left : allowed);
+      work_ += has_values_ ? code_cost_ * static_cast<Operations>(allowed - left) : per_rolled_out * static_cast<Operations>(allowed);
       sum += found;
       highest = std::max(highest, found);
     }
