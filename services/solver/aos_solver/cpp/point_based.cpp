@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "point_based/outlook.hpp"
@@ -14,6 +15,7 @@ namespace aos::point_based {
 namespace {
 
 constexpr double closed_share = 1e-5;  // of the value: a smaller gap matters to no decision
+constexpr double nearly_closed_share = 0.05;
 constexpr std::size_t max_bytes = std::size_t{512} << 20;
 
 }  // namespace
@@ -37,7 +39,13 @@ struct OnlineSarsop::Solver {
     const double size = std::max(std::abs(sarsop.lower()), std::abs(sarsop.upper()));
     return std::max(closed_share * std::min(1.0, 20 * (1 - model.discount)) * size, sarsop.graph().noise());
   }
-  bool is_closed() const { return sarsop.upper() - sarsop.lower() <= precision(); }
+  double gap() const { return sarsop.upper() - sarsop.lower(); }
+  bool is_closed() const { return gap() <= precision(); }
+  // Whether the bounds tell the value well enough to ask what missions lose of it.
+  bool is_nearly_closed() const { return is_closed() || gap() <= nearly_closed_gap(); }
+  double nearly_closed_gap() const {
+    return nearly_closed_share * std::max(std::abs(sarsop.lower()), std::abs(sarsop.upper()));
+  }
 
   double above() const { return outlook.above(sarsop.graph().min_value()); }
   double below() const { return outlook.below(sarsop.graph().max_value()); }
@@ -77,6 +85,25 @@ std::uint64_t OnlineSarsop::improve(std::uint64_t max_work, const IsOver& is_ove
 std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, const IsOver& is_over) {
   return solver_->repeat(0, is_over,
                          [&](const auto& is_enough) { return solver_->sarsop.improve_below(action, solver_->precision(), is_enough); });
+}
+
+std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over,
+                                              std::uint64_t& work) {
+  constexpr std::size_t missions = 30;
+  constexpr double share_of_bits = 0x1p-64;
+  std::vector<MissionLoss> found;
+  if (solver_->model.horizon == 0 || !solver_->sarsop.has_start() || !solver_->is_nearly_closed()) return found;
+  const double precision = std::max(solver_->gap(), 0.2 * solver_->nearly_closed_gap());
+  const std::uint64_t before = solver_->sarsop.graph().work();
+  const auto done = [&] { return solver_->sarsop.graph().work() - before; };
+  const auto ends = [&] { return is_over() || (max_work > 0 && done() >= max_work); };
+  std::mt19937_64 bits{1};
+  const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
+  while (found.size() < missions && !ends()) {
+    found.push_back(solver_->sarsop.loss_of_mission(action, precision, ends, uniform));
+  }
+  work += done();
+  return found;
 }
 
 std::vector<ActionBounds> OnlineSarsop::action_bounds() {

@@ -22,6 +22,12 @@ struct ActionBounds {
   std::uint32_t trials = 0;
 };
 
+// What a mission loses of a lower bound, and the part of it that decisions lose which are not proven to be the best, such as ties.
+struct MissionLoss {
+  double all = 0;
+  double unsettled = 0;
+};
+
 // Thrown for a lower bound above an upper one: the cause is a mistake in this folder, whatever the model.
 struct CrossedBounds : std::logic_error {
   using std::logic_error::logic_error;
@@ -48,6 +54,11 @@ class OnlineSarsop {
   std::uint64_t improve(std::uint64_t max_work, const IsOver& is_over);
   // Runs trials below an action that is being carried out, without a limit of the work. Returns the work.
   std::uint64_t improve_below(std::uint32_t action, const IsOver& is_over);
+
+  // What missions lose of the lower bound that begin with an action and decide anew with the whole horizon at each step; at
+  // most 30. The last one may exceed the work and `is_over()` a little. None without a horizon, where nothing is lost, nor
+  // before the bounds of the belief have nearly met. Adds the work to `work`.
+  std::vector<MissionLoss> losses(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work);
 
   // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and
   // those of `bounds` hold in spite of rounding.

@@ -15,6 +15,7 @@
 #include <deque>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,8 @@ class Sarsop {
   // The bounds of the value of the start, discounted. The lower one is what the best known policy gives at least.
   double lower() const { return over_roots(&Node::lower, -1); }
   double upper() const { return over_roots(&Node::upper, 1); }
+  // Whether there is a start from which the mission goes on.
+  bool has_start() const { return !roots_.empty(); }
   const BeliefGraph& graph() const { return graph_; }
   std::uint64_t backups() const { return backups_.count(); }
   std::size_t vectors() const {
@@ -99,6 +102,39 @@ class Sarsop {
       bounds[action] = {moved(weight * branch.lower, -1), moved(weight * branch.upper, 1), trial_.begun()[action]};
     }
     return bounds;
+  }
+
+  // Plays a mission from the only start that begins with `action` and decides anew at each later belief, with the whole
+  // horizon to go. Tells what it earns less than the lower bound says: it may put off for ever what is best at the end of
+  // a horizon. Most luck is left out, since a step counts by what it is expected to change of the lower bound. After
+  // `is_over()` decisions are no longer searched for: bounds that are known decide. `uniform()` draws.
+  template <class IsOver, class Uniform>
+  MissionLoss loss_of_mission(std::uint32_t action, double precision, IsOver&& is_over, Uniform&& uniform) {
+    const std::vector<std::uint32_t> begun = trial_.begun();
+    std::uint32_t number = roots_.front().node;
+    graph_.refresh_lower(graph_[number]);
+    double promised = graph_[number].lower;
+    bool is_settled = true;
+    MissionLoss loss;
+    double discount = roots_.front().weight;
+    for (std::size_t step = 0; step < model_.horizon; ++step) {
+      const Branch branch = opened(number, action);
+      const double lost = discount * (promised - branch.lower);
+      loss.all += lost;
+      if (!is_settled) loss.unsettled += lost;
+      double place = uniform();
+      const auto next = std::find_if(branch.successors.begin(), branch.successors.end(),
+                                     [&](const Successor& successor) { return (place -= successor.probability) < 0; });
+      if (next == branch.successors.end()) break;
+      number = next->node;
+      promised = graph_[number].lower;
+      discount *= model_.discount;
+      const Belief belief = graph_[number].belief;
+      const std::uint32_t anew = graph_.node_of(graph_[number].region, static_cast<std::uint32_t>(model_.horizon), belief);
+      std::tie(action, is_settled) = decided_anew(anew, precision, is_over);
+    }
+    trial_.set_begun(begun);
+    return loss;
   }
 
   // Gives up the alpha vectors that are best at no belief that the remaining actions reach.
@@ -166,6 +202,47 @@ class Sarsop {
     const auto left = static_cast<std::uint32_t>(model_.horizon);
     const double share = start.weight * total;
     roots_.push_back({share, graph_.node_of(region, left, belief)});
+  }
+
+  // The branch of an action with fresh bounds, also of one that was dropped.
+  Branch opened(std::uint32_t number, std::uint32_t action) {
+    Node& node = graph_[number];
+    graph_.expand(node);
+    const auto known = std::find_if(node.branches.begin(), node.branches.end(),
+                                    [&](const Branch& branch) { return branch.action == action; });
+    Branch branch = known != node.branches.end() ? *known : graph_.closed_branch(node, action, graph_.informed_values(node)[action]);
+    graph_.open(node, branch);
+    backups_.refresh(branch);
+    return branch;
+  }
+
+  // The action with the highest lower bound at a belief, after a search for a gap of at most `precision`, and whether it is
+  // proven to be the best.
+  template <class IsOver>
+  std::pair<std::uint32_t, bool> decided_anew(std::uint32_t number, double precision, IsOver&& is_over) {
+    const auto is_closed = [&] {
+      Node& node = graph_[number];
+      graph_.refresh_lower(node);
+      graph_.refresh_upper(node);
+      return node.upper - node.lower <= precision;
+    };
+    const std::uint32_t persisted = std::exchange(persisted_, static_cast<std::uint32_t>(model_.actions));
+    idle_ = 0;
+    while (!is_over() && !is_closed() && improve_from(number, precision, is_over)) {}
+    persisted_ = persisted;
+    idle_ = 0;
+    std::uint32_t best = graph_.lower(graph_[number].region)[graph_[number].vector].action;
+    double highest = -std::numeric_limits<double>::infinity();
+    std::vector<double> uppers;
+    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+      const Branch branch = opened(number, action);
+      uppers.push_back(branch.upper);
+      if (branch.lower <= highest) continue;
+      highest = branch.lower;
+      best = action;
+    }
+    uppers[best] = -std::numeric_limits<double>::infinity();
+    return {best, *std::max_element(uppers.begin(), uppers.end()) < highest};
   }
 
   // Runs one trial. Returns false after three in a row, one by each rule, that learnt nothing.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "point_based/backups.hpp"
@@ -22,6 +23,7 @@ class Trial {
   const std::vector<std::uint32_t>& path() const { return path_; }
   // How many sampled trials began with each action.
   const std::vector<std::uint32_t>& begun() const { return begun_; }
+  void set_begun(std::vector<std::uint32_t> begun) { begun_ = std::move(begun); }
   void forget_begun() { begun_.assign(model_.actions, 0); }
   // Begins again with the first of the rules.
   void start_over() { sampled_ = 0; }

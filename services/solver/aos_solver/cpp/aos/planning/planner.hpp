@@ -150,7 +150,7 @@ class Planner {
       case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred_);
       case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred_);
       case PlannerKind::sarsop: {
-        const std::uint64_t simulations = point_based_.search(budget);
+        const std::uint64_t simulations = point_based_.search(budget, [&] { return choice(point_based_.estimates(), barred_); });
         why_ += "; " + bounds_text(horizon, space_.slack(belief, horizon));
         if (simulations == 0) why_ += "; preparation and earlier searches have found these bounds, and nothing was searched now";
         return simulations;

@@ -72,10 +72,22 @@ class PointBased {
     known_ = 0;
   }
 
-  // Runs trials from the prepared belief. Returns how many simulations these count as.
-  std::uint64_t search(Budget budget) {
+  // Runs trials from the prepared belief. In a share of the budget it plays missions that begin with the action that
+  // `choice()` tells then. Returns how many simulations everything counts as.
+  template <class Choice>
+  std::uint64_t search(Budget budget, Choice&& choice) {
+    loss_ = loss_error_ = 0;
     if (running_ <= 0 || (budget.simulations == 0 && budget.seconds <= 0)) return 0;
-    const Operations work = search_->improve(budget.operations(horizon_), until(budget, [] { return false; }));
+    const Operations most = budget.operations(horizon_);
+    const auto most_before = static_cast<Operations>((1 - share_of_missions) * static_cast<double>(most));
+    const auto never = [] { return false; };
+    const auto is_over = until(budget, never);
+    Budget before = budget;
+    before.seconds *= 1 - share_of_missions;
+    Operations work = search_->improve(most_before, until(before, never));
+    const auto goes_on = [&] { return (most == 0 || work < most) && !is_over(); };
+    if (goes_on()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
+    if (goes_on()) work += search_->improve(most == 0 ? 0 : most - work, is_over);
     const std::uint64_t simulations = Budget::simulations_of(work, horizon_);
     known_ += simulations;
     return simulations;
@@ -114,12 +126,31 @@ class PointBased {
       uppers.push_back(bounds.upper + error_ - left * std::min(worst, 0.0));
     }
     set_between(estimates, lowers, uppers, choice);
+    for (ActionEstimate& estimate : estimates) {
+      estimate.q = std::min(estimate.q - loss_, estimate.at_most);
+      estimate.standard_error = std::hypot(estimate.standard_error, loss_error_);
+    }
     return estimates;
   }
 
  private:
+  static constexpr double share_of_missions = 0.2;  // of the budget, at least
   static constexpr double next_to_nothing = 0.01;
   static constexpr double little = 0.1;
+
+  // Finds what missions lose that begin with an action and plan anew at each step. Returns the work.
+  Operations play(int action, Operations most, const point_based::OnlineSarsop::IsOver& is_over) {
+    Operations work = 0;
+    const auto losses = search_->losses(static_cast<std::uint32_t>(action), most, is_over, work);
+    const auto count = static_cast<double>(losses.size());
+    double unsettled = 0, squares = 0;
+    for (const point_based::MissionLoss& loss : losses) loss_ += loss.all / count;
+    for (const point_based::MissionLoss& loss : losses) unsettled += std::abs(loss.unsettled) / count;
+    for (const point_based::MissionLoss& loss : losses) squares += (loss.all - loss_) * (loss.all - loss_);
+    // The mission itself may decide otherwise there. One mission alone tells no more than the size of what is lost.
+    loss_error_ = std::hypot(unsettled, count > 1 ? std::sqrt(squares / (count - 1) / count) : std::abs(loss_));
+    return work;
+  }
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
     point_based::FlatModel model = flat_model();
@@ -191,6 +222,8 @@ class PointBased {
   NumberCells cells_;
   double error_ = 0;  // of bounds
   double running_ = 0;
+  double loss_ = 0;  // of missions that plan anew, against the lower bound
+  double loss_error_ = 0;
   std::uint64_t known_ = 0;
 };
 
