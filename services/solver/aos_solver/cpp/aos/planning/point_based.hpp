@@ -73,7 +73,7 @@ class PointBased {
   }
 
   // Runs trials from the prepared belief. In a share of the budget it plays missions that begin with the action that
-  // `choice()` tells then. Returns how many simulations everything counts as.
+  // `choice()` tells then. Returns how many simulations the trials count as; missions are no search.
   template <class Choice>
   std::uint64_t search(Budget budget, Choice&& choice) {
     loss_ = loss_error_ = 0;
@@ -84,11 +84,12 @@ class PointBased {
     const auto is_over = until(budget, never);
     Budget before = budget;
     before.seconds *= 1 - share_of_missions;
-    Operations work = search_->improve(most_before, until(before, never));
+    Operations searched = search_->improve(most_before, until(before, never));
+    Operations work = searched;
     const auto goes_on = [&] { return (most == 0 || work < most) && !is_over(); };
     if (goes_on()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
-    if (goes_on()) work += search_->improve(most == 0 ? 0 : most - work, is_over);
-    const std::uint64_t simulations = Budget::simulations_of(work, horizon_);
+    if (goes_on()) searched += search_->improve(most == 0 ? 0 : most - work, is_over);
+    const std::uint64_t simulations = Budget::simulations_of(searched, horizon_);
     known_ += simulations;
     return simulations;
   }
