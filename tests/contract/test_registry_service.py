@@ -209,6 +209,8 @@ async def test_a_dropped_folder_is_taken_in_once_it_is_complete(
     async with asyncio.timeout(HANG_S), bus.listen(keys.bundle_report, BundleReport) as reports:
         shutil.copytree(bundles / "armadillo-finer", registry / "drop" / "armadillo")
         async for _, report in reports:
+            if report.is_waiting:
+                continue  # Under load a copy may pause for longer than a folder has to be quiet.
             assert (report.is_accepted, report.revision, report.source) == (True, 1, "armadillo")
             break
         (registry / "drop" / "armadillo" / "pick.sd").write_text(
