@@ -84,8 +84,9 @@ async def test_a_program_is_seen_to_be_ready(system: System, kind: str) -> None:
         "nothing": (["sleep", "1000"], {}),
     }[kind]
     ready = ReadyPart(**part) if part else None
-    (system.folder / "pid").touch()  # of an earlier run
-    await asyncio.sleep(0.05)
+    old = system.folder / "pid"  # of an earlier run
+    old.touch()
+    os.utime(old, (0, 0))
     async with asyncio.timeout(HANG_S), system.up(own(*program, ready=ready, folder=system.folder)):
         await system.until("nav", "ready")
 
