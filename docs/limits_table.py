@@ -30,16 +30,19 @@ class Row(NamedTuple):
 
 LIMITS: dict[str, tuple[Row, ...]] = {
     "Documents and bundles": (
-        Row("a document", "aos_registry.documents.source.MAX_FILE_BYTES", "bytes", "AOS120"),
-        Row("a bundle, or an archive of one", "aos_registry.reading.MAX_BUNDLE_BYTES", "bytes", "AOS120"),
-        Row("files in a bundle", "aos_registry.reading.MAX_BUNDLE_FILES", "", "AOS120"),
-        Row("an archive, unpacked", "aos_registry.archive.MAX_UNPACKED_BYTES", "bytes", "refused"),
-        Row("unpacked to packed size", "aos_registry.archive.MAX_RATIO", "times", "refused"),
+        Row("a document", "aos_language.reading.source.MAX_FILE_BYTES", "bytes", "AOS120"),
+        Row(
+            "a bundle, or an archive of one",
+            "aos_language.reading.files.MAX_BUNDLE_BYTES", "bytes", "AOS120",
+        ),
+        Row("files in a bundle", "aos_language.reading.files.MAX_BUNDLE_FILES", "", "AOS120"),
+        Row("an archive, unpacked", "aos_language.archive.MAX_UNPACKED_BYTES", "bytes", "refused"),
+        Row("unpacked to packed size", "aos_language.archive.MAX_RATIO", "times", "refused"),
         Row(
             "values in one another in JSON",
-            "aos_registry.documents.json_text.MAX_NESTING", "levels", "AOS104",
+            "aos_language.reading.json_text.MAX_NESTING", "levels", "AOS104",
         ),
-        Row("brackets in one another in code", "aos_runtime.cpp_tokens.MAX_NESTING", "levels", "AOS108"),
+        Row("brackets in one another in code", "aos_language.cpp.tokens.MAX_NESTING", "levels", "AOS108"),
         Row("special states that count once", "aos_solver.emission.lower._MAX_FLAGS", "", "AOS124"),
         Row(
             "a dropped folder is complete when nothing changed for",
@@ -103,7 +106,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         Row("states of `aos solve`", "aos_solver.offline.enumeration.MAX_STATES", "", "AOS220", "`--states`"),
         Row(
             "states of a problem file",
-            "aos_deploy.formats.factored_model.MAX_STATES", "", "AOS220", "`--states`",
+            "aos_lab.formats.factored_model.MAX_STATES", "", "AOS220", "`--states`",
         ),
         Row(
             "memory of `aos solve`",

@@ -16,11 +16,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from limits_table import limits_table
-from textmate_grammar import textmate_grammar
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
-from aos_deploy.language_server.meanings import BUILT_INS, SECTIONS
 from aos_deploy.schemas import SCHEMAS
+from aos_editor.meanings import BUILT_INS, SECTIONS
+from aos_editor.textmate_grammar import textmate_grammar
 from aos_protocol import errors, keys
 from aos_protocol.messages import base, bundles, mission, skills
 
@@ -119,7 +119,7 @@ def words_page() -> str:
         "# Words of SDL",
         "",
         "What [editors](editors.md) show about a word; [languages.md](languages.md) shows them at work. This",
-        "page is written by `make docs` from `aos_deploy.language_server.meanings`.",
+        "page is written by `make docs` from `aos_editor.meanings`.",
     ]
     for suffix, sections in SECTIONS.items():
         lines += ["", f"## {suffix}", "", "| Section | Part | Meaning |", "| --- | --- | --- |"]

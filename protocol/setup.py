@@ -12,20 +12,8 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-NOT_FOR_ROBOTS = (
-    "children",
-    "cpp_",
-    "document_code",
-    "foreign_bus",
-    "guard",
-    "observed",
-    "router",
-    "snippets",
-)
-"""Of `aos_runtime`, how modules begin that only compilers, generators and aos-up need."""
-
-ABOUT_DOCUMENTS = ("distribution", "findings", "local_types", "sarif")
-"""Of `aos_protocol`, what only commands and checks of documents need."""
+NOT_FOR_ROBOTS = ("children", "distribution", "foreign_bus", "guard", "router")
+"""The modules of `aos_runtime` that only compilers, generators and aos-up need."""
 
 SEARCH = (
     "import importlib.util, os, sys; "
@@ -40,9 +28,7 @@ class BuildForRobots(build_py):
 
     def find_package_modules(self, package: str, package_dir: str) -> list[tuple[str, str, str]]:
         found = super().find_package_modules(package, package_dir)
-        if package.endswith(".aos_runtime"):
-            return [each for each in found if not each[1].startswith(NOT_FOR_ROBOTS)]
-        return [each for each in found if each[1] not in ABOUT_DOCUMENTS]
+        return [each for each in found if each[1] not in NOT_FOR_ROBOTS]
 
     def run(self) -> None:
         super().run()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from aos_registry.documents.json_text import (
+from aos_language.reading.json_text import (
     JsonArray,
     JsonConstant,
     JsonNumber,

@@ -15,7 +15,7 @@ from models import built_text, engine_of
 from scripted_models import mapping_text
 
 from aos_deploy.program import cache_dir
-from aos_registry.load import load_files
+from aos_language.load import load_files
 
 __all__ = ["long_array", "many_variables"]
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from textwrap import dedent
 
+from aos_language.findings import Findings
+from aos_language.load import load_bundle
+from aos_language.reading.files import read_documents
 from aos_middleware.emit import EmittedMapping, emit_mapping
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Project, Skill, SkillModel
-from aos_protocol.findings import Findings
-from aos_registry.load import load_bundle
-from aos_registry.reading import read_documents
 
 
 def mapping_of(text: str, file: str = "look.am") -> AbstractionMapping:

@@ -17,8 +17,8 @@ from pathlib import Path
 
 import msgspec
 
+from aos_language.load import load_files, read_bundle_files
 from aos_protocol.diagnostics import Diagnostic, Span
-from aos_registry.load import load_files, read_bundle_files
 
 __all__ = ["Mistake", "Verdict", "judged", "mistakes"]
 

@@ -9,11 +9,11 @@ from models import engine_of
 from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, MissionState, Outcome
 from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
-from aos_solver.endings import MissionLimits
-from aos_solver.failures import FailureRules, Failures
-from aos_solver.hot_plug import RunningModel
-from aos_solver.mission import Mission
-from aos_solver.search import Search
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.failures import FailureRules, Failures
+from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.loop import Mission
 
 __all__ = ["Clock", "Robot", "Surroundings", "jammed", "observed", "run_mission", "timed_out"]
 

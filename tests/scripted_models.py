@@ -13,9 +13,9 @@ from typing import Any
 
 import msgspec
 
+from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
-from aos_registry.load import load_bundle, load_files
 from aos_solver.building.build import SOURCES
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler

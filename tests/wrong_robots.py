@@ -17,12 +17,12 @@ import msgspec
 from ruamel.yaml import YAML
 
 from aos_deploy.shipped import shipped
-from aos_deploy.trials.claims import Claim, Verdict, asking_the_world, judge
-from aos_deploy.trials.files import Experiment, Part, read_experiment
-from aos_deploy.trials.model_player import ModelMissions, ModelPlayer
-from aos_deploy.trials.script_player import ScriptPlayer
-from aos_deploy.trials.setting import deployment_of, world_deployment_of
-from aos_deploy.trials.trial import Trial
+from aos_lab.trials.claims import Claim, Verdict, asking_the_world, judge
+from aos_lab.trials.files import Experiment, Part, read_experiment
+from aos_lab.trials.model_player import ModelMissions, ModelPlayer
+from aos_lab.trials.script_player import ScriptPlayer
+from aos_lab.trials.setting import deployment_of, world_deployment_of
+from aos_lab.trials.trial import Trial
 from aos_solver.child.engine import Engine
 
 __all__ = ["Wrong", "WrongRobot", "tried_by_model", "tried_in_physics", "wrong_robots"]

@@ -11,8 +11,8 @@ from importlib.util import find_spec
 
 import msgspec
 
-from aos_protocol.distribution import Extra, pip_install
 from aos_protocol.errors import DeployError
+from aos_runtime.distribution import Extra, pip_install
 
 __all__ = ["COMMAND", "EXTERNAL", "MODEL", "Kind", "adapter_kinds", "check_installed"]
 

@@ -12,8 +12,8 @@ from aos_deploy.adapter_kinds import COMMAND, EXTERNAL, MODEL, Kind, adapter_kin
 from aos_deploy.remote import HOST
 from aos_deploy.typed import known_names, plain_value
 from aos_deploy.yaml_source import YamlMap, YamlNode, YamlScalar
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-from aos_protocol.findings import Findings
 from aos_runtime.adapters import Binding
 from aos_runtime.adapters.expressions import check_expression
 

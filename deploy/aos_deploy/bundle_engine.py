@@ -10,13 +10,13 @@ import typer
 
 from aos_deploy.constraints import constrained
 from aos_deploy.program import cache_dir
+from aos_language.load import load_bundle, read_bundle_files, with_excerpts
 from aos_protocol.diagnostics import Severity, render
 from aos_protocol.documents import Constraint
 from aos_protocol.errors import DocumentError, ModelError
-from aos_registry.load import load_bundle, read_bundle_files, with_excerpts
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine
-from aos_solver.hot_plug import build_project
+from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["engine_of_bundle"]
 

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from aos_deploy.constraints import constrained
 from aos_deploy.deploy_file import Deployment
+from aos_language.load import load_files, read_bundle_files
+from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import DocumentError
-from aos_registry.load import load_files, read_bundle_files
-from aos_registry.reading import skills_of_files
 
 __all__ = ["check_constraints_of", "files_of_bundle", "project_of"]
 

@@ -18,26 +18,27 @@ from aos_protocol.errors import AosError
 __all__ = ["aos_app", "main", "up_main"]
 
 _COMMANDS = {
-    "up": ("up",),
-    "decisions": ("decisions",),
-    "runs": ("runs",),
-    "skill": ("skill", "resume"),
-    "documents": ("lint", "inspect"),
-    "bundle": ("bundle",),
-    "convert": ("convert",),
-    "new": ("new",),
-    "schema": ("schema",),
-    "language_server": ("language-server",),
-    "plan": ("plan", "simulate", "rate"),
-    "solve": ("solve",),
-    "test": ("test",),
-    "experiment": ("experiment",),
-    "calibrate": ("calibrate",),
-    "bench": ("bench",),
-    "gym": ("gym",),
-    "machine": ("doctor", "version"),
+    "aos_deploy.commands.up": ("up",),
+    "aos_deploy.commands.decisions": ("decisions",),
+    "aos_deploy.commands.runs": ("runs",),
+    "aos_deploy.commands.skill": ("skill", "resume"),
+    "aos_deploy.commands.documents": ("lint", "inspect"),
+    "aos_deploy.commands.bundle": ("bundle",),
+    "aos_deploy.commands.convert": ("convert",),
+    "aos_deploy.commands.new": ("new",),
+    "aos_deploy.commands.schema": ("schema",),
+    "aos_editor.command": ("language-server",),
+    "aos_deploy.commands.plan": ("plan", "simulate", "rate"),
+    "aos_lab.commands.solve": ("solve",),
+    "aos_lab.commands.test": ("test",),
+    "aos_lab.commands.experiment": ("experiment",),
+    "aos_lab.commands.calibrate": ("calibrate",),
+    "aos_lab.commands.bench": ("bench",),
+    "aos_lab.commands.gym": ("gym",),
+    "aos_deploy.commands.machine": ("doctor", "version"),
 }
-"""The modules in `commands`, in the order of the help, with what each registers."""
+"""The modules, in the order of the help, with the names that each registers. They are named here and not
+imported: laboratory and editor are above this package."""
 
 _STYLE: dict[str, Any] = {
     "pretty_exceptions_enable": False,
@@ -63,7 +64,7 @@ def aos_app(arguments: Sequence[str] = ()) -> typer.Typer:
     )
     app.callback()(_own_options)
     for module in _needed_modules(arguments):
-        import_module(f"aos_deploy.commands.{module}").register(app)
+        import_module(module).register(app)
     return app
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import msgspec
 
+from aos_language.check.constraints import check_constraints
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Constraint, Project, Snippet
 from aos_protocol.errors import DeployError
-from aos_protocol.findings import Findings
-from aos_registry.check.constraints import check_constraints
 
 __all__ = ["OPTION", "constrained", "constraint_of_option", "snippet_of"]
 

@@ -19,13 +19,13 @@ from aos_deploy.deploy_folder import deploy_file_at
 from aos_deploy.own_programs import ProgramPart, check_programs
 from aos_deploy.typed import known_names, read_structure
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
+from aos_language.archive import is_archive_name
+from aos_language.findings import Findings
+from aos_language.load import read_bundle_files
+from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Constraint
 from aos_protocol.errors import DeployError
-from aos_protocol.findings import Findings
-from aos_registry.archive import is_archive_name
-from aos_registry.load import read_bundle_files
-from aos_registry.reading import skills_of_files
 
 __all__ = [
     "BusPart",

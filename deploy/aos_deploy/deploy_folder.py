@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlScalar, read_yaml
+from aos_language.load import read_bundle_files
 from aos_protocol.errors import DeployError
-from aos_registry.load import read_bundle_files
 
 __all__ = ["deploy_file_at"]
 

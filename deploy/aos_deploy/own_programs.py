@@ -11,8 +11,8 @@ import msgspec
 from aos_deploy.remote import HOST
 from aos_deploy.typed import plain_value
 from aos_deploy.yaml_source import YamlMap
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-from aos_protocol.findings import Findings
 
 __all__ = ["ProgramPart", "ReadyPart", "check_programs"]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Environment, Project
 from aos_protocol.errors import ModelError
-from aos_protocol.findings import Findings
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Reach
 from aos_solver.child.engine import Engine

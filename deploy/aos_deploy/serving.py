@@ -6,8 +6,8 @@ from typing import Any
 
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.program import Program
+from aos_language.load import load_bundle
 from aos_protocol.errors import DeployError
-from aos_registry.load import load_bundle
 from aos_skills.ros.connect import KINDS
 from aos_skills.ros.definitions import interface_name
 from aos_skills.ros.documented import documented

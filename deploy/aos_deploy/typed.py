@@ -11,8 +11,8 @@ import msgspec
 from msgspec import UNSET
 
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-from aos_protocol.findings import Findings
 
 __all__ = ["known_names", "plain_value", "read_structure"]
 

@@ -14,8 +14,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
-from aos_protocol.findings import Findings
 
 __all__ = ["YamlList", "YamlMap", "YamlNode", "YamlScalar", "read_yaml"]
 

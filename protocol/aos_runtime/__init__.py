@@ -1,1 +1,4 @@
-"""What every process needs: bus, journal, lifecycle, clock, child processes."""
+"""Processes on the bus: the bus, the journal, lifecycle, clock, child processes, and the side of adapters.
+
+Not in here is what the messages say, which is in `aos_protocol`, and what any one service does with them.
+"""

@@ -13,6 +13,7 @@ from typing import Any
 
 import msgspec
 
+from aos_language.load import load_files
 from aos_middleware.settings import Settings
 from aos_protocol.documents import Project
 from aos_protocol.errors import DocumentError
@@ -26,7 +27,6 @@ from aos_protocol.messages import (
     ProjectQuery,
     ProjectRevision,
 )
-from aos_registry.load import load_files
 from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child

@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from aos_registry.load import load_bundle
+from aos_language.load import load_bundle
 
 BIN = Path(sys.executable).parent
 MISSION_S = 300.0

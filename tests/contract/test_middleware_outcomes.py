@@ -11,12 +11,12 @@ import pytest
 from mapping_documents import skill_of
 from middleware_system import SENSE, System, answering, hang, succeed
 
+from aos_language.derived_mapping import derived_mapping
+from aos_language.findings import Findings
+from aos_language.reading.files import read_documents
 from aos_protocol.documents import Skill, SkillModel
 from aos_protocol.errors import SkillError
-from aos_protocol.findings import Findings
 from aos_protocol.messages import ActivationId, SkillCall
-from aos_registry.derived_mapping import derived_mapping
-from aos_registry.reading import read_documents
 
 
 async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(system: System) -> None:

@@ -38,10 +38,10 @@ from aos_runtime.children import Child
 from aos_runtime.clock import SystemClock
 from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
-from aos_solver.endings import MissionLimits
-from aos_solver.hot_plug import RunningModel
-from aos_solver.mission import Mission
-from aos_solver.search import Search
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.loop import Mission
 
 STOCK = {
     "stock.ef": """project: stock

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from test_registry_service import push, running_registry
 
+from aos_language.load import load_files, read_bundle_files
 from aos_protocol.keys import Keys
-from aos_registry.load import load_files, read_bundle_files
 from aos_runtime.bus import Bus
 
 ROUNDS = 20

@@ -20,11 +20,11 @@ import pytest_asyncio
 from processes import HANG_S
 from test_registry_service import current, push, running_registry, written_settings
 
+from aos_language.archive import read_archive
+from aos_language.load import read_bundle_files
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import BundleReport
-from aos_registry.archive import read_archive
-from aos_registry.load import read_bundle_files
 from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 from test_registry_service import current, push, running_registry
 
+from aos_language.load import bundle_digest, read_bundle_files
 from aos_protocol.keys import Keys
 from aos_protocol.messages import BundleReport
 from aos_registry.catalogue import Catalogue, Revision
-from aos_registry.load import bundle_digest, read_bundle_files
 from aos_runtime.bus import Bus
 
 SEED = 20261121

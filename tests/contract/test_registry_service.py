@@ -15,6 +15,7 @@ import pytest_asyncio
 from processes import HANG_S
 from starting import until_present
 
+from aos_language.load import read_bundle_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.errors import DocumentError
 from aos_protocol.keys import Keys
@@ -29,7 +30,6 @@ from aos_protocol.messages import (
     PushBundle,
     RemoveDocuments,
 )
-from aos_registry.load import read_bundle_files
 from aos_registry.settings import Settings
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child

@@ -24,6 +24,7 @@ pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
 from ros1_core import roscore, skip_without_ros1
 
+from aos_language.load import load_files
 from aos_protocol.errors import AosError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
@@ -37,7 +38,6 @@ from aos_protocol.messages import (
     SkillResult,
     TopicMessage,
 )
-from aos_registry.load import load_files
 from aos_runtime.adapters import AdapterSettings, Binding
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import msgspec
 
+from aos_language.load import load_files
 from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, MissionState, Outcome
-from aos_registry.load import load_files
 from aos_runtime.clock import SystemClock
 from aos_solver.child.engine import Engine
-from aos_solver.endings import MissionLimits
-from aos_solver.hot_plug import RunningModel, build_project
-from aos_solver.mission import Mission
-from aos_solver.search import Search
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.hot_plug import RunningModel, build_project
+from aos_solver.mission.loop import Mission
 
 from .jobs import Job
 

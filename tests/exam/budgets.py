@@ -17,12 +17,12 @@ from typing import Any
 
 import msgspec
 
-from aos_deploy.bench.rows import this_machine
+from aos_lab.bench.rows import this_machine
+from aos_language.load import load_bundle
 from aos_protocol.errors import AosError
-from aos_registry.load import load_bundle
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.hot_plug import build_project
+from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["Cost", "costs_of", "examine_budgets"]
 

@@ -8,9 +8,9 @@ from statistics import fmean, stdev
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.endings import MissionLimits
-from aos_solver.search import Search
-from aos_solver.simulation import simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 
 from .told import Told
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import msgspec
 
+from aos_language.load import load_files
 from aos_protocol.errors import AosError
-from aos_registry.load import load_files
 from aos_solver.building.build import build
 from aos_solver.child.engine import Engine
 from aos_solver.emission.emit import emit

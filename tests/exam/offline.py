@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from pathlib import Path
 
-from aos_deploy.formats.problem_files import read_problem
+from aos_lab.formats.problem_files import read_problem
 from aos_protocol.errors import AosError
 from aos_solver.offline.solving import SolvingLimits, solve
 

@@ -19,7 +19,7 @@ from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
-from aos_registry.load import load_files, read_bundle_files
+from aos_language.load import load_files, read_bundle_files
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lower import lower
 

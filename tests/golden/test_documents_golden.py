@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from aos_protocol.diagnostics import render
-from aos_registry.load import load_files
+from aos_language.load import load_files
 
 FOLDER = Path(__file__).parent / "documents"
 CASES = sorted(path.name for path in FOLDER.iterdir() if path.is_dir() and path.name != "base")

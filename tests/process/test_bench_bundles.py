@@ -14,7 +14,7 @@ from models import built_bundle, engine_of
 from processes import HANG_S
 from reference_problems import MODELS, expected_reward, initial_belief, observed
 
-from aos_registry.load import load_bundle
+from aos_language.load import load_bundle
 
 WALKS = 6
 STEPS_OF_A_WALK = 15

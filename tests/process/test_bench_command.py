@@ -14,8 +14,8 @@ import pytest
 from models import built_bundle, engine_of
 from processes import HANG_S
 
-from aos_deploy.bench.baseline import PROBLEMS, Baselines
-from aos_deploy.bench.rows import figure, with_ratios
+from aos_lab.bench.baseline import PROBLEMS, Baselines
+from aos_lab.bench.rows import figure, with_ratios
 from aos_solver.building.compiler import find_compiler
 
 AOS = Path(sys.executable).parent / "aos"

@@ -14,12 +14,12 @@ import msgspec
 import pytest
 from processes import HANG_S
 
-from aos_deploy.calibration.calibrate import Calibration, calibrate
-from aos_deploy.calibration.draws import draws_of
-from aos_deploy.calibration.records import RecordedMission, read_missions
-from aos_deploy.trials.campaign import play_campaign
-from aos_deploy.trials.setting import Setting
-from aos_registry.load import load_files
+from aos_lab.calibration.calibrate import Calibration, calibrate
+from aos_lab.calibration.draws import draws_of
+from aos_lab.calibration.records import RecordedMission, read_missions
+from aos_lab.trials.campaign import play_campaign
+from aos_lab.trials.setting import Setting
+from aos_language.load import load_files
 
 AOS = Path(sys.executable).parent / "aos"
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"

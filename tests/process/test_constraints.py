@@ -16,16 +16,16 @@ from test_mission_loop import Surroundings, observed
 
 from aos_deploy.constraints import constrained, constraint_of_option
 from aos_deploy.exit_codes import ExitCode, exit_code_of_mission
-from aos_deploy.trials.intervals import interval_of_share
+from aos_lab.trials.intervals import interval_of_share
 from aos_protocol.documents import Project
 from aos_protocol.messages import Activate, Outcome
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.endings import Ending, MissionLimits
-from aos_solver.hot_plug import RunningModel, build_project, emitted_model
-from aos_solver.mission import Mission
-from aos_solver.search import Search
-from aos_solver.simulation import SimulatedRun, simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.hot_plug import RunningModel, build_project, emitted_model
+from aos_solver.mission.loop import Mission
+from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 
 HOB = {
     "hob.ef": """project: test

@@ -8,9 +8,9 @@ from typing import Literal
 import pytest
 from models import built_bundle, built_text, engine_of
 
-from aos_solver.endings import MissionLimits
-from aos_solver.search import Search
-from aos_solver.simulation import simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 
 COUNTER = {
     "counter.ef": """project: counter

@@ -12,9 +12,9 @@ from processes import descendants, until_ended
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.engine import Engine
-from aos_solver.endings import MissionLimits
-from aos_solver.search import Search
-from aos_solver.simulation import simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 
 OPENING = """project: tiger
 

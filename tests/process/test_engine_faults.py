@@ -11,12 +11,12 @@ import pytest
 from models import built_text, engine_of
 from processes import HANG_S
 
+from aos_language.load import load_files
 from aos_protocol.errors import ModelError
-from aos_registry.load import load_files
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.child.printed import PRINT_LIMIT_BYTES
-from aos_solver.hot_plug import ModelShelf, RunningModel
+from aos_solver.mission.hot_plug import ModelShelf, RunningModel
 
 LAMP = {
     "lamp.ef": """project: lamp

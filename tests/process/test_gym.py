@@ -14,7 +14,7 @@ pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-auton
 import numpy as np
 from gymnasium.utils.env_checker import check_env
 
-from aos_deploy.gym import AosEnv, AosVectorEnv
+from aos_lab.gym import AosEnv, AosVectorEnv
 
 KETTLE = {
     "kettle.ef": """project: kettle

@@ -14,7 +14,7 @@ from processes import HANG_S
 from pygls.exceptions import JsonRpcException
 from pygls.lsp.client import LanguageClient
 
-from aos_deploy.language_server.highlighting import TOKEN_KINDS
+from aos_editor.highlighting import TOKEN_KINDS
 
 AOS = Path(sys.executable).parent / "aos"
 

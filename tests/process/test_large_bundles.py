@@ -8,8 +8,8 @@ import pytest
 from large_bundles import long_array, many_variables
 from models import built_text, engine_of
 
+from aos_language.load import load_files
 from aos_protocol.messages import BeliefSummary
-from aos_registry.load import load_files
 
 ELEMENTS = 10_000
 VARIABLES = 1_000

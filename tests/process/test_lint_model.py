@@ -18,12 +18,12 @@ from typer.testing import CliRunner
 from aos_deploy import reachability
 from aos_deploy.cli import aos_app
 from aos_deploy.commands import documents
+from aos_language import load
 from aos_protocol.errors import ModelError
-from aos_registry import load
-from aos_solver import hot_plug
 from aos_solver.building import build as building
 from aos_solver.building.compiler import find_compiler
 from aos_solver.child import replay
+from aos_solver.mission.loop import hot_plug
 
 HALL = """project: hall
 horizon: 4

@@ -7,13 +7,13 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+from aos_language.load import load_files
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
-from aos_registry.load import load_files
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import ExportedBeliefs
 from aos_solver.child.engine import Engine
-from aos_solver.hot_plug import ModelShelf, RunningModel
+from aos_solver.mission.hot_plug import ModelShelf, RunningModel
 
 LAMP = {
     "lamp.ef": """project: lamp

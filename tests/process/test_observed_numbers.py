@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from aos_protocol.errors import ModelError
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.endings import Ending, MissionLimits
-from aos_solver.search import Search
-from aos_solver.simulation import simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 
 ENVIRONMENT = """project: gauge
 horizon: 5

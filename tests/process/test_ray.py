@@ -16,10 +16,10 @@ import typer
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
-from aos_deploy.trials import ray_cluster
-from aos_deploy.trials.campaign import HERE, play_campaign
-from aos_deploy.trials.setting import Setting
-from aos_deploy.trials.trial import Trial
+from aos_lab.trials import ray_cluster
+from aos_lab.trials.campaign import HERE, play_campaign
+from aos_lab.trials.setting import Setting
+from aos_lab.trials.trial import Trial
 from aos_protocol.errors import DeployError
 
 # Ray leaves the processes that it starts to themselves.

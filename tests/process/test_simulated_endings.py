@@ -11,9 +11,9 @@ from scripted_models import mapping_text
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
-from aos_solver.endings import Ending, MissionLimits
-from aos_solver.search import Search
-from aos_solver.simulation import simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 
 SERVED = 0.92
 """Where nothing is seen the belief holds the goal for surer than the 0.9 that end a mission."""

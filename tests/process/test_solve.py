@@ -14,18 +14,18 @@ import pytest
 from models import built_bundle, built_text, engine_of
 from processes import HANG_S
 
-from aos_deploy.formats.graph_writers import c_header, graphviz
-from aos_deploy.formats.policy_graph import OVER, PolicyGraph, policy_graph
-from aos_deploy.formats.problem_files import read_problem
+from aos_lab.formats.graph_writers import c_header, graphviz
+from aos_lab.formats.policy_graph import OVER, PolicyGraph, policy_graph
+from aos_lab.formats.problem_files import read_problem
 from aos_protocol.errors import ModelError, PlanningError
 from aos_solver.building.compiler import find_compiler
-from aos_solver.endings import MissionLimits
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 from aos_solver.offline.enumeration import Enumeration, enumerate_model
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
 from aos_solver.offline.policy import Policy, PolicyHeader, PolicySearch
 from aos_solver.offline.solving import Bounds, Solution, SolvingLimits, solve
 from aos_solver.offline.stopping import with_stopping
-from aos_solver.simulation import simulate_mission
 
 QUICK = SolvingLimits(precision=1e-3, cpu_s=1)
 

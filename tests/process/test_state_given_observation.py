@@ -11,9 +11,9 @@ from models import built_bundle, built_text, engine_of
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
-from aos_solver.endings import MissionLimits
-from aos_solver.search import Search
-from aos_solver.simulation import simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 
 ENVIRONMENT = """project: rover
 horizon: 4

@@ -20,9 +20,9 @@ from aos_skills.pybullet.worlds.tictactoe.rules import (
     is_over,
     marked,
 )
-from aos_solver.endings import MissionLimits
-from aos_solver.search import Search
-from aos_solver.simulation import simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
 
 Point = tuple[float, float]
 TO_EASY_TABLE = "navigate(destination=easy_table)"

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from scripted_models import ScriptedModel, scripted, text_project
 
+from aos_language.convert import Dialect, convert, without_origins
+from aos_language.load import load_files
+from aos_language.outline import outline
+from aos_language.reading.document import array_type
 from aos_protocol.diagnostics import Diagnostic
-from aos_registry.convert import Dialect, convert, without_origins
-from aos_registry.documents.document import array_type
-from aos_registry.load import load_files
-from aos_registry.outline import outline
 
 ENVIRONMENT = """project: shop
 horizon: 5

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from aos_language.cpp.snippets import read_cpp
+from aos_language.load import load_bundle
 from aos_protocol.documents import Assignment, Project
-from aos_registry.load import load_bundle
-from aos_runtime.snippets import read_cpp
 
 OURS_BY_THEIRS = {
     # enum values

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from aos_deploy.calibration.draws import Draw
-from aos_deploy.calibration.estimation import DrawEstimate, estimate
-from aos_deploy.calibration.lattice import Lattice
-from aos_deploy.calibration.patch import patch_of, proposed_numbers
+from aos_lab.calibration.draws import Draw
+from aos_lab.calibration.estimation import DrawEstimate, estimate
+from aos_lab.calibration.lattice import Lattice
+from aos_lab.calibration.patch import patch_of, proposed_numbers
 from aos_protocol.diagnostics import Span
 
 

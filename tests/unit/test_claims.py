@@ -8,13 +8,13 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from aos_deploy.experiments.physics import simulated_speed
 from aos_deploy.shipped import shipped
-from aos_deploy.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches
-from aos_deploy.trials.files import read_experiment, read_script_file, read_test_file
-from aos_deploy.trials.intervals import Interval, interval_of_mean, interval_of_share
-from aos_deploy.trials.setting import deployment_of
-from aos_deploy.trials.trial import Trial
+from aos_lab.experiments.physics import simulated_speed
+from aos_lab.trials.claims import Around, Before, Claim, Count, When, asking_the_world, judge, matches
+from aos_lab.trials.files import read_experiment, read_script_file, read_test_file
+from aos_lab.trials.intervals import Interval, interval_of_mean, interval_of_share
+from aos_lab.trials.setting import deployment_of
+from aos_lab.trials.trial import Trial
 from aos_protocol.errors import DeployError
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from test_reading_rules import Rule, bundle_of
 
-from aos_registry.load import load_files
+from aos_language.load import load_files
 from aos_solver.emission.lower import lower
 
 EXTRINSIC = '"ExtrinsicChangesDynamicModel": []'

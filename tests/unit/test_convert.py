@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from aos_deploy.commands.convert import register
+from aos_language.convert import Dialect, convert, without_origins
+from aos_language.load import load_files, read_bundle_files
 from aos_protocol.documents import Project
-from aos_registry.convert import Dialect, convert, without_origins
-from aos_registry.load import load_files, read_bundle_files
 
 EXAMPLE = re.compile(r"^```(sdl|json) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 CORPUS = [

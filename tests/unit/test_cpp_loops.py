@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from aos_runtime.cpp_loops import DrawingLoop, Scope, loops_of
-from aos_runtime.snippets import read_cpp, read_cpp_declarations
+from aos_language.cpp.loops import DrawingLoop, Scope, loops_of
+from aos_language.cpp.snippets import read_cpp, read_cpp_declarations
 
 STATE = Scope(frozenset({"state"}))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aos_runtime.cpp_statements import Marks, Statement, marked
+from aos_language.cpp.statements import Marks, Statement, marked
 
 
 def before(statement: Statement) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from test_lint_words import SKILL, told
 
-from aos_runtime.cpp_unset import unset_reads
-from aos_runtime.snippets import read_cpp
+from aos_language.cpp.snippets import read_cpp
+from aos_language.cpp.unset import unset_reads
 
 NEVER = [
     ("bool b; if (b) x = 1;", "b", 13),

@@ -9,14 +9,14 @@ import pytest
 from mapping_runs import fields, loaded, observed
 
 from aos_deploy.adapter_templates import adapter_files
-from aos_deploy.language_server.symbols import read_bundle
+from aos_editor.symbols import read_bundle
+from aos_language.convert import Dialect, convert, without_origins
+from aos_language.load import LoadedBundle, load_files
+from aos_language.outline import outline
 from aos_middleware.emit import emit_mapping
 from aos_middleware.no_response import no_response
 from aos_middleware.worker import LoadedMapping
 from aos_protocol.documents import AbstractionMapping, Project
-from aos_registry.convert import Dialect, convert, without_origins
-from aos_registry.load import LoadedBundle, load_files
-from aos_registry.outline import outline
 
 ENVIRONMENT = """project: barn
 horizon: 4

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from aos_language.load import load_files
 from aos_protocol.documents import LocalSource, Project
-from aos_registry.load import load_files
 
 ENVIRONMENT: dict[str, Any] = {
     "PlpMain": {"Project": "p", "Name": "environment", "Type": "Environment", "Version": 1},

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aos_registry.load import LoadedBundle, load_bundle
+from aos_language.load import LoadedBundle, load_bundle
 
 pytestmark = pytest.mark.corpus
 

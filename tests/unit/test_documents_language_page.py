@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from scripted_models import scripted
 
-from aos_registry.convert import without_origins
-from aos_registry.documents.sdl_sections import GRAMMARS
-from aos_registry.load import load_files
+from aos_language.convert import without_origins
+from aos_language.load import load_files
+from aos_language.reading.sdl_sections import GRAMMARS
 
 EXAMPLE = re.compile(r"^```(sdl|json|ours) ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 

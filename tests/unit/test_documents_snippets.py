@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from aos_runtime.cpp_tokens import cut
-from aos_runtime.snippets import (
+from aos_language.cpp.snippets import (
     Access,
     DeclarationKind,
     FaultKind,
@@ -15,6 +14,7 @@ from aos_runtime.snippets import (
     read_cpp_expression,
     strip_comments,
 )
+from aos_language.cpp.tokens import cut
 
 
 def mentions(code: str) -> list[tuple[str, Access]]:

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from aos_deploy.language_server.documents import meaning_at, outline, proposals_at
-from aos_deploy.language_server.meanings import SECTIONS
-from aos_registry.documents.sdl_sections import GRAMMARS
+from aos_editor.documents import meaning_at, outline, proposals_at
+from aos_editor.meanings import SECTIONS
+from aos_language.reading.sdl_sections import GRAMMARS
 
 
 def test_every_word_of_the_grammar_has_a_meaning_and_no_other() -> None:

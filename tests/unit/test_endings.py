@@ -9,11 +9,11 @@ import pytest
 from scripted_models import ScriptedModel, mapping_text, scripted, text_project
 
 from aos_deploy.exit_codes import exit_code_of_mission
+from aos_language.convert import Dialect, convert, without_origins
+from aos_language.load import load_files
 from aos_protocol.documents import Environment
 from aos_protocol.messages import ActionValue, BeliefSummary, EndingOdds, MissionState
-from aos_registry.convert import Dialect, convert, without_origins
-from aos_registry.load import load_files
-from aos_solver.endings import (
+from aos_solver.mission.endings import (
     Ending,
     MissionLimits,
     believed_ending,

@@ -11,10 +11,10 @@ import pytest
 from test_reading_rules import REFUSED, WARNED, WHOLE_FILES, Rule, bundle_of, found_by
 
 from aos_deploy.run_directory import RunDirectory
+from aos_language.load import load_files
 from aos_protocol.codec import open_envelope
 from aos_protocol.errors import CODES, BusError, DeployError, PlanningError
 from aos_protocol.messages import Envelope
-from aos_registry.load import load_files
 from aos_solver.offline.explicit_model import ExplicitModel, Ragged
 from aos_solver.offline.solving import SolvingLimits, solve
 

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from aos_deploy.calibration.records import RecordedMission, RecordedStep
-from aos_deploy.experiments.optimum import Optimum, regret_of
-from aos_deploy.experiments.physics import keep_picture
-from aos_deploy.experiments.plots import draw_plots
-from aos_deploy.experiments.report import write_report
-from aos_deploy.experiments.results import PartResult, Results, Surroundings, figures_of, result_of
-from aos_deploy.experiments.statistics import steps_of
-from aos_deploy.trials.campaign import Played
-from aos_deploy.trials.claims import Claim
-from aos_deploy.trials.files import Experiment, Part
-from aos_deploy.trials.trial import Trial
+from aos_lab.calibration.records import RecordedMission, RecordedStep
+from aos_lab.experiments.optimum import Optimum, regret_of
+from aos_lab.experiments.physics import keep_picture
+from aos_lab.experiments.plots import draw_plots
+from aos_lab.experiments.report import write_report
+from aos_lab.experiments.results import PartResult, Results, Surroundings, figures_of, result_of
+from aos_lab.experiments.statistics import steps_of
+from aos_lab.trials.campaign import Played
+from aos_lab.trials.claims import Claim
+from aos_lab.trials.files import Experiment, Part
+from aos_lab.trials.trial import Trial
 
 SERVED = Trial(
     seed=1,

@@ -10,16 +10,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from json_values import plain
 
-from aos_protocol.diagnostics import Diagnostic
-from aos_protocol.findings import Findings
-from aos_registry.documents.json_text import (
+from aos_language.findings import Findings
+from aos_language.reading.json_text import (
     JsonArray,
     JsonString,
     JsonValue,
     code_snippet,
     parse_json,
 )
-from aos_registry.documents.source import Source
+from aos_language.reading.source import Source
+from aos_protocol.diagnostics import Diagnostic
 
 
 def parsed(text: str) -> tuple[JsonValue | None, tuple[Diagnostic, ...]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aos_runtime.snippets import read_cpp
+from aos_language.cpp.snippets import read_cpp
 from aos_solver.emission.lower_capacities import GROWING_CAPACITY, REPORTED_CAPACITY, Capacities
 
 

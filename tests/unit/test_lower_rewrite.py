@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from aos_language.cpp.snippets import read_cpp
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
-from aos_runtime.snippets import read_cpp
 from aos_solver.emission.program import Piece
 from aos_solver.emission.rewrite import Rewriting, rewrite
 

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from mapping_documents import emitted, mapping_of, project_in, skill_of
 from msgspec.structs import replace
 
+from aos_language.findings import Findings
+from aos_language.reading.files import read_documents
 from aos_middleware.emit import emit_mapping
 from aos_middleware.mappings import emit_project
 from aos_protocol.diagnostics import Span
@@ -25,8 +27,6 @@ from aos_protocol.documents import (
     Snippet,
 )
 from aos_protocol.errors import DocumentError
-from aos_protocol.findings import Findings
-from aos_registry.reading import read_documents
 
 HEAD = """\
 project: garden

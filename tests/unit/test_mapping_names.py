@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from aos_language.load import load_files
 from aos_protocol.diagnostics import Severity
-from aos_registry.load import load_files
 
 ENVIRONMENT = """project: shop
 horizon: 3

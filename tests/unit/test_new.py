@@ -12,8 +12,8 @@ from typer.testing import CliRunner, Result
 from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files
-from aos_registry.convert import without_origins
-from aos_registry.load import load_bundle
+from aos_language.convert import without_origins
+from aos_language.load import load_bundle
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from scripted_models import ScriptedModel, bundle_project, scripted
 
-from aos_registry.load import load_bundle
+from aos_language.load import load_bundle
 
 CARRY = "carry(oTo={{side={side}, slots=[0, 0, 0], x={x}, full=false, label=, size=3}}, how={how}, step=left)"
 TO_THE_RIGHT = CARRY.format(side="right", x="4", how=1)

@@ -9,7 +9,7 @@ import pytest
 
 from aos_deploy.played_faults import PlayedFaults
 from aos_deploy.shipped import shipped
-from aos_deploy.trials.setting import Setting, deployment_of
+from aos_lab.trials.setting import Setting, deployment_of
 from aos_protocol.errors import DeployError
 
 SKILLS = ("pick", "serve")

@@ -9,9 +9,9 @@ import msgspec
 import numpy as np
 import pytest
 
-from aos_deploy.formats.problem_files import read_problem
-from aos_deploy.formats.problem_writers import write_problem
-from aos_deploy.formats.sensing_by_state import with_sensing_by_state
+from aos_lab.formats.problem_files import read_problem
+from aos_lab.formats.problem_writers import write_problem
+from aos_lab.formats.sensing_by_state import with_sensing_by_state
 from aos_protocol.errors import DocumentError, ModelError, PlanningError
 from aos_solver.offline.explicit_model import ExplicitModel, Floats, Ragged
 

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import pytest
 
+from aos_language.load import LoadedBundle, load_bundle, load_files
 from aos_protocol.diagnostics import Severity, Span
-from aos_registry.load import LoadedBundle, load_bundle, load_files
 
 BUNDLES = Path(__file__).parents[1] / "data" / "bundles"
 JSON = {path.name: path.read_text() for path in (BUNDLES / "rooms-json").iterdir()}

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from aos_registry.archive import read_archive
-from aos_registry.load import load_bundle, read_bundle_files
-from aos_registry.reading import MAX_BUNDLE_BYTES
+from aos_language.archive import read_archive
+from aos_language.load import load_bundle, read_bundle_files
+from aos_language.reading.files import MAX_BUNDLE_BYTES
 
 
 def tar_of(path: Path, *members: tuple[tarfile.TarInfo, bytes]) -> Path:

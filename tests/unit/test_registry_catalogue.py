@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
+from aos_language.load import bundle_digest, load_bundle, load_files, read_bundle_files
+from aos_language.merge import changed_skills, merge, pushed_project
 from aos_protocol.errors import StorageError
 from aos_registry.catalogue import Catalogue
-from aos_registry.load import bundle_digest, load_bundle, load_files, read_bundle_files
-from aos_registry.merge import changed_skills, merge, pushed_project
 
 
 @pytest.fixture

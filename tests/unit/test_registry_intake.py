@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from aos_language.load import read_bundle_files
+from aos_language.reading import files as reading
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Project
 from aos_registry import intake as intake_module
-from aos_registry import reading
 from aos_registry.catalogue import Catalogue
 from aos_registry.intake import Intake
-from aos_registry.load import read_bundle_files
 from aos_runtime.clock import SystemClock
 
 

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from aos_language.load import load_files, read_bundle_files
+from aos_language.merge import merge
+from aos_language.reading.version import is_higher
 from aos_protocol.diagnostics import Diagnostic
 from aos_registry.catalogue import Catalogue
-from aos_registry.documents.version import is_higher
-from aos_registry.load import load_files, read_bundle_files
-from aos_registry.merge import merge
 
 
 @pytest.fixture

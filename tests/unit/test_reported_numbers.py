@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from scripted_models import bundle_project, json_text, lowered, mapping_text, text_project
 
+from aos_language.cpp.snippets import read_cpp
+from aos_language.observed import misuses_of, reported_numbers, reports_in
 from aos_middleware.emit import emit_mapping
 from aos_middleware.observed_numbers import observed_numbers
-from aos_runtime.observed import misuses_of, reported_numbers, reports_in
-from aos_runtime.snippets import read_cpp
 from aos_solver.child.observed_numbers import numbers_by_name, numbers_field
 from aos_solver.emission.lower_relevance import irrelevant_variables
 from aos_solver.emission.program import Observed

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from aos_language.load import LoadedBundle, load_files
+from aos_language.local_types import LocalType, local_type
 from aos_protocol.diagnostics import Severity
-from aos_protocol.local_types import LocalType, local_type
-from aos_registry.load import LoadedBundle, load_files
 
 ENVIRONMENT = """project: rover
 horizon: 3

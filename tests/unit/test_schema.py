@@ -15,12 +15,12 @@ from json_values import plain
 from ruamel.yaml import YAML
 
 from aos_deploy.schemas import SCHEMAS
-from aos_protocol.findings import Findings
-from aos_registry.documents.json_document import read_json
-from aos_registry.documents.json_record import Record
-from aos_registry.documents.json_text import JsonObject, parse_json
-from aos_registry.documents.source import Source, open_source
-from aos_registry.load import load_files
+from aos_language.findings import Findings
+from aos_language.load import load_files
+from aos_language.reading.json_document import read_json
+from aos_language.reading.json_record import Record
+from aos_language.reading.json_text import JsonObject, parse_json
+from aos_language.reading.source import Source, open_source
 
 EXAMPLE = re.compile(r"^```json ([^\n]+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 DIALECTS = {"PlpMain": "plp", "GsdlMain": "gsdl"}

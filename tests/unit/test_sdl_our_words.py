@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from aos_language.findings import Findings
+from aos_language.reading.document import Document
+from aos_language.reading.files import read_documents
 from aos_protocol.documents import AbstractionMapping, Environment, LowLevelDocument, SkillModel
-from aos_protocol.findings import Findings
-from aos_registry.documents.document import Document
-from aos_registry.reading import read_documents
 
 HEADS = {
     "p.ef": "project: p\nhorizon: 3\n",

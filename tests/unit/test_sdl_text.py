@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from aos_language.findings import Findings
+from aos_language.reading.sdl_sections import GRAMMARS, places_of_words
+from aos_language.reading.sdl_text import Section, parse_sdl
+from aos_language.reading.source import Source
 from aos_protocol.diagnostics import Diagnostic
-from aos_protocol.findings import Findings
-from aos_registry.documents.sdl_sections import GRAMMARS, places_of_words
-from aos_registry.documents.sdl_text import Section, parse_sdl
-from aos_registry.documents.source import Source
 
 
 def sections(text: str, suffix: str = ".sd") -> tuple[list[Section], tuple[Diagnostic, ...]]:

@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 from aos_deploy.cli import aos_app
 from aos_deploy.deploy_file import Deployment, read_deploy_file
 from aos_deploy.serving import serving_program
+from aos_language.load import load_bundle
 from aos_protocol.errors import DeployError
-from aos_registry.load import load_bundle
 from aos_skills.ros.adapter import Way, way_to
 from aos_skills.ros.documented import documented
 

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from scripted_models import ScriptedModel, scripted, text_project
 
-from aos_deploy.language_server.symbols import read_bundle
+from aos_editor.symbols import read_bundle
+from aos_language.convert import Dialect, convert, without_origins
+from aos_language.cpp.shared import shared_code
+from aos_language.load import load_files, read_bundle_files
+from aos_language.outline import outline
 from aos_protocol.diagnostics import Diagnostic
-from aos_registry.convert import Dialect, convert, without_origins
-from aos_registry.load import load_files, read_bundle_files
-from aos_registry.outline import outline
-from aos_runtime.cpp_shared import shared_code
 from aos_solver.building.compiler_messages import read_messages
 from aos_solver.emission.emit import emit
 from aos_solver.emission.lower import lower

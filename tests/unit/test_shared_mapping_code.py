@@ -7,12 +7,12 @@ import json
 import pytest
 from mapping_runs import loaded, observed
 
+from aos_language.convert import Dialect, convert, without_origins
+from aos_language.load import load_files
+from aos_language.outline import outline
 from aos_middleware.mappings import emit_project
 from aos_middleware.worker import LoadedMapping
 from aos_protocol.documents import Project
-from aos_registry.convert import Dialect, convert, without_origins
-from aos_registry.load import load_files
-from aos_registry.outline import outline
 
 SHARED = """import math
 

@@ -13,6 +13,8 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_diagnostics, print_json
 from aos_deploy.running_system import System, on_system
+from aos_language.load import read_bundle_files
+from aos_language.outline import outline
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DocumentError
 from aos_protocol.messages import (
@@ -26,8 +28,6 @@ from aos_protocol.messages import (
     Revisions,
     RevisionsQuery,
 )
-from aos_registry.load import read_bundle_files
-from aos_registry.outline import outline
 
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient

@@ -9,10 +9,10 @@ import typer
 
 from aos_deploy.commands.documents import Folder, refusal
 from aos_deploy.printing import count, print_diagnostics
+from aos_language.convert import Dialect, convert
+from aos_language.load import read_bundle_files
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import DocumentError
-from aos_registry.convert import Dialect, convert
-from aos_registry.load import read_bundle_files
 
 __all__ = ["register"]
 

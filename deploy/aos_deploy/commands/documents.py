@@ -13,13 +13,13 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.printing import count, print_diagnostics, print_json
+from aos_deploy.sarif import sarif_log
+from aos_language.load import load_bundle, load_files, read_bundle_files, with_excerpts
+from aos_language.outline import outline
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError
-from aos_protocol.sarif import sarif_log
-from aos_registry.load import load_bundle, load_files, read_bundle_files, with_excerpts
-from aos_registry.outline import outline
 
 __all__ = ["Folder", "refusal", "register"]
 
@@ -113,7 +113,7 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
 
     from aos_deploy.program import cache_dir
     from aos_deploy.reachability import reachability_findings
-    from aos_solver.hot_plug import build_project, lowered
+    from aos_solver.mission.hot_plug import build_project, lowered
 
     async def findings() -> tuple[Diagnostic, ...]:
         built = await build_project(project, cache_dir(), tell)

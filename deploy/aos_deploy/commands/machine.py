@@ -19,8 +19,8 @@ import typer
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.program import cache_dir
 from aos_protocol import __version__
-from aos_protocol.distribution import DISTRIBUTION, pip_install
 from aos_protocol.errors import AosError
+from aos_runtime.distribution import DISTRIBUTION, pip_install
 
 __all__ = ["Finding", "examine_machine", "examine_needs", "register"]
 

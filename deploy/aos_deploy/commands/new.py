@@ -15,11 +15,11 @@ import typer
 from aos_deploy.adapter_templates import KINDS, ROS_KINDS, adapter_files
 from aos_deploy.deploy_file import read_deploy_file
 from aos_deploy.shipped import deploy_files, shipped
+from aos_language.convert import Dialect, convert
+from aos_language.load import load_bundle, read_bundle_files
+from aos_language.merge import pushed_project
 from aos_protocol.errors import DocumentError
 from aos_protocol.spelling import did_you_mean
-from aos_registry.convert import Dialect, convert
-from aos_registry.load import load_bundle, read_bundle_files
-from aos_registry.merge import pushed_project
 
 __all__ = ["register"]
 

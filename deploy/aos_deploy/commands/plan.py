@@ -21,10 +21,10 @@ from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue, ConstraintRisk
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.endings import MissionLimits
-from aos_solver.risk import RiskBudget
-from aos_solver.search import Search
-from aos_solver.simulation import SimulatedRun, simulate_mission
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 
 __all__ = ["register"]
 

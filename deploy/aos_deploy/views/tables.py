@@ -12,7 +12,7 @@ from rich.text import Text
 from aos_deploy.terminal import console
 from aos_deploy.views.observations import at_least_text, at_most_text, observation_text, value_text
 from aos_protocol.messages import ActionValue
-from aos_solver.simulation import SimulatedRun
+from aos_solver.mission.simulation import SimulatedRun
 
 __all__ = ["print_runs", "print_states", "print_values"]
 

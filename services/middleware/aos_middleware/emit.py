@@ -15,13 +15,13 @@ from typing import Any
 import jinja2
 import msgspec
 
+from aos_language.observed import reported_numbers
 from aos_middleware.generated_lines import word
 from aos_middleware.python_code import LineOrigin, python_fault
 from aos_middleware.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, Snippet
 from aos_protocol.errors import DocumentError
-from aos_runtime.observed import reported_numbers
 
 __all__ = ["EmittedMapping", "emit_mapping"]
 

@@ -12,10 +12,10 @@ import logging
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from aos_language.cpp.snippets import Access, read_cpp
 from aos_middleware.values import put
 from aos_protocol.documents import CompoundType, Environment, Project
 from aos_protocol.messages import Activate, Outcome
-from aos_runtime.snippets import Access, read_cpp
 
 __all__ = ["LowLevelValues", "assigned_variables", "default_constants"]
 

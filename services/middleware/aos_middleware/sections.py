@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
+from aos_language.local_types import RESERVED_LOCAL_NAMES
 from aos_middleware.generated_lines import MarkedLines, literal, word
 from aos_middleware.python_code import LineOrigin, PythonCode, read_body, read_expression
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
@@ -23,7 +24,6 @@ from aos_protocol.documents import (
     LowLevelDocument,
     Snippet,
 )
-from aos_protocol.local_types import RESERVED_LOCAL_NAMES
 
 __all__ = ["Function", "ImportPart", "Sections", "Table"]
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import msgspec
 
+from aos_language.load import read_bundle_files
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.errors import AosError
 from aos_protocol.messages import BundleReport
-from aos_registry.load import read_bundle_files
 from aos_registry.watch import watch_for_bundles
 
 __all__ = ["DroppedBundles"]

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping
 
+from aos_language.findings import Findings
+from aos_language.load import LoadedBundle, load_files, with_excerpts
+from aos_language.merge import changed_skills, merge, pushed_project
+from aos_language.reading.document import DocumentKind
+from aos_language.reading.files import KnownFiles, read_documents
 from aos_protocol.codec import encode
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import BusError, DocumentError
-from aos_protocol.findings import Findings
 from aos_protocol.messages import BundleReport, ProjectRevision
 from aos_protocol.spelling import did_you_mean, quoted
 from aos_registry.catalogue import Catalogue
-from aos_registry.documents.document import DocumentKind
-from aos_registry.load import LoadedBundle, load_files, with_excerpts
-from aos_registry.merge import changed_skills, merge, pushed_project
-from aos_registry.reading import KnownFiles, read_documents
 from aos_runtime.clock import Clock
 
 __all__ = ["Intake", "ModelCheckPort"]

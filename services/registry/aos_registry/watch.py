@@ -9,7 +9,7 @@ from pathlib import Path
 
 from watchfiles import awatch
 
-from aos_registry.archive import is_archive_name
+from aos_language.archive import is_archive_name
 
 __all__ = ["watch_for_bundles"]
 

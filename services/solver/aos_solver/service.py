@@ -39,11 +39,11 @@ from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Progress
 from aos_solver.child.engine import Engine
-from aos_solver.endings import MissionLimits
-from aos_solver.failures import FailureRules, Failures
-from aos_solver.hot_plug import ModelShelf, RunningModel
-from aos_solver.mission import Mission
-from aos_solver.search import Search
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.failures import FailureRules, Failures
+from aos_solver.mission.hot_plug import ModelShelf, RunningModel
+from aos_solver.mission.loop import Mission
 from aos_solver.settings import Settings
 
 __all__ = ["serve"]

@@ -8,7 +8,7 @@ import msgspec
 
 from aos_protocol.documents import Constraint
 from aos_runtime.lifecycle import ServiceSettings
-from aos_solver.failures import SkillRule
+from aos_solver.mission.failures import SkillRule
 
 __all__ = ["Settings"]
 

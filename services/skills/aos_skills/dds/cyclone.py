@@ -12,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from aos_protocol.distribution import pip_install
 from aos_protocol.errors import BusError, DeployError
+from aos_runtime.distribution import pip_install
 from aos_skills.ros.node import Qos as RosQos
 from aos_skills.ros.types import Field, RosTypes
 from aos_skills.ros2.wire import dds_type

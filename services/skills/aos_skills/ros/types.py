@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError, SkillError
+from aos_runtime.distribution import pip_install
 from aos_skills.ros.definitions import (
     SHIPPED,
     InterfaceName,

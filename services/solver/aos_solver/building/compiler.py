@@ -17,9 +17,9 @@ from collections.abc import Iterator, Mapping
 
 import msgspec
 
-from aos_protocol.distribution import pip_install
 from aos_protocol.errors import DeployError, ModelError
 from aos_runtime.children import PIPE, Child
+from aos_runtime.distribution import pip_install
 
 __all__ = ["Compiler", "Family", "find_compiler"]
 

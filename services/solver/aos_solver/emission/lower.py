@@ -10,15 +10,15 @@ from collections.abc import Mapping
 
 import msgspec
 
+from aos_language.cpp.flow import STATES
+from aos_language.cpp.snippets import read_cpp_expression
+from aos_language.document_code import absent_skills, shared_code_of, snippets_of
+from aos_language.findings import Findings
+from aos_language.local_types import LocalType, local_type, reported_variables
+from aos_language.observed import reported_numbers
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill, Snippet
 from aos_protocol.documents import Constraint as DocumentedConstraint
-from aos_protocol.findings import Findings
-from aos_protocol.local_types import LocalType, local_type, reported_variables
-from aos_runtime.cpp_flow import STATES
-from aos_runtime.document_code import absent_skills, shared_code_of, snippets_of
-from aos_runtime.observed import reported_numbers
-from aos_runtime.snippets import read_cpp_expression
 from aos_solver.emission.cpp_library import headers_for
 from aos_solver.emission.lower_averages import averaged_draws
 from aos_solver.emission.lower_code import (

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from aos_language.cpp.linear import adds_only_to, identifiers_of, linear_draws
+from aos_language.document_code import snippets_of
 from aos_protocol.documents import Assignment, Project, Snippet
-from aos_runtime.cpp_linear import adds_only_to, identifiers_of, linear_draws
-from aos_runtime.document_code import snippets_of
 
 __all__ = ["averaged_draws"]
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
-from aos_runtime.snippets import Access, Call, Cpp, Mention, strip_comments
+from aos_language.cpp.snippets import Access, Call, Cpp, Mention, strip_comments
 
 __all__ = ["Capacities"]
 

@@ -7,6 +7,19 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import msgspec
 
+from aos_language.cpp.loops import Scope, loops_of
+from aos_language.cpp.shared import SharedCode
+from aos_language.cpp.snippets import (
+    Cpp,
+    DeclarationKind,
+    FaultKind,
+    read_cpp,
+    read_cpp_declarations,
+    read_cpp_expression,
+    strip_comments,
+)
+from aos_language.document_code import snippets_of
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
     Assignment,
@@ -15,19 +28,6 @@ from aos_protocol.documents import (
     Project,
     Snippet,
     TemporaryVariable,
-)
-from aos_protocol.findings import Findings
-from aos_runtime.cpp_loops import Scope, loops_of
-from aos_runtime.cpp_shared import SharedCode
-from aos_runtime.document_code import snippets_of
-from aos_runtime.snippets import (
-    Cpp,
-    DeclarationKind,
-    FaultKind,
-    read_cpp,
-    read_cpp_declarations,
-    read_cpp_expression,
-    strip_comments,
 )
 from aos_solver.emission.cpp_library import unrepeatable_names
 from aos_solver.emission.lower_types import Types

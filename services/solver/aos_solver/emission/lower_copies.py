@@ -11,9 +11,9 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
+from aos_language.cpp.snippets import Access, Cpp, Extent, Mention, strip_comments
+from aos_language.document_code import shared_code_of, snippets_of
 from aos_protocol.documents import Assignment, Environment, SkillModel
-from aos_runtime.document_code import shared_code_of, snippets_of
-from aos_runtime.snippets import Access, Cpp, Extent, Mention, strip_comments
 from aos_solver.emission.lower_writes import LAMBDA
 
 __all__ = ["Copies", "copies_of"]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from aos_language.cpp.keywords import CPP_KEYWORDS
+from aos_language.document_code import shared_code_of
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Environment, Project
-from aos_protocol.findings import Findings
-from aos_runtime.cpp_keywords import CPP_KEYWORDS
-from aos_runtime.document_code import shared_code_of
 from aos_solver.emission.lower_code import sections_of
 
 __all__ = ["check_names"]

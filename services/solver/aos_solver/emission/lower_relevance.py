@@ -16,11 +16,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from aos_language.cpp.flow import STATES, Flow, Flows, Name, flows_of
+from aos_language.cpp.snippets import Cpp, read_cpp, read_cpp_expression
+from aos_language.document_code import shared_code_of, snippets_of
+from aos_language.observed import is_draw
 from aos_protocol.documents import Assignment, Environment, Project, Snippet
-from aos_runtime.cpp_flow import STATES, Flow, Flows, Name, flows_of
-from aos_runtime.document_code import shared_code_of, snippets_of
-from aos_runtime.observed import is_draw
-from aos_runtime.snippets import Cpp, read_cpp, read_cpp_expression
 from aos_solver.emission.lower_shared import looked_through
 
 __all__ = ["certain_rewards", "irrelevant_variables", "sensing_draws", "skills_alike"]

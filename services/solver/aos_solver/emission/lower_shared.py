@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from aos_runtime.cpp_flow import STATES
-from aos_runtime.cpp_shared import SharedCode, SharedFunction
-from aos_runtime.snippets import Cpp, Extent
+from aos_language.cpp.flow import STATES
+from aos_language.cpp.shared import SharedCode, SharedFunction
+from aos_language.cpp.snippets import Cpp, Extent
 
 __all__ = ["looked_through"]
 

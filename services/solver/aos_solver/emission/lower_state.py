@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from aos_language.cpp.snippets import read_cpp
+from aos_language.document_code import shared_code_of, snippets_of
+from aos_language.findings import Findings
+from aos_language.local_types import reported_variables
 from aos_protocol.documents import Environment, Project, StateVariable
-from aos_protocol.findings import Findings
-from aos_protocol.local_types import reported_variables
-from aos_runtime.document_code import shared_code_of, snippets_of
-from aos_runtime.snippets import read_cpp
 from aos_solver.emission.lower_capacities import Capacities
 from aos_solver.emission.lower_code import Pieces, sections_of
 from aos_solver.emission.lower_types import Types, ordered_compounds

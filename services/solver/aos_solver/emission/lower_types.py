@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from aos_language.findings import Findings
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import CompoundType, EnumType
-from aos_protocol.findings import Findings
 from aos_solver.emission.lower_capacities import Capacities
 from aos_solver.emission.program import Axis, Enum
 

@@ -9,13 +9,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from aos_protocol.documents import Environment, Project
-from aos_protocol.local_types import reported_variables
-from aos_runtime.cpp_facts import READING_FUNCTIONS
-from aos_runtime.cpp_flow import STATES
-from aos_runtime.cpp_shared import SharedFunction
-from aos_runtime.document_code import shared_code_of, snippets_of
-from aos_runtime.snippets import (
+from aos_language.cpp.facts import READING_FUNCTIONS
+from aos_language.cpp.flow import STATES
+from aos_language.cpp.shared import SharedFunction
+from aos_language.cpp.snippets import (
     Access,
     Cpp,
     DeclarationKind,
@@ -24,6 +21,9 @@ from aos_runtime.snippets import (
     read_cpp,
     read_cpp_expression,
 )
+from aos_language.document_code import shared_code_of, snippets_of
+from aos_language.local_types import reported_variables
+from aos_protocol.documents import Environment, Project
 from aos_solver.emission.lower_code import sections_of
 
 __all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_language.local_types import LocalType
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
-from aos_protocol.local_types import LocalType
 
 __all__ = [
     "Axis",

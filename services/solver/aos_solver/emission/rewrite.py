@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import msgspec
 
-from aos_runtime.cpp_flow import STATES
-from aos_runtime.cpp_loops import DrawingLoop
-from aos_runtime.cpp_shared import SharedFunction
-from aos_runtime.observed import reports_in
-from aos_runtime.snippets import Call, Cpp, Extent
+from aos_language.cpp.flow import STATES
+from aos_language.cpp.loops import DrawingLoop
+from aos_language.cpp.shared import SharedFunction
+from aos_language.cpp.snippets import Call, Cpp, Extent
+from aos_language.observed import reports_in
 from aos_solver.emission.program import Edit
 from aos_solver.emission.rewrite_containers import container_edits
 from aos_solver.emission.rewrite_objects import object_edits

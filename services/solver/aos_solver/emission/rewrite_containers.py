@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from aos_runtime.cpp_flow import STATES
-from aos_runtime.snippets import Access, Cpp, Declaration, DeclarationKind
+from aos_language.cpp.flow import STATES
+from aos_language.cpp.snippets import Access, Cpp, Declaration, DeclarationKind
 
 __all__ = ["container_edits"]
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from aos_runtime.cpp_flow import STATES
-from aos_runtime.snippets import Cpp, Declaration, DeclarationKind, Extent, strip_comments
+from aos_language.cpp.flow import STATES
+from aos_language.cpp.snippets import Cpp, Declaration, DeclarationKind, Extent, strip_comments
 
 __all__ = ["object_edits"]
 

@@ -10,8 +10,8 @@ import re
 
 import msgspec
 
+from aos_language.cpp.statements import Marks, Statement, marked
 from aos_protocol.diagnostics import Span
-from aos_runtime.cpp_statements import Marks, Statement, marked
 from aos_solver.emission.emit import EmittedModel
 from aos_solver.emission.program import Piece
 

@@ -18,8 +18,8 @@ from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue
 from aos_solver.child.answers import ExportedBelief, Plan
 from aos_solver.child.engine import Engine
+from aos_solver.child.search import Search
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionSize
-from aos_solver.search import Search
 
 __all__ = ["FORMAT", "Policy", "PolicyHeader", "PolicySearch"]
 

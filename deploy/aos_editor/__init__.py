@@ -1,0 +1,1 @@
+"""Documents in an editor: the language server (findings, meanings, outline) and the TextMate grammar."""

@@ -1,0 +1,94 @@
+"""From documents and recorded missions to estimates, and the patch that they suggest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.bundle_files import files_of_bundle
+from aos_deploy.printing import from_here
+from aos_deploy.program import cache_dir
+from aos_lab.calibration.draws import Skipped, draws_of
+from aos_lab.calibration.estimation import DrawEstimate, estimate
+from aos_lab.calibration.lattice import Lattice, Layers, lattice_of
+from aos_lab.calibration.patch import patch_of
+from aos_lab.calibration.records import RecordedMission
+from aos_language.load import load_files
+from aos_protocol.errors import DocumentError
+from aos_solver.child.engine import Engine
+from aos_solver.mission.hot_plug import build_project
+
+__all__ = ["Calibration", "calibrate"]
+
+
+def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
+    """Where the records contradict what is no number to be estimated."""
+    for each in estimates:
+        excluded = [outcome for outcome in each.outcomes if outcome.is_excluded and not outcome.is_inside]
+        for outcome in excluded:
+            yield (
+                f"{each.draw.span}: the documents exclude {outcome.outcome}, and the records have it "
+                f"{outcome.count:.0f} times: a weight of 0 is changed by hand only"
+            )
+        if each.draw.is_initial and not each.is_inside and not excluded:
+            yield (
+                f"{each.draw.span}: this draw decides what there is at the start, and the records begin "
+                "otherwise: it is changed by hand only"
+            )
+
+
+class Calibration(msgspec.Struct, frozen=True):
+    """What came of it. `remarks` say which steps were not used, and `by_hand` what the patch leaves out."""
+
+    missions: int
+    steps: int
+    remarks: tuple[str, ...]
+    estimates: tuple[DrawEstimate, ...]
+    skipped: tuple[Skipped, ...]
+    patch: str
+    by_hand: tuple[str, ...]
+
+
+async def calibrate(
+    missions: Sequence[RecordedMission],
+    bundles: Sequence[Path],
+    *,
+    on_mission: Callable[[], None] = lambda: None,
+    on_sweep: Callable[[int, int], None] = lambda done, of: None,
+) -> Calibration:
+    """Estimates the numbers of all draws in the bundles' documents; DocumentError if they have errors."""
+    files: dict[str, bytes] = {}
+    paths: dict[str, str] = {}
+    for bundle in bundles:
+        found = files_of_bundle(bundle, ())
+        files |= found
+        paths |= {name: from_here(bundle.absolute() / name).as_posix().lstrip("/") for name in found}
+    loaded = load_files(files, name=", ".join(map(str, bundles)))
+    if loaded.project is None:
+        raise DocumentError(
+            "the documents have errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
+        )
+    draws = draws_of(loaded.project)
+    built = await build_project(draws.keeping, cache_dir(), lambda remark: None)
+    engine = await Engine.start(built, seed=1, keeps_belief=False)
+    try:
+        layers = Layers(engine, [draw.variable for draw in draws.draws])
+        lattices: list[Lattice] = []
+        for mission in missions:
+            lattices.append(await lattice_of(mission, layers))
+            on_mission()
+    finally:
+        await engine.close()
+    estimates = estimate(draws.draws, lattices, on_sweep)
+    patch, by_hand = patch_of((each for each in estimates if each.is_contradicted), files, paths)
+    return Calibration(
+        missions=len(missions),
+        steps=sum(lattice.steps for lattice in lattices),
+        remarks=tuple(lattice.remark for lattice in lattices if lattice.remark),
+        estimates=estimates,
+        skipped=draws.skipped,
+        patch=patch,
+        by_hand=(*by_hand, *_not_proposed(estimates)),
+    )

@@ -1,0 +1,134 @@
+"""Recorded missions: what was done, what came back, and the world's truth where somebody has recorded it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from aos_deploy.printing import from_here
+from aos_lab.trials.trial import Trial
+from aos_protocol.errors import DeployError
+from aos_protocol.messages import DecisionRecord
+from aos_runtime.journal import Journal
+
+__all__ = ["RecordedMission", "RecordedStep", "read_missions"]
+
+_TRUTHS = ("world.jsonl", "model.jsonl")
+
+
+class RecordedStep(msgspec.Struct, frozen=True):
+    """`truth` holds the values after the step, as text, of the state variables that are known."""
+
+    action: str
+    response: str
+    truth: tuple[tuple[str, str], ...] = ()
+    numbers: dict[str, Any] = {}
+
+
+class RecordedMission(msgspec.Struct, frozen=True):
+    """`ends_early` says why later steps cannot be used. `seed` is 0 where nobody knows it."""
+
+    name: str
+    steps: tuple[RecordedStep, ...]
+    ends_early: str = ""
+    seed: int = 0
+
+
+class _Kept(msgspec.Struct, frozen=True):
+    digest: str
+    trial: Trial
+
+
+def read_missions(path: Path) -> tuple[RecordedMission, ...]:
+    """Those of a run directory, of a file of missions that an experiment keeps, or of all below a folder.
+
+    DeployError AOS801 where there are none. A folder with both has its missions in its file.
+    """
+    missions = tuple(_missions(path))
+    if not missions:
+        raise DeployError(
+            f"{path} holds no recorded missions",
+            code="AOS801",
+            hint="Name a run directory, the runs' folder, or a folder of `aos experiment run`",
+        )
+    return missions
+
+
+def _missions(path: Path) -> Iterator[RecordedMission]:
+    if path.name == "missions.jsonl":
+        yield from _of_file(path)
+    elif (path / "missions.jsonl").is_file():
+        yield from _of_file(path / "missions.jsonl")
+    elif (path / "journal.db").is_file():
+        yield _of_run(path)
+    elif path.is_dir():
+        for below in sorted(each for each in path.iterdir() if each.is_dir() and not each.is_symlink()):
+            yield from _missions(below)
+
+
+def _of_file(path: Path) -> Iterator[RecordedMission]:
+    """The newest record of each seed."""
+    trials: dict[int, Trial] = {}
+    for line in path.read_bytes().splitlines():
+        try:
+            trial = msgspec.json.decode(line, type=_Kept).trial
+        except msgspec.MsgspecError:
+            continue
+        if not trial.fault:
+            trials[trial.seed] = trial
+    for seed, trial in sorted(trials.items()):
+        told: list[tuple[str, str, dict[str, Any]]] = [
+            (action, response, {}) for action, response in zip(trial.actions, trial.responses, strict=True)
+        ]
+        yield msgspec.structs.replace(
+            _mission(f"{from_here(path.parent)}, seed {seed}", told, trial.states), seed=seed
+        )
+
+
+def _of_run(run: Path) -> RecordedMission:
+    journal = Journal.read(run / "journal.db")
+    try:
+        rows = [msgspec.json.decode(row.payload, type=DecisionRecord) for row in journal.rows("decision")]
+    finally:
+        journal.close()
+    told: list[tuple[str, str, dict[str, Any]]] = []
+    for record in rows:
+        if record.outcome is not None:
+            is_seen = record.outcome.status == "observed"
+            told.append((record.action, record.outcome.response if is_seen else "", record.outcome.numbers))
+    lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
+    return _mission(str(from_here(run)), told, lines)
+
+
+def _mission(
+    name: str, told: Iterable[tuple[str, str, dict[str, Any]]], lines: Iterable[str]
+) -> RecordedMission:
+    truths = dict(_truths(lines))
+    steps: list[RecordedStep] = []
+    for number, (action, response, numbers) in enumerate(told, 1):
+        if not response:
+            return RecordedMission(name, tuple(steps), f"step {number} brought no observation")
+        steps.append(RecordedStep(action, response, truths.get(number, ()), numbers))
+    return RecordedMission(name, tuple(steps))
+
+
+def _truths(lines: Iterable[str]) -> Iterator[tuple[int, tuple[tuple[str, str], ...]]]:
+    """Each line by the number of its step: of a world, of a played model, or a state's text alone."""
+    for number, line in enumerate(lines, 1):
+        step, state = number, line
+        if line.startswith("{"):
+            record = json.loads(line)
+            step, state = record.get("step", number), record.get("state", {})
+        if isinstance(state, dict):
+            yield step, tuple((name, _text(value)) for name, value in state.items())
+        else:
+            pairs = (each.partition("=") for each in state.strip().split(", "))
+            yield step, tuple((name, value) for name, mark, value in pairs if mark)
+
+
+def _text(value: Any) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)

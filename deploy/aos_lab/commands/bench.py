@@ -1,0 +1,105 @@
+"""`aos bench`: the planner's figures on problems of the literature."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Annotated, get_args
+
+import typer
+
+from aos_deploy.printing import print_json
+from aos_deploy.program import cache_dir
+from aos_deploy.terminal import progress
+from aos_lab.bench.problems import problem_names, problems_named
+from aos_lab.bench.suite import METRICS, Effort, Suite
+from aos_lab.bench.view import markdown, print_report
+from aos_solver.child.engine import Planner
+
+__all__ = ["register"]
+
+PLANNERS: tuple[Planner, ...] = get_args(Planner)
+
+_QUICK_RUNS = 4
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos bench tiger rocksample-7-8 --quick")(bench)
+
+
+def bench(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[NAME]...",
+            help=f"Of {', '.join(problem_names())}, or a bundle's folder; all the named if left out",
+        ),
+    ] = None,
+    metric: Annotated[
+        list[str] | None, typer.Option(help=f"Of {', '.join(METRICS)}, repeatable; else all")
+    ] = None,
+    runs: Annotated[
+        int | None, typer.Option(min=1, help="Missions for a return; else 50 to 200, as the problem needs")
+    ] = None,
+    time_s: Annotated[float, typer.Option("--time", min=0.001, help="Processor seconds of a decision")] = 0.1,
+    planner: Annotated[
+        list[str] | None, typer.Option(help=f"Of {', '.join(PLANNERS)}, repeatable; else auto")
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Of every random draw")] = 1,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Short measurements, and 4 missions a return")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+    as_markdown: Annotated[bool, typer.Option("--markdown", help="Print a table for a page")] = False,
+) -> None:
+    """Measure sampling, search and returns.
+
+    Against hand-written C++, and against pomdp-py if it is installed. All of it
+    takes an hour, with --quick some minutes.
+    """
+    problems = problems_named(_bundles_or_known(names or []))
+    effort = Effort(
+        metrics=tuple(_known(metric or [], METRICS, "--metric")) or METRICS,
+        repetitions=2 if quick else 5,
+        seconds=0.2 if quick else 1.0,
+        peer_simulations=500 if quick else 4_000,
+        runs=runs or (_QUICK_RUNS if quick else None),
+        budget_s=time_s,
+        planners=_planners(planner or ["auto"]),
+        jobs=jobs,
+        seed=seed,
+    )
+    with progress() as bar:
+        task = bar.add_task("starting")
+
+        def on_step(what: str) -> None:
+            bar.update(task, description=what, advance=1)
+
+        suite = Suite(problems, effort, cache_dir(), on_step)
+        bar.update(task, total=suite.steps)
+        report = asyncio.run(suite.run())
+    if as_json:
+        print_json(report)
+    elif as_markdown:
+        typer.echo(markdown(report))
+    else:
+        print_report(report)
+
+
+def _bundles_or_known(names: list[str]) -> list[str]:
+    _known([name for name in names if not Path(name).is_dir()], problem_names(), "NAME")
+    return names
+
+
+def _planners(names: list[str]) -> tuple[Planner, ...]:
+    _known(names, PLANNERS, "--planner")
+    return tuple(planner for planner in PLANNERS if planner in names)
+
+
+def _known(given: list[str], known: list[str] | tuple[str, ...], hint: str) -> list[str]:
+    for name in given:
+        if name not in known:
+            raise typer.BadParameter(f"{name} is none of {', '.join(known)}", param_hint=hint)
+    return given

@@ -1,0 +1,127 @@
+"""`aos calibrate`: the probabilities of documents, beside what recorded missions say of them."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich import box
+from rich.table import Table
+
+from aos_deploy.options import AsJson
+from aos_deploy.printing import count, print_json
+from aos_deploy.terminal import console, progress
+
+if TYPE_CHECKING:
+    from aos_lab.calibration.calibrate import Calibration
+    from aos_lab.calibration.estimation import DrawEstimate
+
+__all__ = ["register"]
+
+SHOWN_REMARKS = 5
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(
+        epilog="Example: aos calibrate runs deploy/bundles/armadillo-finer "
+        "--also deploy/bundles/armadillo-retract --write changes.patch"
+    )(calibrate)
+
+
+def calibrate(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN...", exists=True, help="Run directories, or folders of recorded missions"
+        ),
+    ],
+    bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", exists=True, help="The documents")],
+    also: Annotated[
+        list[Path] | None, typer.Option(metavar="BUNDLE", exists=True, help="More documents; repeatable")
+    ] = None,
+    write: Annotated[
+        Path | None, typer.Option(metavar="PATCH", help="Write the proposed changes here", dir_okay=False)
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Estimate the probabilities in documents from recorded missions.
+
+    Prints each with a 95 % interval beside the document's number. Numbers
+    that the records do not allow make a patch, which is never applied here.
+    """
+    # Numbers take a tenth of a second to import.
+    from aos_lab.calibration.calibrate import calibrate as calibrate_bundles
+    from aos_lab.calibration.records import read_missions
+
+    missions = [mission for path in runs for mission in read_missions(path)]
+    with progress() as bar:
+        reading = bar.add_task("missions", total=len(missions))
+        drawing = bar.add_task("what they leave open", total=None, visible=False)
+        result = asyncio.run(
+            calibrate_bundles(
+                missions,
+                [bundle, *(also or ())],
+                on_mission=lambda: bar.advance(reading),
+                on_sweep=lambda done, of: bar.update(drawing, completed=done, total=of, visible=True),
+            )
+        )
+    if write is not None:
+        write.write_text(result.patch, encoding="utf-8")
+    if as_json:
+        print_json(result)
+        return
+    _print(result)
+    if write is not None and result.patch:
+        typer.echo(f"the patch is in {write}; apply it with `git apply {write}`")
+
+
+def _print(result: Calibration) -> None:
+    typer.echo(f"{count(result.missions, 'mission')}, {count(result.steps, 'step')}")
+    table = Table(box=box.SIMPLE, pad_edge=False)
+    for name in ("place", "outcome", "count", "records", "document", ""):
+        is_text = name in ("place", "outcome", "")
+        table.add_column(name, justify="left" if is_text else "right", no_wrap=True)
+    for estimate in result.estimates:
+        for number, outcome in enumerate(estimate.outcomes):
+            span = estimate.draw.span
+            place = f"{span.file}:{span.line}" if number == 0 else ""
+            interval = outcome.probability
+            table.add_row(
+                place,
+                outcome.outcome,
+                f"{outcome.count:.{0 if estimate.is_counted else 1}f} of {estimate.count:.0f}",
+                f"{interval.value:.3f} [{interval.low:.3f}, {interval.high:.3f}]" if estimate.count else "",
+                f"{outcome.document:.3f}",
+                _verdict(estimate, number, result.missions),
+            )
+        table.add_section()
+    console(is_wide=True).print(table)
+    for skipped in result.skipped:
+        typer.echo(f"{skipped.span}: not estimated: {skipped.why}")
+    for remark in result.remarks[:SHOWN_REMARKS]:
+        typer.echo(f"not used to its end: {remark}")
+    if len(result.remarks) > SHOWN_REMARKS:
+        typer.echo(f"and {len(result.remarks) - SHOWN_REMARKS} more; --json tells them all")
+    for line in result.by_hand:
+        typer.echo(line)
+    typer.echo(result.patch.rstrip() or "no number is one that the records do not allow")
+
+
+def _verdict(estimate: DrawEstimate, number: int, missions: int) -> str:
+    if not estimate.count:
+        return "no record" if number == 0 else ""
+    if not estimate.outcomes[number].is_inside:
+        return "OUTSIDE"
+    return "inside" if number or not estimate.is_inside else f"inside; {_to_tell(estimate, missions)}"
+
+
+def _to_tell(estimate: DrawEstimate, missions: int) -> str:
+    """What the records are too few for, in missions that come to this draw as often as these."""
+    missing = estimate.records_to_tell - estimate.count
+    if missing <= 0:
+        return "enough records"
+    return f"to tell otherwise: about {count(math.ceil(missing * missions / estimate.count), 'more mission')}"

@@ -1,0 +1,106 @@
+"""`aos gym`: a bundle as an environment for learning programs."""
+
+from __future__ import annotations
+
+import importlib.util
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import msgspec
+import typer
+
+from aos_deploy.printing import print_json
+from aos_deploy.terminal import progress
+from aos_protocol.errors import DeployError
+from aos_runtime.distribution import pip_install
+
+if TYPE_CHECKING:
+    from aos_lab.gym import AosVectorEnv
+
+__all__ = ["register"]
+
+_SNIPPET = """\
+from aos_lab.gym import AosVectorEnv
+
+worlds = AosVectorEnv({bundle!r}, num_envs=64, max_episode_steps=100)
+observations, _ = worlds.reset(seed=1)
+for _ in range(1000):
+    actions = worlds.action_space.sample()
+    observations, rewards, terminated, truncated, _ = worlds.step(actions)
+worlds.close()
+"""
+
+
+class Spaces(msgspec.Struct):
+    """What `aos gym --json` prints. `steps_per_second` is of all worlds together, None if not measured."""
+
+    action_space: str
+    actions: tuple[str, ...]
+    observation_space: str
+    responses: tuple[str, ...]
+    discount: float
+    worlds: int
+    steps_per_second: float | None
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos gym deploy/bundles/bench/tiger --steps 1000000")(gym)
+
+
+def gym(
+    bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", help="A directory of documents")],
+    steps: Annotated[int, typer.Option(min=0, help="Measure with so many random steps")] = 0,
+    worlds: Annotated[int, typer.Option(min=1, help="Worlds side by side")] = 1024,
+    seed: Annotated[int, typer.Option(min=0, help="Of the worlds and the actions")] = 1,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+) -> None:
+    """Describe a bundle as a Gymnasium environment.
+
+    Prints its spaces and a program to start from.
+    """
+    if importlib.util.find_spec("gymnasium") is None:
+        raise DeployError("gymnasium is not installed", code="AOS805", hint=f"Run {pip_install('gym')}")
+    from aos_lab.gym import AosVectorEnv
+
+    environment = AosVectorEnv(bundle, worlds)
+    try:
+        rate = _rate(environment, steps, seed) if steps else None
+        spaces = Spaces(
+            str(environment.single_action_space),
+            environment.action_names,
+            str(environment.single_observation_space),
+            environment.response_names,
+            environment.discount,
+            worlds,
+            rate,
+        )
+    finally:
+        environment.close()
+    if as_json:
+        print_json(spaces)
+    else:
+        _print(spaces, bundle)
+
+
+def _rate(environment: AosVectorEnv, steps: int, seed: int) -> float:
+    """Steps of all worlds in a second, with actions drawn beforehand."""
+    environment.reset(seed=seed)
+    environment.action_space.seed(seed)
+    actions = environment.action_space.sample()
+    rounds = -(-steps // environment.num_envs)
+    start_s = time.monotonic()
+    with progress() as bar:
+        for _ in bar.track(range(rounds), description="steps", update_period=0.2):
+            environment.step(actions)
+    return rounds * environment.num_envs / (time.monotonic() - start_s)
+
+
+def _print(spaces: Spaces, bundle: Path) -> None:
+    typer.echo(f"actions       {spaces.action_space}: {', '.join(spaces.actions)}")
+    typer.echo(f"observations  {spaces.observation_space}: {', '.join(spaces.responses)}")
+    typer.echo(f"discount      {spaces.discount:g}")
+    if spaces.steps_per_second is not None:
+        typer.echo(f"rate          {spaces.steps_per_second:,.0f} steps/s in {spaces.worlds:,} worlds")
+    typer.echo(f"\n{_SNIPPET.format(bundle=str(bundle))}", nl=False)

@@ -1,0 +1,304 @@
+"""`aos solve`: a policy for a bundle or a problem file, worked out before the mission."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import math
+import shutil
+import signal
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.progress import BarColumn, TextColumn
+
+from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.printing import count, print_json
+from aos_deploy.program import cache_dir
+from aos_deploy.terminal import progress, waiting
+from aos_lab.formats.graph_writers import c_header, graphviz, write_text
+from aos_lab.formats.policy_graph import PolicyGraph, policy_graph
+from aos_lab.formats.problem_files import PROBLEM_ENDINGS, read_problem
+from aos_lab.formats.problem_writers import WRITERS, write_problem
+from aos_protocol.errors import DeployError, PlanningError
+from aos_solver.child.answers import Listed
+from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
+from aos_solver.offline.explicit_model import ExplicitModel, ModelSize
+from aos_solver.offline.policy import Policy, PolicyHeader
+from aos_solver.offline.solving import Bounds, Solution, SolvingLimits
+from aos_solver.offline.solving import solve as solve_model
+from aos_solver.offline.stopping import with_stopping
+
+__all__ = ["register"]
+
+_TOLD_NAMES = 12
+_GRAPH_ENDINGS = (".dot", ".svg")
+_MEANINGS = {
+    "precision": "the bounds are as near as asked for",
+    "settled": "the bounds come no nearer",
+    "time": "the time is used up",
+    "memory": "the memory is used up",
+    "stopped": "stopped",
+}
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos solve deploy/bundles/armadillo-finer --out armadillo.policy")(solve)
+
+
+class _Target(msgspec.Struct, frozen=True):
+    """What is solved: `digest` is of the compiled model or the file, `states` are the texts of its states,
+    which are not told apart by what is `left_out`."""
+
+    model: ExplicitModel
+    digest: str
+    states: tuple[str, ...]
+    left_out: tuple[str, ...] = ()
+
+
+class Report(msgspec.Struct):
+    """What `aos solve --json` prints.
+
+    States are not told apart by the variables `left_out`. `history` is every progress; `graph_value` is what
+    the graph gives.
+    """
+
+    model: str
+    size: ModelSize
+    left_out: tuple[str, ...]
+    discount: float
+    lower: float
+    upper: float
+    seconds: float
+    ending: str
+    vectors: int
+    history: tuple[Bounds, ...]
+    graph_nodes: int | None
+    graph_value: float | None
+    written: list[str]
+
+
+def solve(
+    target: Annotated[Path, typer.Argument(metavar="TARGET", help="A bundle, or a .pomdpx or .pomdp file")],
+    time_s: Annotated[float, typer.Option("--time", min=0.001, help="Seconds of computing at most")] = 60.0,
+    precision: Annotated[float, typer.Option(min=0, help="Enough when the bounds are so near")] = 1e-3,
+    discount: Annotated[
+        float | None, typer.Option(min=0, max=1, help="Instead of the documents' own discount")
+    ] = None,
+    stop_value: Annotated[
+        float | None,
+        typer.Option(help="To end the mission is worth so much, at any time"),
+    ] = None,
+    states: Annotated[int, typer.Option(min=1, help="Give up beyond so many states")] = MAX_STATES,
+    out: Annotated[Path | None, typer.Option(help="Save the policy, for aos-up, plan and simulate")] = None,
+    export: Annotated[
+        list[Path] | None, typer.Option(help="Write the model as .pomdpx or .pomdp; may be repeated")
+    ] = None,
+    graph: Annotated[Path | None, typer.Option(help="Draw the policy: .dot, or .svg by Graphviz")] = None,
+    header: Annotated[
+        Path | None, typer.Option("--c-header", help="Write the policy as C that needs nothing else")
+    ] = None,
+    nodes: Annotated[int, typer.Option(min=1, max=50_000, help="Size of the drawing and of the C")] = 200,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
+) -> None:
+    """Work out a policy before the mission, with proven bounds of what it gives.
+
+    Every state that can be reached is enumerated and solved with SARSOP. Ctrl-C ends it early and keeps the
+    best so far. Values are discounted and without a horizon.
+    """
+    _check_names(export or [], graph)
+    if target.suffix in PROBLEM_ENDINGS and not target.is_dir():
+        found = _problem(target, states, discount)
+    else:
+        found = asyncio.run(_enumerated(target, states, discount))
+    if stop_value is not None:
+        found = msgspec.structs.replace(found, model=with_stopping(found.model, stop_value))
+    limits = SolvingLimits(precision=precision, cpu_s=time_s)
+    written: list[str] = []
+    for path in export or []:
+        write_problem(found.model, path)
+        written.append(str(path))
+    if not as_json:
+        _print_size(found)
+    solution = asyncio.run(_solve(found.model, limits, _ignore if as_json else _print_bounds))
+    if out is not None:
+        _policy(found, solution, stop_value).save(out)
+        written.append(str(out))
+    drawn = policy_graph(found.model, solution.vectors, max_nodes=nodes) if graph or header else None
+    if drawn is not None:
+        written += _write_graph(drawn, graph, header)
+    if as_json:
+        print_json(_report(found, solution, drawn, written))
+    else:
+        _print_end(solution, drawn, written)
+
+
+def _check_names(exports: list[Path], graph: Path | None) -> None:
+    """Told before the work begins."""
+    for path in exports:
+        if path.suffix not in WRITERS:
+            raise typer.BadParameter(f"{path} needs to end in {' or '.join(WRITERS)}", param_hint="--export")
+    if graph is not None and graph.suffix not in _GRAPH_ENDINGS:
+        endings = " or ".join(_GRAPH_ENDINGS)
+        raise typer.BadParameter(f"{graph} needs to end in {endings}", param_hint="--graph")
+    if graph is not None and graph.suffix == ".svg" and shutil.which("dot") is None:
+        raise DeployError(
+            "drawing an .svg needs Graphviz",
+            code="AOS805",
+            hint="Install it (apt install graphviz), or write a .dot file",
+        )
+
+
+def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
+    with _progress("states") as on_progress:
+        model = read_problem(
+            path, max_states=max_states, on_progress=lambda known: on_progress(Listed(known, known))
+        )
+    if discount is not None:
+        model = msgspec.structs.replace(model, discount=discount)
+    return _Target(model, hashlib.sha256(path.read_bytes()).hexdigest(), model.states)
+
+
+async def _enumerated(bundle: Path, max_states: int, discount: float | None) -> _Target:
+    async with engine_of_bundle(bundle, seed=1) as engine:
+        with _progress("states") as on_progress:
+            found = await enumerate_model(
+                engine, max_states=max_states, discount=discount, on_progress=on_progress
+            )
+        return _Target(found.model, engine.model_digest, found.state_texts, found.left_out)
+
+
+async def _solve(
+    model: ExplicitModel, limits: SolvingLimits, on_progress: Callable[[Bounds], None]
+) -> Solution:
+    """Solves until a limit or Ctrl-C. Shows that it works until there are bounds to tell."""
+    stop = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    loop.add_signal_handler(signal.SIGINT, stop.set)
+    with ExitStack() as until_bounds:
+        until_bounds.enter_context(waiting("computing first bounds"))
+
+        def told(bounds: Bounds) -> None:
+            until_bounds.close()
+            on_progress(bounds)
+
+        try:
+            return await solve_model(model, limits, cache_dir=cache_dir(), on_progress=told, stop=stop)
+        finally:
+            loop.remove_signal_handler(signal.SIGINT)
+
+
+def _policy(target: _Target, solution: Solution, stop_value: float | None) -> Policy:
+    header = PolicyHeader(
+        model=target.model.name,
+        model_digest=target.digest,
+        discount=target.model.discount,
+        lower=solution.bounds.lower,
+        upper=solution.bounds.upper,
+        stop_value=stop_value,
+        actions=target.model.actions,
+        states=target.states,
+    )
+    return Policy(header, solution.vectors)
+
+
+def _write_graph(drawn: PolicyGraph, graph: Path | None, header: Path | None) -> list[str]:
+    """The files that were written."""
+    written = []
+    if graph is not None:
+        text = graphviz(drawn)
+        if graph.suffix == ".svg":
+            done = subprocess.run(["dot", "-Tsvg"], input=text, capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                raise PlanningError(f"Graphviz could not draw {graph}: {done.stderr.strip()}", code="AOS101")
+            text = done.stdout
+        write_text(graph, text)
+        written.append(str(graph))
+    if header is not None:
+        write_text(header, c_header(drawn, header.stem))
+        written.append(str(header))
+    return written
+
+
+# --- what is told ------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _progress(what: str) -> Iterator[Callable[[Listed], None]]:
+    """A bar on stderr of how much of what is known is done with; it goes away in the end."""
+    extent = TextColumn("{task.completed:,} of {task.total:,}")
+    columns = (TextColumn("{task.description}"), BarColumn(), extent)
+    with progress(*columns) as bar:
+        task = bar.add_task(what, total=1)
+        yield lambda found: bar.update(task, completed=found.listed, total=found.known)
+
+
+def _ignore(_: Bounds) -> None:
+    return
+
+
+def _print_size(target: _Target) -> None:
+    model, size = target.model, target.model.size
+    spaces = f"{count(size.states, 'state')}, {count(size.actions, 'action')}"
+    sensing = count(size.observations, "observation")
+    typer.echo(f"{model.name}: {spaces}, {sensing}, discount {model.discount:g}")
+    _print_left_out(target.left_out)
+    typer.echo(f"{'seconds':>9} {'at least':>12} {'at most':>12} {'gap':>10} {'vectors':>9}")
+
+
+def _print_left_out(names: tuple[str, ...]) -> None:
+    if names:
+        more = f" and {len(names) - _TOLD_NAMES} more" if len(names) > _TOLD_NAMES else ""
+        told = f"{', '.join(names[:_TOLD_NAMES])}{more}"
+        typer.echo(f"left out, as they change neither what is earned nor what is observed: {told}")
+
+
+def _outwards(bounds: Bounds) -> tuple[float, float]:
+    """Both bounds so that they hold with four decimals as well."""
+    return math.floor(bounds.lower * 10_000) / 10_000, math.ceil(bounds.upper * 10_000) / 10_000
+
+
+def _print_bounds(bounds: Bounds) -> None:
+    if not bounds.ending:
+        lower, upper = _outwards(bounds)
+        values = f"{lower:12.4f} {upper:12.4f} {bounds.gap:10.4f}"
+        typer.echo(f"{bounds.seconds:9.2f} {values} {bounds.vectors:9,}")
+
+
+def _print_end(solution: Solution, drawn: PolicyGraph | None, written: list[str]) -> None:
+    bounds = solution.bounds
+    lower, upper = _outwards(bounds)
+    typer.echo(
+        f"the policy gives at least {lower:.4f} from the start, and none more than {upper:.4f} "
+        f"({_MEANINGS[bounds.ending]}, {bounds.seconds:.2f} s)"
+    )
+    if drawn is not None:
+        extent = "" if drawn.is_whole else "; likelier beliefs have nodes of their own, --nodes adds more"
+        typer.echo(f"as a graph of {count(len(drawn.nodes), 'node')} it gives {drawn.value:.4f}{extent}")
+    for path in written:
+        typer.echo(f"wrote {path}")
+
+
+def _report(target: _Target, solution: Solution, drawn: PolicyGraph | None, written: list[str]) -> Report:
+    bounds = solution.bounds
+    return Report(
+        model=target.model.name,
+        size=target.model.size,
+        left_out=target.left_out,
+        discount=target.model.discount,
+        lower=bounds.lower,
+        upper=bounds.upper,
+        seconds=bounds.seconds,
+        ending=bounds.ending,
+        vectors=bounds.vectors,
+        history=solution.history,
+        graph_nodes=len(drawn.nodes) if drawn is not None else None,
+        graph_value=drawn.value if drawn is not None else None,
+        written=written,
+    )

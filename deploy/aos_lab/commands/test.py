@@ -1,0 +1,95 @@
+"""`aos test`: missions of users, with what they claim of them, for their continuous integration."""
+
+from __future__ import annotations
+
+import asyncio
+import tempfile
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from aos_deploy.exit_codes import ExitCode
+from aos_deploy.options import AsJson
+from aos_deploy.printing import print_json
+from aos_deploy.terminal import progress
+
+__all__ = ["register"]
+
+SHOWN_MISSIONS = 3
+"""Of those where a claim did not hold; all are in the JUnit file and in the JSON."""
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(
+        name="test",
+        epilog="Example: aos test missions.yaml --junit report.xml. "
+        "Exit codes: 0 all claims hold, 4 one does not, 1 the file or documents have errors.",
+    )(run_tests)
+
+
+def run_tests(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The file of mission tests")],
+    jobs: Annotated[int, typer.Option(min=1, help="Missions at a time")] = 1,
+    seeds: Annotated[int | None, typer.Option(min=1, help="Missions of each test, not the file's")] = None,
+    junit: Annotated[
+        Path | None, typer.Option(metavar="XML", help="Write a JUnit file", dir_okay=False)
+    ] = None,
+    keep: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Keep records and runs here, and use those that are there"),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run missions and check what is claimed of them.
+
+    A test names a deploy file, seeds and claims: the first action, an order of
+    actions, what never happens, the probability of the goal. The documents'
+    own model plays the skills, or the whole system with its adapters.
+    """
+    from aos_lab.trials.campaign import play_campaign
+    from aos_lab.trials.claims import asking_the_world, judge
+    from aos_lab.trials.files import read_test_file
+    from aos_lab.trials.junit import Tested, failed_missions, verdict_text, write_junit
+
+    tests = read_test_file(file).tests
+    tested: dict[str, Tested] = {}
+    with tempfile.TemporaryDirectory() as passing, progress() as bar:
+        out = (keep or Path(passing)).resolve()
+        for name, test in tests.items():
+            numbers = range(test.first_seed, test.first_seed + (seeds or test.seeds))
+            task = bar.add_task(name, total=len(numbers))
+            played = asyncio.run(
+                play_campaign(
+                    test,
+                    numbers,
+                    folder=file.resolve().parent,
+                    out=out / name,
+                    jobs=jobs,
+                    on_trial=partial(bar.advance, task),
+                )
+            )
+            by = "model" if test.by == "model" else "system"
+            verdicts = tuple(
+                judge(asking_the_world(claim, by, test.truth), played.trials, by)
+                for claim in test.claims
+                if claim.only in (None, by)
+            )
+            passed = all(verdict.is_seen for verdict in verdicts)
+            tested[name] = Tested(verdicts=verdicts, trials=played.trials, passed=passed)
+    if junit is not None:
+        write_junit(junit, tested)
+    if as_json:
+        print_json(tested)
+    else:
+        for name, test_result in tested.items():
+            for verdict in test_result.verdicts:
+                word = "ok    " if verdict.is_seen else "FAILED"
+                print(f"{word} {name}: {verdict.says}: {verdict_text(verdict)}")
+                missions = failed_missions(verdict, test_result.trials) if not verdict.is_seen else []
+                for line in missions[:SHOWN_MISSIONS]:
+                    print(f"         {line}")
+    if not all(each.passed for each in tested.values()):
+        raise typer.Exit(ExitCode.MISSION_FAILED)

@@ -1,0 +1,41 @@
+"""What missions in a simulated world have left besides actions: how fast they were, and pictures."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from aos_lab.trials.trial import Trial
+
+__all__ = ["keep_picture", "simulated_speed"]
+
+
+def simulated_speed(trials: Sequence[Trial]) -> float | None:
+    """Simulated seconds for each second of processor time, pictures included; None where nobody counted."""
+    simulated = used = 0.0
+    for trial in trials:
+        lines = list(_lines(trial))
+        if lines and all("processor_s" in line for line in lines):
+            simulated += lines[-1]["time_s"]
+            used += sum(line["processor_s"] for line in lines)
+    return simulated / used if used else None
+
+
+def keep_picture(runs: Path, seeds: Sequence[int], target: Path) -> Path | None:
+    """A copy of what the first mission with pictures looked like at its end; None where there are none."""
+    for seed in seeds:
+        pictures = sorted(runs.glob(f"seed-{seed}/*/pictures/*.png"))
+        if pictures:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            return Path(shutil.copy(pictures[-1], target))
+    return None
+
+
+def _lines(trial: Trial) -> Iterator[dict[str, Any]]:
+    """The lines of a world's record, of which the model's states are none."""
+    for state in trial.states:
+        if state.startswith("{"):
+            yield json.loads(state)

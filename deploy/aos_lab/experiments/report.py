@@ -1,0 +1,163 @@
+"""The report of an experiment: Markdown for pages and repositories, and one HTML file to send to others."""
+
+from __future__ import annotations
+
+import html
+from base64 import b64encode
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from aos_lab.experiments.markdown import head, row, shown, tally
+from aos_lab.experiments.markdown import page as page_of
+from aos_lab.experiments.results import PartResult, Results
+
+__all__ = ["markdown_report", "write_report"]
+
+_SHOWN_SEEDS = 20
+
+
+def write_report(results: Results, plots: Mapping[str, Path], folder: Path) -> tuple[Path, Path]:
+    """`report.md`, with links to the pictures, and `report.html`, which holds them."""
+    page, whole = folder / "report.md", folder / "report.html"
+    page.write_text(markdown_report(results, {t: str(p.relative_to(folder)) for t, p in plots.items()}))
+    pictures = "".join(f"<h3>{html.escape(title)}</h3>{_svg(path)}" for title, path in plots.items())
+    for part in results.parts:
+        if part.picture:
+            pictures += f"<h3>{html.escape(part.name)}</h3>{_embedded(folder / part.picture)}"
+    whole.write_text(page_of(results.title, markdown_report(results, {}), pictures))
+    return page, whole
+
+
+def _embedded(path: Path) -> str:
+    return f'<img alt="the world" src="data:image/png;base64,{b64encode(path.read_bytes()).decode()}">'
+
+
+def _svg(path: Path) -> str:
+    """The drawing alone, without the lines that only a file of its own has."""
+    text = path.read_text()
+    return text[text.index("<svg") :]
+
+
+def markdown_report(results: Results, pictures: Mapping[str, str]) -> str:
+    """The report; `pictures` are files by their titles."""
+    around = results.surroundings
+    lines = [f"# {results.title}", ""]
+    if results.about:
+        lines += [results.about.strip(), ""]
+    lines += [around.text(results.command), ""]
+    lines += ["## Claims", "", *_claims(results), "", "## Figures", "", *_figures(results), ""]
+    lines += ["Steps of a mission, and how missions ended and began:", "", *_doings(results), ""]
+    if any(part.regret for part in results.parts):
+        lines += ["## Beside the optimum", "", _REGRET, "", *_regrets(results), ""]
+    lines += ["Values in brackets are the ends of 95 % intervals.", ""]
+    lines += [line for title, file in pictures.items() for line in (f"![{title}]({file})", "")]
+    for part in results.parts if pictures else ():
+        if part.picture:
+            lines += [f"![{part.name}: the world at the end of a mission]({part.picture})", ""]
+    lines += ["## What was run", "", *_parts(results), ""]
+    return "\n".join(lines)
+
+
+def _claims(results: Results) -> Iterator[str]:
+    yield from head("part", "played by", "claim", "", "missions", "share", "wanted", "not in seeds")
+    for part in results.parts:
+        for verdict in part.verdicts:
+            yield row(
+                part.name,
+                part.by,
+                verdict.says,
+                verdict.word if verdict.is_seen else f"**{verdict.word}**",
+                f"{verdict.held} of {verdict.missions}",
+                shown(verdict.share),
+                f"{verdict.wanted:.2f}",
+                _first_of(verdict.failed_seeds),
+            )
+
+
+_REGRET = (
+    "The optimum is the best that a mission can bring on average, between SARSOP's proven bounds: the value "
+    "of the initial belief, discounted, without a limit of steps. Where the deploy file has a "
+    "`stop_below_value`, the robot may stop at any time, and stopping is worth that much; it is counted in "
+    "the returns here, too, of missions that stopped. What is missing to the optimum is a share of the "
+    "range, the difference between the largest and the smallest of these returns. Below 0 the missions "
+    "brought more, by chance or because they end where the belief is sure enough."
+)
+
+
+def _regrets(results: Results) -> Iterator[str]:
+    yield from head(
+        "part",
+        "missions",
+        "return, with what stopping is worth",
+        "stopping is worth",
+        "optimum",
+        "range",
+        "missing, as a share of the range",
+    )
+    for part in results.parts:
+        if (regret := part.regret) is not None:
+            optimum = regret.optimum
+            yield row(
+                part.name,
+                str(part.figures.missions),
+                shown(regret.value),
+                "" if optimum.stop_value is None else f"{optimum.stop_value:g}",
+                f"{optimum.lower:.3f} to {optimum.upper:.3f}",
+                f"{regret.scale:.2f}",
+                shown(regret.share, 3),
+            )
+
+
+def _first_of(seeds: tuple[int, ...]) -> str:
+    """The first ones; report.json has all."""
+    listed = ", ".join(map(str, seeds[:_SHOWN_SEEDS]))
+    return f"{listed} and {len(seeds) - _SHOWN_SEEDS} more" if len(seeds) > _SHOWN_SEEDS else listed
+
+
+def _figures(results: Results) -> Iterator[str]:
+    goal, in_world, speed = "goal reached", "reached in the world", "simulated seconds a second"
+    yield from head("part", "played by", "missions", goal, in_world, "return", "steps", speed)
+    for part in results.parts:
+        figures = part.figures
+        yield row(
+            part.name,
+            part.by,
+            str(figures.missions) + (f" ({figures.broken} broke)" if figures.broken else ""),
+            shown(figures.goal),
+            shown(figures.world_goal),
+            shown(figures.value),
+            shown(figures.steps),
+            f"{figures.speed:.1f}" if figures.speed is not None else "",
+        )
+
+
+def _doings(results: Results) -> Iterator[str]:
+    """A table of its own, so that none is wider than a page."""
+    counted = sorted({name for part in results.parts for name in part.figures.counts})
+    yield from head("part", "played by", *counted, "endings", "first")
+    for part in results.parts:
+        figures = part.figures
+        yield row(
+            part.name,
+            part.by,
+            *(shown(figures.counts.get(name)) for name in counted),
+            tally(figures.endings),
+            tally(figures.first_actions),
+        )
+
+
+def _parts(results: Results) -> Iterator[str]:
+    yield from head(
+        "part", "played by", "deploy file", "bundles", "seeds", "digest of documents and settings"
+    )
+    for part in results.parts:
+        yield row(part.name, part.by, part.deploy, ", ".join(part.bundles), _seeds(part), part.digest)
+    for part in results.parts:
+        for seed, fault in part.broken.items():
+            yield f"\n{part.name}, {part.by}, seed {seed} broke: {fault}"
+
+
+def _seeds(part: PartResult) -> str:
+    seeds = part.seeds
+    is_range = len(seeds) > 1 and list(seeds) == list(range(seeds[0], seeds[0] + len(seeds)))
+    return f"{seeds[0]} to {seeds[-1]}" if is_range else ", ".join(map(str, seeds))

@@ -1,0 +1,169 @@
+"""What came of an experiment: figures with intervals and verdicts of each part, and what it was run with."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+from collections import Counter
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import msgspec
+
+from aos_lab.experiments.optimum import Regret
+from aos_lab.experiments.physics import simulated_speed
+from aos_lab.trials.campaign import Played
+from aos_lab.trials.claims import Verdict, asking_the_world, judge, matches
+from aos_lab.trials.files import Experiment, Part
+from aos_lab.trials.intervals import Interval, interval_of_mean, interval_of_share
+from aos_lab.trials.trial import Trial
+from aos_protocol import __version__
+
+__all__ = ["Figures", "PartResult", "Results", "Surroundings", "figures_of", "result_of", "surroundings"]
+
+_PACKAGES = ("eclipse-zenoh", "pybullet", "numpy")
+
+
+class Figures(msgspec.Struct, frozen=True, kw_only=True):
+    """Of the missions of one part. `value` is the discounted return, which only a model can count.
+
+    `counts` are the means of the experiment's counted steps. `world_goal` is the share of missions that have
+    reached the goal in the simulated world, whatever the belief. `speed` is how many seconds are simulated in
+    one of the processor.
+    """
+
+    missions: int
+    broken: int
+    goal: Interval
+    steps: Interval | None
+    value: Interval | None
+    counts: dict[str, Interval | None]
+    endings: dict[str, int]
+    first_actions: dict[str, int]
+    world_goal: Interval | None = None
+    speed: float | None = None
+
+
+class PartResult(msgspec.Struct, frozen=True, kw_only=True):
+    """One part as one of the two played it; `by` is `model` or `system`."""
+
+    name: str
+    by: str
+    deploy: str
+    bundles: tuple[str, ...]
+    digest: str
+    seeds: tuple[int, ...]
+    figures: Figures
+    verdicts: tuple[Verdict, ...]
+    broken: dict[str, str]
+    regret: Regret | None = None
+    picture: str = ""
+
+
+class Surroundings(msgspec.Struct, frozen=True, kw_only=True):
+    """Where and when it was run."""
+
+    date: str
+    machine: str
+    versions: dict[str, str]
+    commit: str = ""
+
+    def text(self, command: str) -> str:
+        """The line under a report's title."""
+        versions = ", ".join(f"{name} {version}" for name, version in self.versions.items())
+        commit = f", commit {self.commit}" if self.commit else ""
+        return f"`{command}`, {self.date}, {self.machine}; {versions}{commit}."
+
+
+class Results(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that a report shows."""
+
+    name: str
+    title: str
+    about: str
+    command: str
+    surroundings: Surroundings
+    parts: tuple[PartResult, ...]
+
+
+def result_of(name: str, part: Part, by: str, played: Played, experiment: Experiment) -> PartResult:
+    """A part's figures and verdicts."""
+    truth = part.truth or experiment.truth
+    claims = [asking_the_world(claim, by, truth) for claim in part.claims if claim.only in (None, by)]
+    return PartResult(
+        name=name,
+        by=by,
+        deploy=part.deploy,
+        bundles=part.bundles,
+        digest=played.digest,
+        seeds=tuple(trial.seed for trial in played.trials),
+        figures=figures_of(played.trials, experiment.counts, truth if by == "system" else ""),
+        verdicts=tuple(judge(claim, played.trials, by) for claim in claims),
+        broken={str(trial.seed): trial.fault for trial in played.trials if trial.fault},
+    )
+
+
+def figures_of(trials: Sequence[Trial], counts: dict[str, str], truth: str = "") -> Figures:
+    """Missions that broke count as ones that did not reach the goal, and in nothing else."""
+    whole = [trial for trial in trials if not trial.fault]
+    values = [trial.value for trial in whole if trial.value is not None]
+    return Figures(
+        missions=len(trials),
+        broken=len(trials) - len(whole),
+        goal=interval_of_share(sum(trial.goal for trial in whole), len(trials)),
+        steps=interval_of_mean([len(trial.actions) for trial in whole]),
+        value=interval_of_mean(values),
+        counts={
+            name: interval_of_mean([sum(matches(pattern, step) for step in trial.steps) for trial in whole])
+            for name, pattern in counts.items()
+        },
+        endings=dict(Counter(trial.ending for trial in trials).most_common()),
+        first_actions=dict(Counter(trial.actions[0] for trial in whole if trial.actions).most_common()),
+        world_goal=interval_of_share(sum(_holds(truth, trial) for trial in whole), len(trials))
+        if truth
+        else None,
+        speed=simulated_speed(whole),
+    )
+
+
+def _holds(truth: str, trial: Trial) -> bool:
+    return bool(trial.states) and truth in trial.states[-1]
+
+
+def surroundings() -> Surroundings:
+    """This machine, today."""
+    return Surroundings(
+        date=datetime.now(UTC).date().isoformat(),
+        machine=f"{os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+        versions={"aos": __version__, "python": platform.python_version(), **_installed()},
+        commit=_commit(),
+    )
+
+
+def _commit() -> str:
+    """Of the checkout that this runs from; with a + where files differ from it, empty where it is none."""
+    try:
+        asked = subprocess.run(
+            ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"],
+            cwd=Path(__file__).parent,
+            capture_output=True,
+            text=True,
+            timeout=10,
+            check=False,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return asked.stdout.strip() if asked.returncode == 0 else ""
+
+
+def _installed() -> dict[str, str]:
+    found = {}
+    for package in _PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found

@@ -1,0 +1,155 @@
+"""Writes a policy graph: for Graphviz, and as a C header that needs nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from aos_lab.formats.policy_graph import OVER, PolicyGraph
+from aos_lab.formats.symbols import symbols
+from aos_protocol.errors import PlanningError
+
+__all__ = ["c_header", "graphviz", "write_text"]
+
+_MAX_NUMBERED = 0xFFFE
+
+
+def write_text(path: Path, text: str) -> None:
+    """Writes a file; PlanningError AOS101 where the disk refuses."""
+    try:
+        path.write_text(text)
+    except OSError as error:
+        raise PlanningError(f"cannot write {path}: {error.strerror}", code="AOS101") from error
+
+
+def graphviz(graph: PolicyGraph) -> str:
+    """The graph in the DOT language; draw it with `dot -Tsvg`."""
+    return "\n".join(_dot_lines(graph)) + "\n"
+
+
+def _dot_lines(graph: PolicyGraph) -> Iterator[str]:
+    model = graph.model
+    yield f"digraph {_quoted(model.name)} {{"
+    yield f"  label={_quoted(f'{model.name}: {graph.value:.6g} from the start')};"
+    yield "  rankdir=LR;"
+    yield "  node [shape=box, style=rounded];"
+    for number, node in enumerate(graph.nodes):
+        width = ", penwidth=2" if number in graph.starts else ""
+        yield f"  n{number} [label={_quoted(model.actions[node.action])}{width}];"
+    if any(OVER in node.next.values() for node in graph.nodes):
+        yield "  over [shape=point, width=0.15];"
+    for number, node in enumerate(graph.nodes):
+        for following in sorted(set(node.next.values())):
+            seen = sorted(o for o, target in node.next.items() if target == following)
+            label = "\n".join(model.observations[observation] for observation in seen)
+            target = "over" if following == OVER else f"n{following}"
+            yield f"  n{number} -> {target} [label={_quoted(label)}];"
+    yield "}"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'
+
+
+def c_header(graph: PolicyGraph, name: str) -> str:
+    """A header in C99, all names of which begin with `name`; it needs no heap, no library and no start-up.
+
+    PlanningError AOS320 if nodes or observations are more than 16 bits can number.
+    """
+    if max(len(graph.nodes), len(graph.model.observations)) >= _MAX_NUMBERED:
+        raise PlanningError(
+            f"{graph.model.name} has too many observations or nodes for 16 bits",
+            code="AOS320",
+            hint="Ask for fewer --nodes, or use the .policy file",
+        )
+    return "\n".join(_header_lines(graph, symbols([name.lower()])[0])) + "\n"
+
+
+def _header_lines(graph: PolicyGraph, prefix: str) -> Iterator[str]:
+    model = graph.model
+    actions, observations = symbols(model.actions), symbols(model.observations)
+    upper = prefix.upper()
+    start = "0" if len(graph.starts) == 1 else "k"
+    step = f"{prefix}_after(node, do_and_observe({prefix}_node_action[node]))"
+    value = f"{graph.value:.6g}, discounted by {model.discount:g} a step"
+    yield from (
+        f"// The policy of {_one_line(model.name)}, written by `aos solve`; do not edit.",
+        "//",
+        f"// From the start it gives {value}. To follow it:",
+        "//",
+        f"//   uint16_t node = {prefix}_start[{start}];",
+        f"//   while (node < {upper}_NODES) node = {step};",
+        "//",
+        f"// `{prefix}_after` gives {upper}_OVER once the mission is over, and {upper}_NO_NODE for an",
+        "// observation that the model holds impossible there.",
+    )
+    yield f"#ifndef {upper}_H"
+    yield f"#define {upper}_H"
+    yield ""
+    yield "#include <stdint.h>"
+    yield ""
+    yield from _enumeration(f"{prefix}_action", upper, "DO", actions, model.actions)
+    yield ""
+    yield from _enumeration(f"{prefix}_observation", upper, "SEE", observations, model.observations)
+    yield ""
+    yield f"enum {{ {upper}_NODES = {len(graph.nodes)}, {upper}_OVER = 0xfffe, {upper}_NO_NODE = 0xffff }};"
+    yield ""
+    if len(graph.starts) > 1:
+        yield "// The robot is told at the start which of these it is."
+    yield from _array(f"{prefix}_start", "uint16_t", [str(node) for node in graph.starts])
+    yield ""
+    yield from _array(f"{prefix}_node_action", "uint16_t", [str(node.action) for node in graph.nodes])
+    yield ""
+    first, seen, following = [0], [], []
+    for node in graph.nodes:
+        for observation, target in sorted(node.next.items()):
+            seen.append(str(observation))
+            following.append(str(target) if target != OVER else f"{upper}_OVER")
+        first.append(len(seen))
+    yield "// The edges of a node, by ascending observation, begin at its place in the first array."
+    yield from _array(f"{prefix}_first_edge", "uint32_t", [str(place) for place in first])
+    yield ""
+    yield from _array(f"{prefix}_edge_observation", "uint16_t", seen or ["0"])
+    yield ""
+    yield from _array(f"{prefix}_edge_node", "uint16_t", following or ["0"])
+    yield ""
+    yield "// The node after an observation."
+    yield f"static inline uint16_t {prefix}_after(uint16_t node, {prefix}_observation observation) {{"
+    yield f"  uint32_t low = {prefix}_first_edge[node];"
+    yield f"  uint32_t high = {prefix}_first_edge[node + 1];"
+    yield "  while (low < high) {"
+    yield "    uint32_t middle = low + (high - low) / 2;"
+    yield f"    if ({prefix}_edge_observation[middle] == observation) return {prefix}_edge_node[middle];"
+    yield f"    if ({prefix}_edge_observation[middle] < observation) {{"
+    yield "      low = middle + 1;"
+    yield "    } else {"
+    yield "      high = middle;"
+    yield "    }"
+    yield "  }"
+    yield f"  return {upper}_NO_NODE;"
+    yield "}"
+    yield ""
+    yield "#endif"
+
+
+def _enumeration(
+    name: str, upper: str, verb: str, names: list[str], meanings: tuple[str, ...]
+) -> Iterator[str]:
+    yield "typedef enum {"
+    for number, (symbol, meaning) in enumerate(zip(names, meanings, strict=True)):
+        yield f"  {upper}_{verb}_{symbol.upper()} = {number},  // {_one_line(meaning)}"
+    yield f"}} {name};"
+
+
+def _array(name: str, kind: str, values: list[str]) -> Iterator[str]:
+    yield f"static const {kind} {name}[{len(values)}] = {{"
+    for begin in range(0, len(values), 16):
+        yield f"    {', '.join(values[begin : begin + 16])},"
+    yield "};"
+
+
+def _one_line(text: str) -> str:
+    """A text that stays within a comment."""
+    return re.sub(r"[^\x20-\x7e]", " ", text).rstrip("\\")

@@ -1,0 +1,331 @@
+"""Reads `.pomdp`, the text format of A. Cassandra's solvers."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from aos_lab.formats.pomdp_rewards import RewardRules
+from aos_lab.formats.pomdp_statements import Statement, statements_of
+from aos_lab.formats.problem_text import ProblemFindings, TooManyFindingsError, Word
+from aos_protocol.errors import DocumentError
+from aos_solver.offline.explicit_model import ExplicitModel, Ragged, StartBelief
+
+__all__ = ["read_pomdp"]
+
+_SUM_TOLERANCE = 1e-4
+_MAX_NAMES = 2_000_000
+
+Distribution = dict[int, float]
+
+
+def read_pomdp(name: str, data: bytes) -> ExplicitModel:
+    """The model in a file; DocumentError with all findings, at their line and column, if it has mistakes."""
+    text = data.decode("latin-1").replace("\r\n", "\n")
+    findings = ProblemFindings(name, text)
+    model = None
+    with contextlib.suppress(TooManyFindingsError):
+        model = _Reader(name, findings).read(list(statements_of(text, findings)))
+    findings.raise_if_any()
+    if model is None:
+        raise DocumentError(f"{name} holds no model", code="AOS107")
+    return model
+
+
+class _Reader:
+    def __init__(self, name: str, findings: ProblemFindings) -> None:
+        self._name = name
+        self._findings = findings
+        self._names: dict[str, tuple[str, ...]] = {}
+        self._numbers: dict[str, dict[str, int]] = {}
+        self._discount = 1.0
+        self._sign = 1.0
+        self._start: Distribution | None = None
+        self._transitions: dict[tuple[int, int], Distribution] = {}
+        self._sensing: dict[tuple[int, int], Distribution] = {}
+        self._last_rule: dict[tuple[str, int, int], Word] = {}
+
+    def read(self, statements: Sequence[Statement]) -> ExplicitModel | None:
+        """None where what is needed to go on is missing."""
+        seen = {statement.keyword.text for statement in statements}
+        for kind in ("discount", "states", "actions", "observations"):
+            if kind not in seen:
+                self._findings.error("AOS105", f"there is no `{kind}:`", 1)
+        for statement in statements:
+            if statement.keyword.text in ("discount", "values", "states", "actions", "observations"):
+                self._preamble(statement)
+        if len(self._names) < 3 or not all(self._names.values()):
+            return None
+        self._rewards = RewardRules()
+        for statement in statements:
+            if statement.keyword.text == "start":
+                self._read_start(statement)
+        for statement in statements:
+            if statement.keyword.text in ("T", "O", "R"):
+                self._rule(statement)
+        if self._start is None:
+            self._start = self._uniform("states")
+        if self._findings.has_any:
+            return None
+        everywhere = {(action, state) for action in self._all("actions") for state in self._all("states")}
+        self._check("T", self._transitions, everywhere)
+        reached = {(action, after) for (action, _), row in self._transitions.items() for after in row}
+        self._check("O", self._sensing, reached)
+        return None if self._findings.has_any else self._model()
+
+    # --- preamble --------------------------------------------------------------------------------------
+
+    def _preamble(self, statement: Statement) -> None:
+        kind, words = statement.keyword.text, statement.words
+        if not words:
+            self._error("AOS105", f"`{kind}:` says nothing", statement.keyword)
+        elif kind == "discount":
+            self._discount = self._number(words[0])
+            if not 0 <= self._discount <= 1:
+                self._error("AOS106", "the discount needs to be from 0 to 1", words[0])
+        elif kind == "values":
+            if words[0].text not in ("reward", "cost"):
+                self._error("AOS106", f"{words[0].text} is neither reward nor cost", words[0])
+            self._sign = -1.0 if words[0].text == "cost" else 1.0
+        else:
+            self._read_names(kind, words)
+
+    def _read_names(self, kind: str, words: Sequence[Word]) -> None:
+        if len(words) == 1 and words[0].text.isdecimal():
+            count = int(words[0].text)
+            if not 0 < count <= _MAX_NAMES:
+                self._error("AOS106", f"{count} is no number of {kind}", words[0])
+                return
+            self._names[kind] = tuple(f"{kind[0]}{number}" for number in range(count))
+        else:
+            self._names[kind] = tuple(word.text for word in words)
+        self._numbers[kind] = {name: number for number, name in enumerate(self._names[kind])}
+        if len(self._numbers[kind]) < len(words):
+            twice = next(w for i, w in enumerate(words) if self._numbers[kind][w.text] != i)
+            self._error("AOS103", f"{twice.text} is there twice", twice)
+
+    def _read_start(self, statement: Statement) -> None:
+        words = statement.words
+        if statement.variant:
+            chosen = {number for word in words for number in self._some("states", word)}
+            if statement.variant == "exclude":
+                chosen = set(self._all("states")) - chosen
+            self._start = {number: 1 / len(chosen) for number in sorted(chosen)}
+            if not chosen:
+                self._error("AOS122", "no state is left to start in", statement.keyword)
+        elif len(words) == 1 and words[0].text == "uniform":
+            self._start = self._uniform("states")
+        elif len(words) == 1 and len(self._names["states"]) > 1:
+            self._start = dict.fromkeys(self._some("states", words[0]), 1.0)
+        else:
+            row = self._distribution("states", words, statement)
+            self._start = row and self._scaled(row, statement.keyword)
+
+    def _scaled(self, row: Distribution, word: Word) -> Distribution:
+        total = sum(row.values())
+        if abs(total - 1) > _SUM_TOLERANCE:
+            self._error("AOS122", f"the probabilities sum to {total:g}", word, "They have to sum to 1")
+        return {number: probability / total for number, probability in row.items()}
+
+    # --- rules -----------------------------------------------------------------------------------------
+
+    def _rule(self, statement: Statement) -> None:
+        keyword = statement.keyword.text
+        kinds = {
+            "T": ("actions", "states", "states"),
+            "O": ("actions", "states", "observations"),
+            "R": ("actions", "states", "states", "observations"),
+        }[keyword]
+        fields = statement.fields
+        least = 2 if keyword == "R" else 1
+        if not least <= len(fields) <= len(kinds):
+            wanted = " : ".join(kind.rstrip("s") for kind in kinds)
+            message = f"`{keyword}:` has {len(fields)} fields"
+            self._error("AOS106", message, statement.keyword, f"Write {keyword}: {wanted}, or its beginning")
+            return
+        chosen = [self._some(kind, word) for kind, word in zip(kinds, fields, strict=False)]
+        if keyword == "R":
+            self._reward(statement, chosen)
+            return
+        table = self._transitions if keyword == "T" else self._sensing
+        if len(fields) == 3:
+            value = self._probability(self._single(statement))
+            for action in chosen[0]:
+                for state in chosen[1]:
+                    row = table.setdefault((action, state), {})
+                    _put(row, chosen[2], value)
+                    self._last_rule[keyword, action, state] = statement.keyword
+            return
+        states = chosen[1] if len(fields) == 2 else self._all("states")
+        rows = self._rows(statement, kinds[2], states, is_matrix=len(fields) == 1)
+        for action in chosen[0]:
+            for state, row in zip(states, rows, strict=True):
+                table[action, state] = dict(row)
+                self._last_rule[keyword, action, state] = statement.keyword
+
+    def _rows(
+        self, statement: Statement, kind: str, states: Sequence[int], *, is_matrix: bool
+    ) -> Sequence[Distribution]:
+        """A distribution for each of the states."""
+        words = statement.words
+        keyword = words[0].text if len(words) == 1 else ""
+        if keyword == "uniform":
+            return [self._uniform(kind)] * len(states)
+        if keyword == "identity" and is_matrix and len(self._names[kind]) == len(self._names["states"]):
+            return [{state: 1.0} for state in states]
+        if keyword == "reset" and kind == "states":
+            return [self._start or self._uniform(kind)] * len(states)
+        width = len(self._names[kind])
+        if not is_matrix:
+            return [self._distribution(kind, words, statement)] * len(states)
+        if len(words) != width * len(states):
+            message = f"{len(words)} numbers where {len(states)} rows of {width} are needed"
+            self._error("AOS106", message, statement.keyword)
+            return [{} for _ in states]
+        return [
+            self._distribution(kind, words[begin : begin + width], statement)
+            for begin in range(0, len(words), width)
+        ]
+
+    def _reward(self, statement: Statement, chosen: list[Sequence[int]]) -> None:
+        """A number, a row over observations, or a matrix over next states and observations."""
+        after, seen = self._all("states"), self._all("observations")
+        numbers = [self._sign * self._number(word) for word in statement.words]
+        rest = [after, seen][len(chosen) - 2 :]
+        wanted = int(np.prod([len(part) for part in rest], dtype=int))
+        if len(numbers) != wanted:
+            message = f"{len(numbers)} numbers where {wanted} are needed"
+            self._error("AOS106", message, statement.keyword)
+            return
+        after_fields = statement.fields[2:]
+        everywhere = [word.text == "*" for word in after_fields]
+        whole_after = None if everywhere[:1] == [True] else (chosen[2] if after_fields else after)
+        if len(chosen) == 4:
+            whole_seen = None if everywhere[1] else chosen[3]
+            self._rewards.add(chosen[0], chosen[1], whole_after, whole_seen, numbers[0])
+            return
+        for place, number in enumerate(numbers):
+            row, column = divmod(place, len(seen))
+            next_states = whole_after if after_fields else [row]
+            self._rewards.add(chosen[0], chosen[1], next_states, [column], number)
+
+    def _check(
+        self, keyword: str, table: dict[tuple[int, int], Distribution], needed: set[tuple[int, int]]
+    ) -> None:
+        """Probabilities sum to 1 where that matters, and exactly so afterwards."""
+        for action, state in sorted(needed):
+            row = table.get((action, state), {})
+            total = sum(row.values())
+            if abs(total - 1) > _SUM_TOLERANCE:
+                where = f"{keyword}: {self._names['actions'][action]} : {self._names['states'][state]}"
+                message = f"the probabilities of `{where}` sum to {total:g}"
+                rule = self._last_rule.get((keyword, action, state), Word("", 1, 0))
+                self._error("AOS122", message, rule, "They have to sum to 1")
+            elif total != 1:
+                table[action, state] = {number: p / total for number, p in row.items()}
+
+    # --- words -----------------------------------------------------------------------------------------
+
+    def _error(self, code: str, message: str, word: Word, hint: str = "") -> None:
+        self._findings.error(code, message, word.line, word.column, hint)
+
+    def _all(self, kind: str) -> Sequence[int]:
+        return range(len(self._names[kind]))
+
+    def _uniform(self, kind: str) -> Distribution:
+        return dict.fromkeys(self._all(kind), 1 / len(self._names[kind]))
+
+    def _some(self, kind: str, word: Word) -> Sequence[int]:
+        """What a name, a number or `*` stands for."""
+        if word.text == "*":
+            return self._all(kind)
+        number = self._numbers[kind].get(word.text)
+        if number is None and word.text.isdecimal() and int(word.text) < len(self._names[kind]):
+            number = int(word.text)
+        if number is None:
+            self._findings.unknown(kind.rstrip("s"), word, self._names[kind])
+            return ()
+        return (number,)
+
+    def _single(self, statement: Statement) -> Word:
+        if len(statement.words) != 1:
+            message = f"{len(statement.words)} numbers where one is needed"
+            self._error("AOS106", message, statement.keyword)
+        return statement.words[0] if statement.words else Word("0", statement.keyword.line, 0)
+
+    def _distribution(self, kind: str, words: Sequence[Word], statement: Statement) -> Distribution:
+        width = len(self._names[kind])
+        if len(words) != width:
+            self._error("AOS106", f"{len(words)} numbers where {width} are needed", statement.keyword)
+            return {}
+        values = (self._probability(word) for word in words)
+        return {number: value for number, value in enumerate(values) if value > 0}
+
+    def _probability(self, word: Word) -> float:
+        value = self._number(word)
+        if not 0 <= value <= 1 + 1e-9:
+            self._error("AOS122", f"{word.text} is no probability", word)
+            return 0.0
+        return value
+
+    def _number(self, word: Word) -> float:
+        try:
+            value = float(word.text)
+        except ValueError:
+            value = float("nan")
+        if not np.isfinite(value):
+            self._error("AOS106", f"{word.text} is not a finite number", word)
+            return 0.0
+        return value
+
+    # --- the model -------------------------------------------------------------------------------------
+
+    def _model(self) -> ExplicitModel:
+        actions, states = self._names["actions"], self._names["states"]
+        known: dict[tuple[tuple[int, float], ...], int] = {}
+        first, after, chances, sensings = [0], [], [], []
+        rewards = np.zeros((len(states), len(actions)))
+        for state in range(len(states)):
+            for action in range(len(actions)):
+                row = self._transitions[action, state]
+                for number, probability in sorted(row.items()):
+                    if probability <= 0:
+                        continue
+                    sensing = tuple(sorted(self._sensing[action, number].items()))
+                    after.append(number)
+                    chances.append(probability)
+                    sensings.append(known.setdefault(sensing, len(known)))
+                first.append(len(after))
+                rewards[state, action] = self._rewards.expected(action, state, row, self._sensing_of(action))
+        likelihoods = Ragged(
+            np.cumsum([0, *(len(row) for row in known)]),
+            np.array([number for row in known for number, _ in row], dtype=np.int64),
+            np.array([probability for row in known for _, probability in row]),
+        )
+        assert self._start is not None
+        start = StartBelief(1.0, np.array(list(self._start)), np.array(list(self._start.values())))
+        return ExplicitModel(
+            name=self._name,
+            discount=self._discount,
+            states=states,
+            actions=actions,
+            observations=self._names["observations"],
+            rewards=rewards,
+            outcomes=Ragged(np.array(first), np.array(after), np.array(chances)),
+            sensings=np.array(sensings),
+            likelihoods=likelihoods,
+            starts=(start,),
+        )
+
+    def _sensing_of(self, action: int) -> Callable[[int], Distribution]:
+        return lambda state: self._sensing[action, state]
+
+
+def _put(row: Distribution, numbers: Sequence[int], value: float) -> None:
+    for number in numbers:
+        if value > 0:
+            row[number] = value
+        else:
+            row.pop(number, None)

@@ -1,0 +1,72 @@
+"""The statements of a `.pomdp` file, as words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import msgspec
+
+from aos_lab.formats.problem_text import ProblemFindings, Word
+
+__all__ = ["Statement", "statements_of"]
+
+_WORD = re.compile(r"[^\s:]+|:")
+_KEYWORDS = frozenset({"discount", "values", "states", "actions", "observations", "start", "T", "O", "R"})
+
+
+class Statement(msgspec.Struct, frozen=True):
+    """A keyword, the fields between colons, and the words after the last field.
+
+    The words of `T: a : s 0.1 0.9` are its last two; of `states: left right` all. `variant` is `include` or
+    `exclude` of `start`.
+    """
+
+    keyword: Word
+    variant: str
+    fields: tuple[Word, ...]
+    words: tuple[Word, ...]
+
+
+def statements_of(text: str, findings: ProblemFindings) -> Iterator[Statement]:
+    """The statements in order; words outside of any are findings."""
+    words = list(_words(text))
+    starts = [place for place in range(len(words)) if _begins(words, place)]
+    if words and (not starts or starts[0] > 0):
+        hint = "Expected discount:, values:, states:, actions: or observations:"
+        findings.error("AOS102", f"{words[0].text} is no keyword", words[0].line, words[0].column, hint)
+    for begin, end in zip(starts, [*starts[1:], len(words)], strict=True):
+        yield _statement(words[begin:end])
+
+
+def _words(text: str) -> Iterator[Word]:
+    for number, line in enumerate(text.split("\n"), start=1):
+        for match in _WORD.finditer(line.partition("#")[0]):
+            yield Word(match.group(), number, match.start() + 1)
+
+
+def _begins(words: list[Word], place: int) -> bool:
+    """Whether a statement begins here: a keyword that a colon follows, and that is no field itself."""
+    if words[place].text not in _KEYWORDS or (place > 0 and words[place - 1].text == ":"):
+        return False
+    following = [word.text for word in words[place + 1 : place + 3]]
+    if following[:1] == [":"]:
+        return True
+    return words[place].text == "start" and following[0:1] in (["include"], ["exclude"]) and ":" in following
+
+
+def _statement(words: list[Word]) -> Statement:
+    keyword, rest = words[0], words[1:]
+    variant = ""
+    if rest[0].text != ":":
+        variant, rest = rest[0].text, rest[1:]
+    rest = rest[1:]
+    fields: list[Word] = []
+    if keyword.text in ("T", "O", "R"):
+        while rest and rest[0].text != ":":
+            fields.append(rest[0])
+            rest = rest[1:]
+            if not (rest and rest[0].text == ":"):
+                break
+            rest = rest[1:]
+    return Statement(keyword, variant, tuple(fields), tuple(rest))

@@ -1,0 +1,32 @@
+"""Problem files of other planners, by the ending of their names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from aos_lab.formats.factored_model import MAX_STATES, flatten
+from aos_lab.formats.pomdp_reader import read_pomdp
+from aos_lab.formats.pomdpx_reader import read_pomdpx
+from aos_protocol.errors import DocumentError
+from aos_solver.offline.explicit_model import ExplicitModel
+
+__all__ = ["PROBLEM_ENDINGS", "read_problem"]
+
+PROBLEM_ENDINGS = (".pomdpx", ".pomdp")
+
+
+def read_problem(
+    path: Path,
+    *,
+    max_states: int = MAX_STATES,
+    on_progress: Callable[[int], None] = lambda states: None,
+) -> ExplicitModel:
+    """The model of a file; DocumentError with its mistakes, IntractableError if it is too large."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise DocumentError(f"cannot read {path}: {error.strerror}", code="AOS101") from error
+    if path.suffix == ".pomdpx":
+        return flatten(read_pomdpx(str(path), data), max_states=max_states, on_progress=on_progress)
+    return read_pomdp(str(path), data)

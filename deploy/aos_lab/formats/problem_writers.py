@@ -1,0 +1,171 @@
+"""Writes `.pomdp` and `.pomdpx`, for other planners to read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+from aos_lab.formats.sensing_by_state import NEVER, SensingByState, with_sensing_by_state
+from aos_lab.formats.symbols import symbols
+from aos_protocol.errors import PlanningError
+from aos_solver.offline.explicit_model import ExplicitModel
+
+__all__ = ["WRITERS", "write_problem"]
+
+_LATER = "later"
+
+
+def write_problem(model: ExplicitModel, path: Path) -> None:
+    """Writes the model in the format that the file's name says.
+
+    PlanningError AOS320 for a name or a model that no format is for, AOS101 where the disk refuses.
+    """
+    if path.suffix not in WRITERS:
+        formats = " or ".join(WRITERS)
+        raise PlanningError(f"{path} names no format", code="AOS320", hint=f"Let it end in {formats}")
+    lines = WRITERS[path.suffix](with_sensing_by_state(model))
+    try:
+        with path.open("w") as file:
+            file.writelines(f"{line}\n" for line in lines)
+    except OSError as error:
+        raise PlanningError(f"cannot write {path}: {error.strerror}", code="AOS101") from error
+
+
+class _Names:
+    """What states, actions and observations are called in the file."""
+
+    def __init__(self, model: ExplicitModel) -> None:
+        self.states = symbols(model.states)
+        self.actions = symbols(model.actions)
+        self.observations = symbols(model.observations)
+
+
+def _transitions(model: ExplicitModel, names: _Names) -> Iterator[tuple[str, str, str, float]]:
+    """Action, state, next state and probability."""
+    for row in range(len(model.outcomes)):
+        state, action = divmod(row, len(model.actions))
+        for after, probability in zip(*model.outcomes.row(row), strict=True):
+            yield names.actions[action], names.states[state], names.states[after], float(probability)
+
+
+def _observations(sensing: SensingByState, names: _Names) -> Iterator[tuple[str, str, str, float]]:
+    """Action, next state, observation and probability, where there is a rule."""
+    for action, rows in enumerate(sensing.rows):
+        for state, row in enumerate(rows):
+            if row == NEVER:
+                # Never reached by this action; the formats want a distribution all the same.
+                yield names.actions[action], names.states[state], names.observations[0], 1.0
+                continue
+            for observation, probability in zip(*sensing.model.likelihoods.row(row), strict=True):
+                yield (
+                    names.actions[action],
+                    names.states[state],
+                    names.observations[observation],
+                    float(probability),
+                )
+
+
+def _rewards(model: ExplicitModel, names: _Names) -> Iterator[tuple[str, str, float]]:
+    """Action, state and reward, where it is not 0."""
+    for state, action in zip(*model.rewards.nonzero(), strict=True):
+        yield names.actions[action], names.states[state], float(model.rewards[state, action])
+
+
+def _pomdp(sensing: SensingByState) -> Iterator[str]:
+    model = sensing.model
+    if len(model.starts) > 1:
+        raise PlanningError(
+            f"the robot is told at the start of {model.name} where it is, which .pomdp cannot say",
+            code="AOS320",
+            hint="Write a .pomdpx file",
+        )
+    names = _Names(model)
+    yield f"# {model.name}"
+    yield f"discount: {model.discount!r}"
+    yield "values: reward"
+    yield f"states: {' '.join(names.states)}"
+    yield f"actions: {' '.join(names.actions)}"
+    yield f"observations: {' '.join(names.observations)}"
+    yield f"start: {' '.join(repr(float(p)) for p in model.start_distribution())}"
+    for action, state, after, probability in _transitions(model, names):
+        yield f"T: {action} : {state} : {after} {probability!r}"
+    for action, state, observation, probability in _observations(sensing, names):
+        yield f"O: {action} : {state} : {observation} {probability!r}"
+    for action, state, reward in _rewards(model, names):
+        yield f"R: {action} : {state} : * : * {reward!r}"
+
+
+def _pomdpx(sensing: SensingByState) -> Iterator[str]:
+    """One state variable for all; a second one only tells how the robot starts, where it is told."""
+    model = sensing.model
+    names = _Names(model)
+    is_reported = len(model.starts) > 1
+    starts = [f"start{number}" for number in range(len(model.starts))]
+    yield '<?xml version="1.0" encoding="utf-8"?>'
+    yield '<pomdpx version="1.0">'
+    yield f"<Description>{escape(model.name)}</Description>"
+    yield f"<Discount>{model.discount!r}</Discount>"
+    yield "<Variable>"
+    yield from _variable("StateVar", 'vnamePrev="state_0" vnameCurr="state_1" fullyObs="false"', names.states)
+    if is_reported:
+        attributes = 'vnamePrev="reported_0" vnameCurr="reported_1" fullyObs="true"'
+        yield from _variable("StateVar", attributes, [*starts, _LATER])
+    yield from _variable("ObsVar", 'vname="observation"', names.observations)
+    yield from _variable("ActionVar", 'vname="action"', names.actions)
+    yield '<RewardVar vname="reward"/>'
+    yield "</Variable>"
+    yield "<InitialStateBelief>"
+    if is_reported:
+        weights = [(name, start.weight) for name, start in zip(starts, model.starts, strict=True)]
+        yield from _table("CondProb", "reported_0", "null", "ProbTable", weights)
+    yield from _table(
+        "CondProb",
+        "state_0",
+        "reported_0" if is_reported else "null",
+        "ProbTable",
+        (
+            (f"{name} {names.states[state]}" if is_reported else names.states[state], float(probability))
+            for name, start in zip(starts, model.starts, strict=True)
+            for state, probability in zip(start.states, start.probabilities, strict=True)
+        ),
+    )
+    yield "</InitialStateBelief>"
+    yield "<StateTransitionFunction>"
+    transitions = ((" ".join(where), p) for *where, p in _transitions(model, names))
+    yield from _table("CondProb", "state_1", "action state_0", "ProbTable", transitions)
+    if is_reported:
+        yield from _table("CondProb", "reported_1", "null", "ProbTable", [(_LATER, 1.0)])
+    yield "</StateTransitionFunction>"
+    yield "<ObsFunction>"
+    observations = ((" ".join(where), p) for *where, p in _observations(sensing, names))
+    yield from _table("CondProb", "observation", "action state_1", "ProbTable", observations)
+    yield "</ObsFunction>"
+    yield "<RewardFunction>"
+    rewards = ((" ".join(where), reward) for *where, reward in _rewards(model, names))
+    yield from _table("Func", "reward", "action state_0", "ValueTable", rewards)
+    yield "</RewardFunction>"
+    yield "</pomdpx>"
+
+
+def _variable(tag: str, attributes: str, values: Iterable[str]) -> Iterator[str]:
+    yield f"<{tag} {attributes}>"
+    yield f"<ValueEnum>{' '.join(values)}</ValueEnum>"
+    yield f"</{tag}>"
+
+
+def _table(
+    tag: str, own: str, parents: str, numbers: str, entries: Iterable[tuple[str, float]]
+) -> Iterator[str]:
+    yield f"<{tag}>"
+    yield f"<Var>{own}</Var>"
+    yield f"<Parent>{parents}</Parent>"
+    yield '<Parameter type="TBL">'
+    for instance, number in entries:
+        yield f"<Entry><Instance>{instance}</Instance><{numbers}>{number!r}</{numbers}></Entry>"
+    yield "</Parameter>"
+    yield f"</{tag}>"
+
+
+WRITERS = {".pomdp": _pomdp, ".pomdpx": _pomdpx}
+"""The formats by the ending of a file's name."""

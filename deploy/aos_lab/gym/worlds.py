@@ -1,0 +1,109 @@
+"""The hidden worlds of a bundle's model in its engine child, for callers that are not asynchronous."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from aos_deploy.program import cache_dir
+from aos_lab.gym.number_columns import NumberColumns, Numbers
+from aos_language.load import load_bundle
+from aos_protocol.errors import DocumentError
+from aos_solver.child.engine import Engine
+from aos_solver.mission.hot_plug import build_project
+
+__all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes"]
+
+ENDINGS = ("", "goal", "failure", "over")
+"""How an episode has ended, by number."""
+
+TEXT_BYTES = 62
+"""What a text observation has room for; shorter ones end in zeros."""
+
+T = TypeVar("T")
+
+
+class Steps(NamedTuple):
+    """One step of all worlds, an entry for each; `endings` are places in ENDINGS."""
+
+    observations: NDArray[np.int64]
+    texts: list[str]
+    rewards: NDArray[np.float64]
+    endings: NDArray[np.uint8]
+    numbers: Numbers
+
+
+class HiddenWorlds:
+    """Owns an engine child and the event loop that talks to it; to be used in the thread that made it.
+
+    `actions` and `responses` are names by number; response 0 means that nothing is told, as at a start.
+    `number_names` are those of the numbers that are reported beside responses, of an array `array_room`.
+    """
+
+    def __init__(self, bundle: Path, array_room: int) -> None:
+        self._loop = asyncio.new_event_loop()
+        try:
+            self._engine = self._run(_start(bundle))
+            told = self._run(self._engine.reset_worlds([0]))
+        except BaseException:
+            self._loop.close()
+            raise
+        actions = self._engine.description.actions
+        self.actions = tuple(action.name for action in actions)
+        self._columns = NumberColumns([action.skill for action in actions], self._engine.observed, array_room)
+        self.number_names = self._columns.names
+        self.responses = told.observations
+        self.has_texts = told.has_texts
+        self.discount = self._engine.description.discount
+
+    def start(self, seeds: Sequence[int]) -> None:
+        """One new world for each seed."""
+        self._run(self._engine.reset_worlds(seeds))
+
+    def nothing_observed(self, worlds: int) -> tuple[NDArray[np.int64], list[str], Numbers]:
+        """Responses, texts and numbers as so many worlds have them at a start."""
+        shape = (worlds, len(self.number_names))
+        numbers = Numbers(np.zeros(shape), np.zeros(shape, np.int8))
+        return np.zeros(worlds, np.int64), [""] * worlds, numbers
+
+    def step(self, actions: NDArray[Any]) -> Steps:
+        """One action in each world; -1 starts it anew."""
+        numbered = actions.astype(np.int32)
+        done = self._run(self._engine.step_worlds(numbered.tobytes()))
+        return Steps(
+            np.frombuffer(done.observations, np.int32).astype(np.int64),
+            done.texts,
+            np.frombuffer(done.rewards, np.float64).copy(),
+            np.frombuffer(done.endings, np.uint8),
+            self._columns.rows(numbered, done),
+        )
+
+    def close(self) -> None:
+        """Ends the child. Closing twice does nothing."""
+        if not self._loop.is_closed():
+            self._run(self._engine.close())
+            self._loop.close()
+
+    def _run(self, work: Coroutine[Any, Any, T]) -> T:
+        return self._loop.run_until_complete(work)
+
+
+async def _start(bundle: Path) -> Engine:
+    loaded = load_bundle(bundle)
+    if loaded.project is None:
+        raise DocumentError(
+            f"{bundle} has errors", hint=f"See aos lint {bundle}", diagnostics=loaded.diagnostics
+        )
+    built = await build_project(loaded.project, cache_dir(), lambda remark: None)
+    return await Engine.start(built, seed=1)
+
+
+def as_bytes(texts: Sequence[str]) -> NDArray[np.uint8]:
+    """Texts as rows of `TEXT_BYTES` bytes, in UTF-8, cut where they are longer."""
+    cut = np.array([text.encode()[:TEXT_BYTES] for text in texts], dtype=f"S{TEXT_BYTES}")
+    return cut.view(np.uint8).reshape(len(texts), TEXT_BYTES)

@@ -1,0 +1,146 @@
+"""Many missions of one setting, several at a time, none run twice where their records are kept."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol
+
+import msgspec
+
+from aos_deploy.bundle_files import files_of_bundle
+from aos_deploy.deploy_file import Deployment
+from aos_lab.trials.model_player import ModelMissions, ModelPlayer
+from aos_lab.trials.ray_cluster import RayPlayer
+from aos_lab.trials.script_player import ScriptPlayer
+from aos_lab.trials.setting import Setting, deployment_of, world_deployment_of
+from aos_lab.trials.system_player import SystemPlayer
+from aos_lab.trials.trial import Trial
+from aos_protocol import __version__
+from aos_runtime.lifecycle import root_cause
+
+__all__ = ["HERE", "Played", "play_campaign"]
+
+HERE = "local"
+"""Where missions are played: on this machine."""
+
+
+class Played(msgspec.Struct, frozen=True):
+    """The trials in the order of their seeds, and the digest of what they were run with."""
+
+    trials: tuple[Trial, ...]
+    digest: str
+
+
+class _Player(Protocol):
+    async def play(self, seed: int) -> Trial: ...
+
+    async def close(self) -> None: ...
+
+
+class _Kept(msgspec.Struct, frozen=True):
+    """One line of the file of records."""
+
+    digest: str
+    trial: Trial
+
+
+async def play_campaign(
+    setting: Setting,
+    seeds: Sequence[int],
+    *,
+    folder: Path,
+    out: Path,
+    jobs: int | None,
+    on_trial: Callable[[], None],
+    on: str = HERE,
+    on_progress: Callable[[str], None] = lambda text: None,
+) -> Played:
+    """Plays a mission of each seed. Records in `out` are used where they were made of the same.
+
+    Missions that broke are run again. `folder` is where the setting's paths begin. Missions of the model can
+    be played `on` a Ray cluster, on `jobs` of its processors or on all; here it is one at a time if not said.
+    """
+    deployment = deployment_of(setting, folder, out)
+    world = world_deployment_of(setting, deployment, folder) if setting.by == "model" else None
+    digest = _digest(setting, deployment, world)
+    records = out / "missions.jsonl"
+    done = {trial.seed: trial for trial in _kept(records, digest)}
+    left = [seed for seed in seeds if seed not in done]
+    for seed in seeds:
+        if seed in done:
+            on_trial()
+
+    def keep(trial: Trial) -> None:
+        done[trial.seed] = trial
+        with records.open("ab") as file:
+            file.write(msgspec.json.encode(_Kept(digest, trial)) + b"\n")
+        on_trial()
+
+    player: _Player
+    if left:
+        await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)
+        if on != HERE and setting.by == "model":
+            missions = ModelMissions.of(deployment, world)
+            player = cluster = await RayPlayer.prepared(missions, on, jobs, on_progress)
+            jobs = cluster.jobs
+        else:
+            player = await _player(setting, deployment, world, out)
+        try:
+            await _play_all(player, left, jobs or 1, keep)
+        finally:
+            await player.close()
+    return Played(tuple(done[seed] for seed in seeds), digest)
+
+
+async def _play_all(player: _Player, seeds: Sequence[int], jobs: int, keep: Callable[[Trial], None]) -> None:
+    queue = iter(seeds)
+
+    async def work() -> None:
+        for seed in queue:
+            keep(await player.play(seed))
+
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            for _ in range(min(jobs, len(seeds))):
+                tasks.create_task(work())
+    except BaseExceptionGroup as group:
+        raise root_cause(group) from group
+
+
+async def _player(setting: Setting, deployment: Deployment, world: Deployment | None, out: Path) -> _Player:
+    if setting.script:
+        return await ScriptPlayer.prepared(deployment, setting.script, out)
+    if setting.by == "model":
+        return await ModelPlayer.prepared(ModelMissions.of(deployment, world))
+    return SystemPlayer(deployment, out / "runs")
+
+
+def _kept(records: Path, digest: str) -> list[Trial]:
+    """What was recorded with the same documents and settings; a line that was cut short is left out."""
+    trials = []
+    for line in records.read_bytes().splitlines() if records.is_file() else ():
+        try:
+            kept = msgspec.json.decode(line, type=_Kept)
+        except msgspec.MsgspecError:
+            continue
+        if kept.digest == digest and not kept.trial.fault:
+            trials.append(kept.trial)
+    return trials
+
+
+def _digest(setting: Setting, deployment: Deployment, world: Deployment | None) -> str:
+    """Of all that a mission's outcome depends on beside its seed."""
+    whole = hashlib.sha256(f"{__version__} {setting.by}".encode())
+    whole.update(" > ".join(setting.script).encode())
+    whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))
+    if setting.by != "model" and (setting.faults or deployment.file.skills):
+        whole.update(msgspec.json.encode((setting.faults, deployment.file.skills)))
+    for bundle in (*deployment.bundles, *(world.bundles if world is not None else ())):
+        for name, data in sorted(files_of_bundle(bundle, deployment.file.leave_out).items()):
+            whole.update(f"{len(name)}:{name}:{len(data)}:".encode() + data)
+    for path in (deployment.world if setting.by == "system" else None, deployment.policy):
+        whole.update(path.read_bytes() if path is not None else b"-")
+    return whole.hexdigest()[:16]

@@ -1,0 +1,141 @@
+"""Files of claims: mission tests of users, and experiments. Everything wrong with one is found in one run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal, TypeVar
+
+import msgspec
+
+from aos_deploy.typed import read_structure
+from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, read_yaml
+from aos_lab.trials.claims import Claim, has_check
+from aos_lab.trials.setting import Setting
+from aos_language.findings import Findings
+from aos_protocol.diagnostics import Span
+from aos_protocol.errors import DeployError
+
+__all__ = [
+    "Experiment",
+    "MissionTest",
+    "Part",
+    "ScriptFile",
+    "ScriptedPart",
+    "TestFile",
+    "read_experiment",
+    "read_script_file",
+    "read_test_file",
+]
+
+Count = Annotated[int, msgspec.Meta(ge=1)]
+Seed = Annotated[int, msgspec.Meta(ge=0)]
+
+
+class Part(Setting, frozen=True, kw_only=True):
+    """A setting, and what is claimed of its missions.
+
+    `truth` is text that the world's last record has where the goal was reached. Where a system plays, a claim
+    of `goal: true` asks for it, too.
+    """
+
+    claims: tuple[Claim, ...] = ()
+    truth: str = ""
+
+
+class MissionTest(Part, frozen=True, kw_only=True):
+    """Missions of the seeds `first_seed` and following."""
+
+    seeds: Count = 10
+    first_seed: Seed = 1
+
+
+class TestFile(msgspec.Struct, frozen=True, kw_only=True):
+    """A file of mission tests, by name."""
+
+    aos: Literal[1]
+    tests: dict[str, MissionTest]
+
+
+class ScriptedPart(Setting, frozen=True, kw_only=True):
+    """Missions of a script, so many if nobody wants more."""
+
+    missions: Count
+
+
+class ScriptFile(msgspec.Struct, frozen=True, kw_only=True):
+    """Scripts by name. `calibrates` are documents, as lists of bundles, by the name in the report."""
+
+    aos: Literal[1]
+    title: str
+    about: str = ""
+    parts: dict[str, ScriptedPart]
+    calibrates: dict[str, tuple[str, ...]] = {}
+
+
+class Experiment(msgspec.Struct, frozen=True, kw_only=True):
+    """An experiment: parts by name, each played by the model and by the whole system.
+
+    `counts` are patterns of steps by the name they have in the report, which counts them. `truth` is that of
+    parts which give none. With `optimum` the model's returns are compared with the best that can be had.
+    """
+
+    aos: Literal[1]
+    title: str
+    about: str = ""
+    counts: dict[str, str] = {}
+    truth: str = ""
+    optimum: bool = False
+    parts: dict[str, Part]
+
+
+F = TypeVar("F", TestFile, Experiment, ScriptFile)
+
+
+def read_test_file(path: Path) -> TestFile:
+    """The tests of a file; DeployError AOS808 with all diagnostics if it has errors."""
+    return _read(path, TestFile, "tests")
+
+
+def read_experiment(path: Path) -> Experiment:
+    """The experiment of a file; DeployError AOS808 with all diagnostics if it has errors."""
+    return _read(path, Experiment, "parts")
+
+
+def read_script_file(path: Path) -> ScriptFile:
+    """The scripts of a file; DeployError AOS808 with all diagnostics if it has errors."""
+    return _read(path, ScriptFile, "parts")
+
+
+def _read(path: Path, kind: type[F], entries: str) -> F:
+    node, findings = read_yaml(path, str(path))
+    file = read_structure(node, kind, findings) if node is not None else None
+    if node is not None and file is not None:
+        parts: dict[str, Part | ScriptedPart] = {**getattr(file, entries)}
+        for name, part in parts.items():
+            where, label = _entry(_entry(node, entries), name), f"{entries}.{name}"
+            if isinstance(part, Part):
+                _check(part, where, findings, label)
+            elif not part.script:
+                span = where.span if where is not None else Span(label)
+                findings.error("AOS105", f"{label} has no script", span, "Give it a list of actions")
+        if not parts:
+            findings.error("AOS105", f"{entries} names none", node.span)
+    if file is None or findings.has_errors:
+        raise DeployError(f"{path} has errors", code="AOS808", diagnostics=findings.sorted())
+    return file
+
+
+def _check(part: Part, node: YamlNode | None, findings: Findings, path: str) -> None:
+    listed = _entry(node, "claims")
+    places = [item.span for item in listed.items] if isinstance(listed, YamlList) else []
+    if not part.claims:
+        where = node.span if node is not None else Span(path)
+        findings.error("AOS105", f"{path} claims nothing", where, "Give it a list of `claims`")
+    for claim, where in zip(part.claims, places, strict=False):
+        if not has_check(claim):
+            hint = "Give it a check, such as first, never, order or endings"
+            findings.error("AOS105", f"nothing is checked by the claim {claim.says!r}", where, hint)
+
+
+def _entry(node: YamlNode | None, key: str) -> YamlNode | None:
+    return node.entries.get(key) if isinstance(node, YamlMap) else None

@@ -1,0 +1,62 @@
+"""JUnit's XML, as continuous integration reads it: a suite for each test, a case for each claim."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from xml.etree import ElementTree
+
+import msgspec
+
+from aos_lab.trials.claims import Verdict
+from aos_lab.trials.trial import Trial
+
+__all__ = ["Tested", "failed_missions", "verdict_text", "write_junit"]
+
+
+class Tested(msgspec.Struct, frozen=True, kw_only=True):
+    """What came of a test."""
+
+    verdicts: tuple[Verdict, ...]
+    trials: tuple[Trial, ...]
+    passed: bool
+
+
+def verdict_text(verdict: Verdict) -> str:
+    """`held in 19 of 20 missions (0.95, between 0.76 and 0.99)`."""
+    share = verdict.share
+    return (
+        f"held in {verdict.held} of {verdict.missions} missions "
+        f"({share.value:.2f}, between {share.low:.2f} and {share.high:.2f}; wanted {verdict.wanted:.2f})"
+    )
+
+
+def write_junit(path: Path, tested: Mapping[str, Tested]) -> None:
+    """One file for all tests."""
+    root = ElementTree.Element("testsuites")
+    for name, test in tested.items():
+        failures = sum(not verdict.is_seen for verdict in test.verdicts)
+        suite = ElementTree.SubElement(
+            root,
+            "testsuite",
+            name=name,
+            tests=str(len(test.verdicts)),
+            failures=str(failures),
+            time=f"{sum(trial.seconds for trial in test.trials):.3f}",
+        )
+        for verdict in test.verdicts:
+            case = ElementTree.SubElement(suite, "testcase", classname=name, name=verdict.says)
+            if not verdict.is_seen:
+                failure = ElementTree.SubElement(case, "failure", message=verdict_text(verdict))
+                failure.text = "\n".join(failed_missions(verdict, test.trials))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(root).write(path, encoding="unicode", xml_declaration=True)
+
+
+def failed_missions(verdict: Verdict, trials: Sequence[Trial]) -> list[str]:
+    """The missions where a claim did not hold, each with all that was done."""
+    return [
+        f"seed {trial.seed}, {trial.ending}: {trial.fault or ', '.join(trial.steps) or 'nothing was done'}"
+        for trial in trials
+        if trial.seed in verdict.failed_seeds
+    ]

@@ -1,0 +1,111 @@
+"""Missions against the documents' own model, each in an engine of its own: its seed alone decides it."""
+
+from __future__ import annotations
+
+import time
+from contextlib import AsyncExitStack
+
+import msgspec
+
+from aos_deploy.bundle_files import project_of
+from aos_deploy.deploy_file import Deployment
+from aos_deploy.program import cache_dir
+from aos_lab.trials.trial import Trial
+from aos_protocol.documents import Project
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.engine import Engine
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.hot_plug import build_project
+from aos_solver.mission.simulation import simulate_mission
+
+__all__ = ["ModelMissions", "ModelPlayer"]
+
+DEFAULT_SIMULATIONS = 100_000
+"""As in the commands, where neither simulations nor a time is given."""
+
+
+class ModelMissions(msgspec.Struct, frozen=True):
+    """All that missions of the model depend on beside their seeds; it refers to no file.
+
+    `world` plays the world where the robot's own documents do not.
+    """
+
+    project: Project
+    limits: MissionLimits
+    search: Search
+    world: Project | None = None
+
+    @classmethod
+    def of(cls, deployment: Deployment, world: Deployment | None = None) -> ModelMissions:
+        """Those of a deployment; DocumentError with all that is wrong with its documents."""
+        mission = deployment.file.mission
+        limits = MissionLimits(
+            goal_probability=mission.goal_probability,
+            step_limit=mission.step_limit,
+            stop_below_value=mission.stop_below_value,
+        )
+        played = project_of(world) if world is not None else None
+        return cls(project_of(deployment), limits, _search(deployment), played)
+
+
+class ModelPlayer:
+    """Plays missions by the model of their documents, which is built once."""
+
+    def __init__(self, missions: ModelMissions, model: BuiltModel, world: BuiltModel | None = None) -> None:
+        self.missions = missions
+        self.model = model
+        self.world = world
+
+    @classmethod
+    async def prepared(cls, missions: ModelMissions) -> ModelPlayer:
+        """Compiles the model; ModelError if that fails."""
+        model = await build_project(missions.project, cache_dir(), lambda remark: None)
+        if missions.world is None:
+            return cls(missions, model)
+        return cls(missions, model, await build_project(missions.world, cache_dir(), lambda remark: None))
+
+    async def close(self) -> None:
+        """Nothing is left of a mission."""
+
+    async def play(self, seed: int) -> Trial:
+        """One mission. The same seed gives the same mission wherever the budget is one in simulations."""
+        start = time.perf_counter()
+        search = msgspec.structs.replace(self.missions.search, seed=seed)
+        async with AsyncExitStack() as engines:
+            engine = await Engine.start(self.model, seed=seed)
+            engines.push_async_callback(engine.close)
+            world = None
+            if self.world is not None:
+                world = await Engine.start(self.world, seed=seed, keeps_belief=False)
+                engines.push_async_callback(world.close)
+            run = await simulate_mission(engine, search, self.missions.limits, with_states=True, world=world)
+        return Trial(
+            seed=seed,
+            ending=str(run.ending),
+            goal=run.world_ending == Ending.GOAL,
+            actions=run.actions,
+            responses=run.observations,
+            states=run.states[1:],
+            world_ending=str(run.world_ending or ""),
+            value=run.discounted_return,
+            seconds=time.perf_counter() - start,
+        )
+
+
+def _search(deployment: Deployment) -> Search:
+    solver = deployment.file.solver
+    search = Search(
+        simulations=solver.simulations or DEFAULT_SIMULATIONS,
+        seed=solver.seed,
+        time_s=solver.time_s,
+        horizon=solver.horizon,
+        planner=solver.planner,
+        threads=solver.threads,
+    )
+    if deployment.policy is None:
+        return search
+    # Numbers take a tenth of a second to import.
+    from aos_solver.offline.policy import Policy, PolicySearch
+
+    return PolicySearch.instead_of(search, Policy.load(deployment.policy))

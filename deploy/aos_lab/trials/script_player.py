@@ -1,0 +1,107 @@
+"""Missions of a script: its actions one after the other in a simulated world, without services.
+
+The world's physics play the skills. The documents' mappings, in their sandboxed workers, say what came back.
+Topics are read at the end of each skill.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from aos_deploy.adapter_kinds import check_installed
+from aos_deploy.deploy_file import Deployment
+from aos_lab.trials.model_player import ModelMissions, ModelPlayer
+from aos_lab.trials.trial import Trial
+from aos_middleware.evaluator import EvaluationLimits, Evaluator
+from aos_middleware.mappings import emit_project
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError, DeployError
+from aos_solver.child.answers import GroundedAction
+from aos_solver.child.engine import Engine
+
+__all__ = ["ScriptPlayer"]
+
+
+class ScriptPlayer:
+    """Plays the same actions in a fresh world for each seed."""
+
+    def __init__(
+        self, deployment: Deployment, project: Project, script: Sequence[GroundedAction], out: Path
+    ) -> None:
+        from aos_skills.pybullet.world_file import load_world_file
+
+        assert deployment.world is not None
+        self._world_file = load_world_file(deployment.world)
+        self._script = tuple(script)
+        self._paths = {skill.name: skill.mapping.activation.path for skill in project.skills}
+        used = {action.skill for action in script}
+        self._evaluators = {
+            emitted.skill: Evaluator(emitted, out / "mappings.log", EvaluationLimits())
+            for emitted in emit_project(project)
+            if emitted.skill in used
+        }
+
+    @classmethod
+    async def prepared(cls, deployment: Deployment, script: Sequence[str], out: Path) -> ScriptPlayer:
+        """DeployError where there is no simulated world, or no such action."""
+        if deployment.world is None:
+            raise DeployError(
+                f"{deployment.path} names no world for a script", hint="Name a world file under `world:`"
+            )
+        for adapter in deployment.adapters:
+            check_installed(adapter.name, adapter.kind)
+        player = await ModelPlayer.prepared(ModelMissions.of(deployment))
+        engine = await Engine.start(player.model, seed=1, keeps_belief=False)
+        actions = {action.name: action for action in engine.description.actions}
+        await engine.close()
+        for name in script:
+            if name not in actions:
+                hint = f"Known are {', '.join(actions)}"
+                raise DeployError(f"the script's action {name} is none of the documents'", hint=hint)
+        return cls(deployment, player.missions.project, [actions[name] for name in script], out)
+
+    async def play(self, seed: int) -> Trial:
+        """One mission; one that broke is a trial with its fault."""
+        start = time.perf_counter()
+        world = self._world_file.build(seed)
+        responses: list[str] = []
+        states: list[str] = []
+        fault = ""
+        try:
+            for step, action in enumerate(self._script, 1):
+                told, fields = await self._response(world, action)
+                responses.append(told)
+                states.append(json.dumps(world.record(step, self._paths[action.skill], fields)))
+        except AosError as error:
+            fault = str(error)
+        finally:
+            world.close()
+        return Trial(
+            seed=seed,
+            ending="fault" if fault else "scripted",
+            goal=False,
+            actions=tuple(action.name for action in self._script[: len(responses)]),
+            responses=tuple(responses),
+            states=tuple(states),
+            seconds=time.perf_counter() - start,
+            fault=fault,
+        )
+
+    async def close(self) -> None:
+        """Ends the mappings' workers."""
+        for evaluator in self._evaluators.values():
+            await evaluator.close()
+
+    async def _response(self, world: Any, action: GroundedAction) -> tuple[str, dict[str, Any]]:
+        """What came back, and the fields that the skill was called with."""
+        evaluator = self._evaluators[action.skill]
+        fields = await evaluator.begin(action.parameters)
+        world.begin()
+        answer = self._world_file.kind.skills[self._paths[action.skill]](world, fields)
+        world.stop()
+        await evaluator.take(list(world.sensors().items()))
+        return (await evaluator.finish(answer)).response or "", fields

@@ -1,0 +1,66 @@
+"""Missions of a whole system, as `aos-up` runs them, each with a run directory of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.deploy_file import Deployment
+from aos_deploy.mission_run import MissionRun
+from aos_deploy.needed_here import check_needed_here
+from aos_deploy.run_directory import RunDirectory, Summary
+from aos_lab.trials.trial import Trial
+from aos_protocol.errors import AosError
+from aos_runtime.clock import SystemClock
+
+__all__ = ["SystemPlayer"]
+
+MISSION_S = 1800.0
+"""A mission that takes longer is ended, and counts as broken."""
+
+_TRUTHS = ("world.jsonl", "model.jsonl")
+
+
+class SystemPlayer:
+    """Plays missions of a deployment by its adapters; their run directories go below `runs`."""
+
+    def __init__(self, deployment: Deployment, runs: Path) -> None:
+        check_needed_here(deployment)
+        self.deployment = deployment
+        self._runs = runs
+
+    async def close(self) -> None:
+        """Nothing is left of a mission."""
+
+    async def play(self, seed: int) -> Trial:
+        """One mission; one that broke is a trial with its fault."""
+        runs = self._runs / f"seed-{seed}"
+        shutil.rmtree(runs, ignore_errors=True)
+        file = self.deployment.file
+        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
+        deployment = msgspec.structs.replace(self.deployment, file=file, runs=runs)
+        mission = MissionRun(deployment, lambda event: None, SystemClock())
+        try:
+            summary = await asyncio.wait_for(mission.run(), MISSION_S)
+            run = RunDirectory.latest(runs)
+        except (AosError, TimeoutError) as error:
+            fault = str(mission.error or error) or f"it did not end within {MISSION_S:g} s"
+            return Trial(seed=seed, ending="fault", goal=False, fault=fault)
+        return _trial(seed, summary, run.path)
+
+
+def _trial(seed: int, summary: Summary, run: Path) -> Trial:
+    lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
+    return Trial(
+        seed=seed,
+        ending=summary.ending,
+        goal=summary.ending == "goal",
+        actions=summary.actions,
+        responses=summary.responses,
+        states=tuple(line.strip() for line in lines),
+        seconds=summary.duration_s,
+        fault=summary.remark if summary.ending in ("fault", "not_started", "cancelled") else "",
+    )

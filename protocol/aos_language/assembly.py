@@ -1,0 +1,120 @@
+"""Documents put together to a project: one environment, each skill with its model and its mapping.
+
+A skill whose mapping is written nowhere gets a derived one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+
+from aos_language.derived_mapping import derived_mapping
+from aos_language.findings import Findings
+from aos_language.reading.document import Document, DocumentKind
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import (
+    AbstractionMapping,
+    Environment,
+    LowLevelDocument,
+    Project,
+    Skill,
+    SkillModel,
+)
+from aos_protocol.spelling import nearest
+
+__all__ = ["Assembly", "assemble"]
+
+
+class Assembly(msgspec.Struct):
+    """What the documents of a bundle make together, complete or not."""
+
+    environment: Environment | None = None
+    models: dict[str, SkillModel] = {}
+    mappings: dict[str, AbstractionMapping] = {}
+    low_level: LowLevelDocument | None = None
+
+    def project(self) -> Project | None:
+        """The project; None where the environment or a mapping's skill is missing."""
+        if self.environment is None or not self.models or self.models.keys() != self.mappings.keys():
+            return None
+        skills = tuple(Skill(self.models[name], self.mappings[name]) for name in sorted(self.models))
+        return Project(self.environment.project, self.environment, skills, self.low_level)
+
+
+def assemble(
+    documents: Mapping[str, Document], findings: Findings, *, bundle: str, has_unread_files: bool
+) -> Assembly:
+    """Puts documents together; reports duplicates, mixed projects and what is missing.
+
+    `bundle` is the place of what has no file. With files that could not be read nothing counts as missing.
+    """
+    unique = _without_duplicates(documents, findings)
+    _check_projects(documents, findings)
+    assembly = Assembly()
+    for document in unique.values():
+        match document.content:
+            case Environment() as environment:
+                assembly.environment = environment
+            case LowLevelDocument() as low_level:
+                assembly.low_level = low_level
+            case SkillModel() as model if document.name:
+                assembly.models[document.name] = model
+            case AbstractionMapping() as mapping if document.name:
+                assembly.mappings[document.name] = mapping
+    written = {name for kind, name in unique if kind is DocumentKind.MAPPING}
+    for name in assembly.models.keys() - written:
+        assembly.mappings[name] = derived_mapping(assembly.models[name], assembly.environment)
+    if not has_unread_files:
+        _check_complete(unique, findings, Span(bundle))
+    return assembly
+
+
+def _without_duplicates(
+    documents: Mapping[str, Document], findings: Findings
+) -> dict[tuple[DocumentKind, str], Document]:
+    unique: dict[tuple[DocumentKind, str], Document] = {}
+    for document in documents.values():
+        first = unique.setdefault(document.identity, document)
+        if first is document or (not document.name and document.kind is not DocumentKind.ENVIRONMENT):
+            continue
+        title = document.kind.value
+        if document.kind in (DocumentKind.SKILL, DocumentKind.MAPPING):
+            title += f" of {document.name}"
+        hint = f"The first is {first.span.file}; take one of them out"
+        findings.error("AOS111", f"a second {title}", document.span, hint)
+    return unique
+
+
+def _check_projects(documents: Mapping[str, Document], findings: Findings) -> None:
+    """All documents are of the environment's project, or else of that of the first file."""
+    named = [document for document in documents.values() if document.project]
+    leading = next((d for d in named if d.kind is DocumentKind.ENVIRONMENT), next(iter(named), None))
+    for document in named:
+        if leading is not None and document.project != leading.project:
+            message = f"this document is of project {document.project}, not of {leading.project}"
+            hint = f"{leading.span.file} says {leading.project}"
+            findings.error("AOS113", message, document.project_span or document.span, hint)
+
+
+def _check_complete(
+    unique: Mapping[tuple[DocumentKind, str], Document], findings: Findings, bundle: Span
+) -> None:
+    by_kind = {kind: {name for other, name in unique if other is kind} for kind in DocumentKind}
+    if not by_kind[DocumentKind.ENVIRONMENT]:
+        hint = "Add an .ef file, or a JSON document of type Environment"
+        findings.error("AOS115", "there is no environment document", bundle, hint)
+    skills, mappings = by_kind[DocumentKind.SKILL], by_kind[DocumentKind.MAPPING]
+    for name in sorted(mappings - skills):
+        span = unique[DocumentKind.MAPPING, name].span
+        # A skill whose mapping is missed is the likeliest one to be meant.
+        meant = nearest(name, sorted(skills - mappings)) or nearest(name, sorted(skills))
+        hint = f"Did you mean `{meant}`?" if meant else f"Add {name}.sd, or a JSON document of type PLP"
+        findings.error("AOS114", f"the abstraction mapping {name} has no skill document", span, hint)
+        if meant in skills - mappings:
+            # Either of the two names may be the wrong one.
+            span = unique[DocumentKind.SKILL, meant].span
+            message = f"the skill {meant} has no abstraction mapping, and the mapping {name} no skill"
+            findings.error("AOS114", message, span, f"Did you mean `{name}`?")
+    if not skills and not mappings:
+        findings.error("AOS105", "there are no skills", bundle, "Add .sd files")

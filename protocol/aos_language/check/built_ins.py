@@ -1,0 +1,63 @@
+"""Calls of what AOS gives to model code: `AOS.Bernoulli(p)` and its like."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Collection
+
+from aos_language.cpp.snippets import Call, Extent
+from aos_language.findings import Findings
+from aos_protocol.diagnostics import Mend, Span
+from aos_protocol.spelling import quoted
+
+__all__ = ["BUILT_INS", "check_built_in"]
+
+BUILT_INS = {
+    "AOS": (
+        "Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform", "SetNull", "IsInitialized",
+        "Initialize", "Uninitialize",
+    ),
+    "AOSUtils": ("Bernoulli", "SampleDiscrete", "SampleNormal", "SampleUniform"),
+}  # fmt: skip
+_BY_LOWER = {name.lower(): name for name in BUILT_INS["AOS"]}
+_OWNER_BY_LOWER = {owner.lower(): owner for owner in BUILT_INS}
+_ALIKE = 0.85
+"""How much of a function's name has to be that of a built-in. Any function of C++ may stand there as well."""
+
+
+def check_built_in(
+    call: Call, code: str, declared: Collection[str], span_of: Callable[[Extent], Span], findings: Findings
+) -> None:
+    """AOS110 for a built-in that is not there, lacks its owner, or has it in another spelling."""
+    owner, name = call.name[0] if len(call.name) == 2 else "", call.name[-1] if call.name else ""
+    span = span_of(call.function)
+    text = code[call.function.start : call.function.end]
+    if owner in BUILT_INS and name not in BUILT_INS[owner]:
+        known = BUILT_INS[owner]
+        start = call.function.start + text.rfind(name)
+        column = call.function.column + start - call.function.start
+        place = Extent(start, start + len(name), call.function.line, column)
+        of_name = span if "\n" in text else span_of(place)
+        findings.unknown(name, known, f"{owner} has no `{name}`", of_name, f"It has {quoted(known)}")
+    elif owner == "AOS" and "::" in text:
+        _written_otherwise(f"`{text}` is not how AOS writes it", "AOS", name, text, span, findings)
+    elif len(call.name) == 2 and owner not in BUILT_INS and owner not in declared:
+        meant = _OWNER_BY_LOWER.get(owner.lower(), "")
+        if meant:
+            _written_otherwise(f"unknown name `{owner}`", meant, _meant(name) or name, text, span, findings)
+    elif len(call.name) == 1 and name not in declared and (meant := _meant(name)):
+        _written_otherwise(f"unknown function `{name}`", "AOS", meant, text, span, findings)
+
+
+def _meant(name: str) -> str:
+    """The built-in that a function's name is, or nearly is; empty where it is another function's."""
+    close = difflib.get_close_matches(name.lower(), _BY_LOWER, n=1, cutoff=_ALIKE)
+    return _BY_LOWER[close[0]] if close else ""
+
+
+def _written_otherwise(
+    message: str, owner: str, name: str, text: str, span: Span, findings: Findings
+) -> None:
+    right = f"{owner}.{name}"
+    mend = Mend(span, len(text), right) if "\n" not in text else None
+    findings.error("AOS110", message, span, f"Write `{right}`", mend)

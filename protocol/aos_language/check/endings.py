@@ -1,0 +1,72 @@
+"""Endings that the documents leave to the sign of a reward."""
+
+from __future__ import annotations
+
+import re
+
+from aos_language.check.blocks import SPECIAL, assignment_blocks
+from aos_language.findings import Findings
+from aos_protocol.documents import Environment, SpecialState
+
+__all__ = ["check_endings", "check_goals"]
+
+_NEGATIVE = re.compile(r"\b__reward\s*(?:=\s*-|-=)")
+_OTHER_REWARD = re.compile(r"\b__reward\s*[+*/]?=(?!=|\s*(?:-|0*\.?0*\s*;))")
+_ENDING_WORDS = ("__isGoalState", "__isFailureState")
+
+
+def check_endings(environment: Environment, findings: Findings) -> None:
+    """Terminal states that say nothing of failure, and whose reward is negative or missing."""
+    for special in environment.special_states:
+        code = _code(special)
+        if not (special.is_goal or "__isGoalState" in code):
+            continue
+        if special.is_failure is not None or "__isFailureState" in code:
+            continue
+        word = "`__isFailureState = true;`" if code else "`IsFailureState` (SDL: `is_failure_state:`)"
+        if _is_negative(special, code):
+            message = "an ending that is a failure because its reward is negative"
+            findings.remark("AOS137", message, special.span, f"Say so with {word}")
+        elif _is_nothing(special, code):
+            message = "an ending that is neither goal nor failure because its reward is 0"
+            findings.remark("AOS137", message, special.span, f"If it is a failure, say so with {word}")
+
+
+def check_goals(environment: Environment, findings: Findings) -> None:
+    """AOS139 where no ending can be a goal. Tasks that go on have none, so without endings it is a remark."""
+    endings = [special for special in environment.special_states if _may_end(special)]
+    if not endings:
+        message = "no special state ends the mission: it runs until its step limit"
+        hint = "If it has a goal, set `__isGoalState = true;` in a `reward_code:`"
+        findings.remark("AOS139", message, environment.span, hint)
+    elif not any(_may_be_goal(special) for special in endings):
+        message = "no ending is a goal: of each the reward is negative or 0, or it says that it is a failure"
+        findings.warning("AOS139", message, endings[0].span, "Give the goal a positive reward")
+
+
+def _may_end(special: SpecialState) -> bool:
+    code = _code(special)
+    return special.is_goal or bool(special.is_failure) or any(word in code for word in _ENDING_WORDS)
+
+
+def _may_be_goal(special: SpecialState) -> bool:
+    code = _code(special)
+    if not code:
+        is_goal = special.is_goal and not special.is_failure
+        return is_goal and (special.is_failure is False or special.reward > 0)
+    if "__isGoalState" not in code:
+        return False
+    # One piece of code may tell several endings.
+    return "__isFailureState" in code or _OTHER_REWARD.search(code) is not None
+
+
+def _code(special: SpecialState) -> str:
+    return " ".join(block.snippet.code for block in assignment_blocks(SPECIAL, special.code))
+
+
+def _is_negative(special: SpecialState, code: str) -> bool:
+    return special.reward < 0 or _NEGATIVE.search(code) is not None
+
+
+def _is_nothing(special: SpecialState, code: str) -> bool:
+    return "__reward" not in code if code else special.reward == 0

@@ -1,0 +1,298 @@
+"""The Python of the mappings: does it parse, which names does it use, and which rules can fire?"""
+
+from __future__ import annotations
+
+import ast
+import keyword
+import re
+import warnings
+from collections.abc import Iterable, Iterator
+
+from aos_language.check.python_names import PythonNames, check_names
+from aos_language.check.scope import Scope
+from aos_language.findings import Findings
+from aos_protocol.diagnostics import Severity, Span
+from aos_protocol.documents import (
+    AbstractionMapping,
+    LocalSource,
+    LocalVariable,
+    LowLevelAssignment,
+    LowLevelDocument,
+    ResponseRule,
+    SkillModel,
+    Snippet,
+)
+from aos_protocol.spelling import quoted
+
+__all__ = ["check_low_level", "check_mapping", "parsed", "snippets_of_mapping"]
+
+_CPP_OPERATOR = re.compile(r"&&|\|\||!(?!=)")
+_PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
+
+
+def check_mapping(
+    mapping: AbstractionMapping,
+    model: SkillModel | None,
+    scope: Scope,
+    findings: Findings,
+    *,
+    is_whole: bool = True,
+) -> None:
+    """Rules, local variables and the request of one mapping.
+
+    Where the documents are not read as a `whole`, a local variable that seems missing may stand in the rest.
+    """
+    _check_path(mapping.activation.path, mapping.activation.span, findings)
+    _check_local_names(mapping, findings)
+    names = PythonNames.of(mapping, model, scope)
+    severity = Severity.ERROR if is_whole else Severity.WARNING
+    _check_rules(mapping, model, names, scope, findings, severity)
+    _check_order(mapping.rules, findings)
+    # Documents that are only planned with may have a request from elsewhere and nothing that it could name.
+    of_request = severity if mapping.local_variables else Severity.WARNING
+    for field in mapping.activation.fields:
+        _check_expression(field.value, names, findings, of_request)
+    for variable in mapping.local_variables:
+        _check_variable(variable, names, findings, severity)
+        if variable.source is LocalSource.PARAMETER and model is not None:
+            _check_parameter(variable, model, scope, findings)
+    if model is not None:
+        _check_passed_on(mapping, model, findings)
+    local_names = [variable.name for variable in mapping.local_variables]
+    if mapping.response_variable and mapping.response_variable not in local_names:
+        message = f"unknown local variable `{mapping.response_variable}`"
+        span = mapping.response_variable_span or mapping.span
+        findings.unknown(mapping.response_variable, local_names, message, span, _listing(local_names))
+
+
+def check_low_level(
+    document: LowLevelDocument, mappings: Iterable[AbstractionMapping], scope: Scope, findings: Findings
+) -> None:
+    """The code that makes low-level constants."""
+    names = PythonNames.of_constants(mappings, scope)
+    for constant in document.constants:
+        tree = parsed(constant.code, "exec", findings)
+        if tree is not None:
+            check_names(constant.code, tree, names, findings)
+
+
+def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:
+    """All Python of a mapping."""
+    for rule in mapping.rules:
+        yield from [rule.condition] if rule.condition is not None else []
+        yield from (assignment.value for assignment in rule.assignments)
+    yield from (field.value for field in mapping.activation.fields)
+    for variable in mapping.local_variables:
+        yield from (each for each in (variable.initial_value, variable.code) if each is not None)
+
+
+def _check_path(path: str, span: Span, findings: Findings) -> None:
+    if not _PATH.fullmatch(path):
+        hint = "A path is made of letters, digits, _ and -, with / between"
+        findings.error("AOS126", f"{path!r} cannot be a path", span, hint)
+
+
+def _check_local_names(mapping: AbstractionMapping, findings: Findings) -> None:
+    first: dict[str, LocalVariable] = {}
+    for variable in mapping.local_variables:
+        if keyword.iskeyword(variable.name):
+            message = f"`{variable.name}` is a word of Python"
+            findings.error("AOS126", message, variable.span, "Choose another name")
+        elif variable.name in first:
+            hint = f"The first is at {first[variable.name].span}"
+            findings.error("AOS126", f"a second local variable `{variable.name}`", variable.span, hint)
+        first.setdefault(variable.name, variable)
+    for field in mapping.activation.fields:
+        if keyword.iskeyword(field.name):
+            message = f"the field `{field.name}` is a word of Python"
+            findings.error("AOS126", message, field.value.span, "Choose another name")
+
+
+# --- code ----------------------------------------------------------------------------------------------
+
+
+def _check_rules(
+    mapping: AbstractionMapping,
+    model: SkillModel | None,
+    names: PythonNames,
+    scope: Scope,
+    findings: Findings,
+    severity: Severity,
+) -> None:
+    before: list[ast.AST] = []
+    severity = Severity.WARNING if mapping.response_variable else severity
+    for rule in mapping.rules:
+        for snippet in (rule.condition, *(assignment.value for assignment in rule.assignments)):
+            if snippet is not None:
+                tree = _check_expression(snippet, names.of_rules(before), findings, severity)
+                before += [tree] if tree is not None else []
+        if model is not None and scope.has_environment:
+            for assignment in rule.assignments:
+                _check_assigned(assignment, model, scope, findings)
+        if _constant_truth(rule.condition) is True:
+            severity = Severity.WARNING  # What stands behind a rule that always holds never runs.
+
+
+def _check_expression(
+    snippet: Snippet, names: PythonNames, findings: Findings, severity: Severity = Severity.ERROR
+) -> ast.AST | None:
+    """Parses an expression and looks at its names."""
+    tree = parsed(snippet, "eval", findings)
+    if tree is not None:
+        check_names(snippet, tree, names, findings, severity)
+    return tree
+
+
+def _check_variable(
+    variable: LocalVariable, names: PythonNames, findings: Findings, severity: Severity
+) -> None:
+    if variable.source is LocalSource.TOPIC:
+        _check_path(variable.topic, variable.source_span or variable.span, findings)
+    if variable.initial_value is not None:
+        _check_expression(variable.initial_value, names.at_start(), findings, severity)
+    if variable.code is None:
+        return
+    tree = parsed(variable.code, "exec", findings)
+    if tree is None:
+        return
+    check_names(variable.code, tree, names.of_code(), findings, severity)
+    assigned = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    if variable.name in assigned:
+        return
+    if variable.source is LocalSource.SERVICE_RESPONSE:
+        message = f"this code never assigns `{variable.name}`"
+        hint = f"It assigns {quoted(sorted(assigned))}" if assigned else "Write `name = ...`"
+        findings.error("AOS121", message, variable.code.span, hint)
+    elif not any(isinstance(node, ast.Return) for node in ast.walk(tree)):
+        hint = f"Without it {variable.name} stays as it was, whatever the message says"
+        findings.warning("AOS121", "this code returns nothing", variable.code.span, hint)
+
+
+def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
+    """The syntax tree; None, with an error at its place, where it is not Python."""
+    code = snippet.code
+    is_long = mode == "eval" and "\n" in code  # An expression may go on in the next line.
+    # What closes one kind of brackets and opens it again does not pass in the other.
+    texts = (f"(\n{code}\n)", f"[\n{code}\n]") if is_long else (code,)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree, *_ = [ast.parse(text, mode=mode) for text in texts]
+            return ast.increment_lineno(tree, -1) if is_long else tree
+    except SyntaxError as error:
+        # Python gives no column where the code ends too early.
+        end = len(code) - (code.rfind("\n") + 1) + 1
+        span = snippet.locate((error.lineno or 1) - is_long, error.offset or end)
+        hint = "Python writes `and`, `or`, `not`" if _CPP_OPERATOR.search(code) else ""
+        findings.error("AOS121", f"this is not Python: {error.msg}", span, hint)
+    except (ValueError, RecursionError, MemoryError) as error:
+        findings.error("AOS121", f"this cannot be read as Python: {error}", snippet.span)
+    return None
+
+
+# --- rules ---------------------------------------------------------------------------------------------
+
+
+def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
+    """The first rule that holds wins: what stands behind an always-true rule never fires."""
+    always: ResponseRule | None = None
+    seen: dict[str, ResponseRule] = {}
+    for rule in rules:
+        truth = _constant_truth(rule.condition)
+        key = rule.condition.code if rule.condition is not None else "True"
+        span = _condition_span(rule)
+        if always is not None:
+            hint = f"The rule on line {_condition_span(always).line} always holds"
+            findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
+        elif truth is False:
+            findings.warning("AOS118", f"the rule for {rule.response} never fires", span)
+        elif key in seen:
+            hint = f"The rule on line {_condition_span(seen[key]).line} has the same condition"
+            findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
+        if always is None and truth is True:
+            always = rule
+        seen.setdefault(key, rule)
+
+
+def _condition_span(rule: ResponseRule) -> Span:
+    return rule.condition.span if rule.condition is not None else rule.span
+
+
+def _constant_truth(condition: Snippet | None) -> bool | None:
+    if condition is None:
+        return True
+    try:
+        return bool(ast.literal_eval(condition.code))
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
+        return None
+
+
+# --- parameters ----------------------------------------------------------------------------------------
+
+
+def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, findings: Findings) -> None:
+    name, *fields = variable.parameter_path.split(".")
+    span = variable.source_span or variable.span
+    parameters = {parameter.name: parameter.type for parameter in model.parameters}
+    if name not in parameters:
+        message = f"the skill {model.name} has no parameter `{name}`"
+        findings.unknown(name, parameters, message, span, _listing(parameters))
+        return
+    _field_type(parameters[name], fields, span, scope, findings)
+
+
+def _check_passed_on(mapping: AbstractionMapping, model: SkillModel, findings: Findings) -> None:
+    """AOS140 for each parameter of the skill that no local variable takes: the robot never hears of it."""
+    taken = {
+        variable.parameter_path.split(".")[0]
+        for variable in mapping.local_variables
+        if variable.source is LocalSource.PARAMETER
+    }
+    if taken - {parameter.name for parameter in model.parameters}:
+        return  # A name that is told as unknown may have been meant for the missing one.
+    for parameter in model.parameters:
+        if parameter.name not in taken:
+            message = (
+                f"the abstraction mapping of {model.name} never passes on the parameter {parameter.name}"
+            )
+            hint = f"Add a local variable with `action_parameter: {parameter.name}`, and a field that uses it"
+            findings.warning("AOS140", message, parameter.span, hint)
+
+
+def _check_assigned(
+    assignment: LowLevelAssignment, model: SkillModel, scope: Scope, findings: Findings
+) -> None:
+    """A rule may give a new value to what has a low-level one: an `anyValue`."""
+    name, *fields = assignment.path.removeprefix("state.").split(".")
+    parameters = {parameter.name: parameter.type for parameter in model.parameters}
+    types = {variable.name: variable.type for variable in scope.variables.values()} | parameters
+    if name not in types:
+        message = f"there is no parameter and no state variable `{name}`"
+        findings.unknown(name, types, message, assignment.span, _listing(types))
+        return
+    kind = _field_type(types[name], fields, assignment.span, scope, findings)
+    if kind not in ("", "anyValue"):
+        hint = "The model changes the state; a rule gives new low-level values"
+        findings.error("AOS110", f"`{assignment.path}` is no anyValue, but {kind}", assignment.span, hint)
+
+
+def _field_type(kind: str, fields: list[str], span: Span, scope: Scope, findings: Findings) -> str:
+    """The type at a path into `kind`; empty if there is none, with a finding where the documents can tell."""
+    for field in fields:
+        compound = scope.compounds.get(kind)
+        if compound is None:
+            if scope.has_environment and not scope.unknown_type_name(kind):
+                findings.error("AOS110", f"`{field}` of a {kind}, which has no fields", span)
+            return ""
+        types = {inner.name: inner.type for inner in compound.fields}
+        if field not in types:
+            message = f"the type {kind} has no field `{field}`"
+            findings.unknown(field, types, message, span, _listing(types))
+            return ""
+        kind = types[field]
+    return kind
+
+
+def _listing(known: Iterable[str]) -> str:
+    names = quoted(sorted(known))
+    return f"There are {names}" if names else ""

@@ -1,0 +1,207 @@
+"""The names that the Python of a mapping uses: is there something behind each when it runs?
+
+A name that nothing gives is an error, for it is a NameError in every run that comes to it. What an `import *`
+brings nobody knows here, so such a mapping is left alone; so is code that is ready for the error, in a `try`.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import re
+from collections.abc import Iterable, Iterator
+
+import msgspec
+
+from aos_language.check.scope import STATE_COPIES, Scope
+from aos_language.findings import Findings
+from aos_protocol.diagnostics import Severity
+from aos_protocol.documents import AbstractionMapping, Import, LowLevelDocument, SkillModel, Snippet
+from aos_protocol.spelling import nearest, quoted
+
+__all__ = ["PythonNames", "check_names", "column_of", "top_level_names"]
+
+_OF_SKILL = frozenset({"__skill_status", "__skill_error"})
+"""What rules can say of a skill that has failed."""
+_INPUT, _PARAMETERS = "__input", "parameters"
+_BUILT_IN_NAMES = frozenset(dir(builtins))
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_OF_OTHER_LANGUAGES = {"true": "True", "false": "False", "null": "None", "nullptr": "None", "NULL": "None"}
+
+
+class PythonNames(msgspec.Struct, frozen=True):
+    """What there is for the code of one mapping.
+
+    `known` are all names; `local_names` those of local variables, which are meant most often; `parameters`
+    those of the skill. `is_open` where an `import *` brings names that nobody knows here.
+    """
+
+    known: frozenset[str]
+    local_names: tuple[str, ...] = ()
+    parameters: tuple[str, ...] = ()
+    is_open: bool = False
+
+    @classmethod
+    def of(cls, mapping: AbstractionMapping, model: SkillModel | None, scope: Scope) -> PythonNames:
+        """The names of a mapping's own expressions."""
+        imports = [*mapping.activation.imports]
+        for variable in mapping.local_variables:
+            imports += variable.imports
+        imported = _imported_names(imports)
+        local_names = tuple(variable.name for variable in mapping.local_variables)
+        known = _BUILT_IN_NAMES.union(imported or (), local_names, _names_of_constants(scope.low_level))
+        known |= _names_of_shared(scope.shared_mapping_code)
+        parameters = tuple(parameter.name for parameter in model.parameters) if model is not None else ()
+        return cls(known, local_names, parameters, is_open=imported is None)
+
+    @classmethod
+    def of_constants(cls, mappings: Iterable[AbstractionMapping], scope: Scope) -> PythonNames:
+        """The names of the code that makes low-level constants, which each mapping's module has a copy of."""
+        of_each = [cls.of(mapping, None, scope) for mapping in mappings]
+        known = _names_of_constants(scope.low_level).union(_BUILT_IN_NAMES, *(each.known for each in of_each))
+        return cls(known, is_open=any(each.is_open for each in of_each))
+
+    def of_rules(self, before: Iterable[ast.AST]) -> PythonNames:
+        """Those of a rule: what says how the skill has ended, and what the rules `before` it have bound."""
+        return self._also(_OF_SKILL.union(*map(_bound_names, before)))
+
+    def at_start(self) -> PythonNames:
+        """Those of a first value, which is made when there is no local variable yet."""
+        known = self.known.difference(self.local_names).union({_PARAMETERS})
+        return msgspec.structs.replace(self, known=known)
+
+    def of_code(self) -> PythonNames:
+        """Those of a local variable's code."""
+        return self._also({_INPUT})
+
+    def _also(self, names: Iterable[str]) -> PythonNames:
+        return msgspec.structs.replace(self, known=self.known.union(names))
+
+
+def _imported_names(imports: Iterable[Import]) -> frozenset[str] | None:
+    """The names that imports bring; None where an `import *` brings names we cannot know."""
+    names = [name.split(" as ")[-1].strip().split(".")[0] for item in imports for name in item.names]
+    return None if "*" in names else frozenset(names)
+
+
+def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
+    """What the low-level document gives to the mappings' modules: types, constants, what their code binds."""
+    if document is None:
+        return frozenset()
+    names = {each.name for each in document.types} | {each.name for each in document.constants}
+    for constant in document.constants:
+        try:
+            names |= _bound_names(ast.parse(constant.code.code))
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            continue  # Told where the code is checked.
+    return frozenset(names)
+
+
+def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
+    """What the environment's `shared_mapping_code` gives to the mappings' modules."""
+    if snippet is None:
+        return frozenset()
+    try:
+        return top_level_names(ast.parse(snippet.code))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return frozenset(_WORD.findall(snippet.code))  # Told where the code is checked.
+
+
+def top_level_names(tree: ast.Module) -> frozenset[str]:
+    """The names that a module's own statements bind: not those of functions' insides."""
+    names: set[str] = set()
+    waiting: list[ast.AST] = [*tree.body]
+    while waiting:
+        node = waiting.pop()
+        match node:
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                names.add(name)
+                continue
+            case ast.Name(id=name, ctx=ast.Store()):
+                names.add(name)
+            case ast.alias(name=name, asname=alias):
+                names.add(alias or name.partition(".")[0])
+            case ast.Lambda() | ast.ListComp() | ast.SetComp() | ast.DictComp() | ast.GeneratorExp():
+                continue
+        waiting += ast.iter_child_nodes(node)
+    return frozenset(names)
+
+
+def check_names(
+    snippet: Snippet,
+    tree: ast.AST,
+    names: PythonNames,
+    findings: Findings,
+    severity: Severity = Severity.ERROR,
+) -> None:
+    """AOS110 for each name of the snippet that nothing gives."""
+    if names.is_open or any(alias.name == "*" for alias in ast.walk(tree) if isinstance(alias, ast.alias)):
+        return
+    known = names.known | _bound_names(tree)
+    for node in _loaded_names(tree):
+        if node.id in known:
+            continue
+        span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
+        close = nearest(node.id, names.local_names)
+        candidates = names.local_names if close else sorted(known)
+        if (hint := _hint(node.id, names)) and not close:
+            candidates = ()
+        message = f"no local variable gives `{node.id}`"
+        findings.unknown(node.id, candidates, message, span, hint, severity=severity)
+
+
+def _bound_names(tree: ast.AST) -> frozenset[str]:
+    """Every name that code binds somewhere, in whatever order and scope."""
+    bound: set[str] = set()
+    for node in ast.walk(tree):
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
+                bound.add(name)
+            case ast.arg(arg=name):
+                bound.add(name)
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                bound.add(name)
+            case ast.alias(name=name, asname=alias):
+                bound.add(alias or name.partition(".")[0])
+            case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
+                bound.add(name)
+            case ast.MatchStar(name=str(name)) | ast.MatchMapping(rest=str(name)):
+                bound.add(name)
+            case ast.Global(names=several) | ast.Nonlocal(names=several):
+                bound.update(several)
+    return frozenset(bound)
+
+
+def _loaded_names(tree: ast.AST) -> Iterator[ast.Name]:
+    """The names that are read, but for those in a `try` that catches."""
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+            yield node
+        skipped: list[ast.stmt] = []
+        if isinstance(node, ast.Try | ast.TryStar) and node.handlers:
+            skipped = node.body
+        waiting += [child for child in ast.iter_child_nodes(node) if child not in skipped]
+
+
+def _hint(name: str, names: PythonNames) -> str:
+    if name in _OF_OTHER_LANGUAGES:
+        return f"Python writes `{_OF_OTHER_LANGUAGES[name]}`"
+    if name in STATE_COPIES:
+        return "A mapping knows its local variables, not the state of the model"
+    if name == _INPUT:
+        return "It is there in the code of a local variable: make one of it, and name that one here"
+    if name in _OF_SKILL:
+        return "Only rules know it"
+    if name in names.parameters:
+        return f"Add a local variable with `action_parameter: {name}`"
+    if names.local_names:
+        return f"The local variables are {quoted(names.local_names)}"
+    return "There are no local variables: add one that gives it"
+
+
+def column_of(snippet: Snippet, line: int, byte_offset: int) -> int:
+    """A column from 1 for an offset in UTF-8 bytes, as `ast` gives it."""
+    text = snippet.code.split("\n")[line - 1]
+    return len(text.encode()[:byte_offset].decode(errors="ignore")) + 1

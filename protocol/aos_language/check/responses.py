@@ -1,0 +1,162 @@
+"""What a skill document reports against what its abstraction mapping gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+
+from aos_language.check.blocks import DYNAMIC, Block, assignment_blocks
+from aos_language.check.model_code import read_block
+from aos_language.check.scope import STATE_COPIES, Scope
+from aos_language.cpp.keywords import SPECIAL_NAMES
+from aos_language.cpp.snippets import Access, Cpp, DeclarationKind, Mention
+from aos_language.derived_mapping import sets_response
+from aos_language.findings import Findings
+from aos_protocol.documents import AbstractionMapping, SkillModel
+from aos_protocol.spelling import quoted
+
+__all__ = ["check_responses"]
+
+_RESPONSES = frozenset({"__moduleResponse", "__moduleResponseStr"})
+_NO_RESPONSE = "DefaultObservation"
+"""What comes back where nothing says it: of a model, and of a mapping without rules."""
+_KNOWN_TO_CPP = frozenset({"AOS", "AOSUtils", "false", "nullptr", "NULL", "this", "true"})
+
+
+def check_responses(
+    model: SkillModel,
+    mapping: AbstractionMapping,
+    scope: Scope,
+    findings: Findings,
+    *,
+    is_whole: bool = True,
+) -> None:
+    """Both directions: a response that no rule gives, and a rule whose response no code produces.
+
+    Where the documents are not read as a `whole`, what seems to be missing may stand in the rest.
+    """
+    blocks = list(assignment_blocks(DYNAMIC, model.dynamic_model))
+    read = [(block, read_block(block)) for block in blocks]
+    if any(cpp.faults for _, cpp in read):
+        return
+    known = _known_names(model, scope, read)
+    given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
+    enum_values, others = _own_names(model, read)
+    for block, mention in _assigned_names(read):
+        name = mention.path[0]
+        span = block.snippet.locate(mention.root.line, mention.root.column)
+        if name in given and name in enum_values | others:
+            message = f"`{name}` is declared in this skill too, and hides the response"
+            report = findings.error if name in enum_values else findings.warning
+            report("AOS126", message, span, "Choose another name for one of them")
+        if name in given or name in known:
+            continue
+        if mapping.is_derived:
+            names = sorted(known | set(given))
+            findings.unknown(name, names, f"unknown name `{name}`", span, "It stands in a condition")
+            continue
+        message = f"the abstraction mapping of {model.name} has no response `{name}`"
+        otherwise = f"It has {quoted(given)}" if given else "Add a response with its rule to the mapping"
+        findings.unknown(name, given, message, span, otherwise, code="AOS116")
+    if mapping.is_derived and not given and (place := sets_response(model)) is not None:
+        message = f"the responses of {model.name} cannot be told from its code"
+        hint = f"Assign names to __moduleResponse, or write an abstraction mapping: {model.name}.am"
+        findings.error("AOS114", message, place, hint)
+    if is_whole and _check_any_response(model, mapping, read, findings):
+        return
+    _check_text_response(model, mapping, read, findings)
+    mentioned = {mention.path[0] for _, cpp in read for mention in cpp.mentions if len(mention.path) == 1}
+    for rule in mapping.rules:
+        if rule.response in scope.enum_values:
+            message = f"the response {rule.response} has the name of an enum value"
+            findings.warning("AOS126", message, rule.span, "In the skill's code it is the response")
+        if rule.response not in mentioned and model.dynamic_model and not mapping.response_variable:
+            message = f"the skill document of {model.name} never produces the response {rule.response}"
+            hint = "When it comes, the belief has no explanation for it"
+            findings.warning("AOS117", message, rule.span, hint)
+
+
+def _check_any_response(
+    model: SkillModel, mapping: AbstractionMapping, read: list[tuple[Block, Cpp]], findings: Findings
+) -> bool:
+    """AOS117 for a model that never says what comes back, where the mapping always gives a word: True if so.
+
+    Such a model gives `DefaultObservation` in every run, so that what really comes is impossible.
+    """
+    mentioned = {mention.path[0] for _, cpp in read for mention in cpp.mentions}
+    given = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
+    # A name that is nearly one of the two is told where it stands.
+    is_set = any(get_close_matches(name, _RESPONSES, n=1, cutoff=0.85) for name in mentioned)
+    if is_set or _NO_RESPONSE in given or not (given or mapping.response_variable):
+        return False
+    word = "__moduleResponseStr" if mapping.response_variable else "__moduleResponse"
+    hint = f"Set it: the abstraction mapping gives {quoted(given)}"
+    if mapping.response_variable:
+        hint = f"Set it: the abstraction mapping gives the text of {mapping.response_variable}"
+    elif len(given) == 1:
+        hint = f"Add `__moduleResponse = {given[0]};`"
+    span = read[-1][0].snippet.span if read else model.span
+    message = f"the dynamic model of {model.name} never sets {word}, so that every response is impossible"
+    findings.error("AOS117", message, span, hint)
+    return True
+
+
+def _check_text_response(
+    model: SkillModel, mapping: AbstractionMapping, read: list[tuple[Block, Cpp]], findings: Findings
+) -> None:
+    writes = [
+        (block, mention)
+        for block, cpp in read
+        for mention in cpp.mentions
+        if mention.path[0] == "__moduleResponseStr"
+    ]
+    if writes and not mapping.response_variable:
+        block, mention = writes[0]
+        span = block.snippet.locate(mention.root.line, mention.root.column)
+        hint = "Name the local variable that holds it with `response_local_variable:`"
+        message = f"the abstraction mapping of {model.name} gives no text response"
+        findings.warning("AOS116", message, span, hint)
+    if mapping.response_variable and not writes and model.dynamic_model:
+        message = f"the skill document of {model.name} never sets __moduleResponseStr"
+        findings.warning("AOS117", message, mapping.response_variable_span or mapping.span)
+
+
+def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Mention]]:
+    """The lone names in what is assigned to `__moduleResponse`."""
+    for block, cpp in read:
+        extents = [
+            mention.assigned
+            for mention in cpp.mentions
+            if mention.path == ("__moduleResponse",) and mention.assigned is not None
+        ]
+        for mention in cpp.mentions:
+            is_name = len(mention.path) == 1 and mention.access is Access.READ
+            at = mention.extent.start
+            if is_name and any(extent.start <= at < extent.end for extent in extents):
+                yield block, mention
+
+
+def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[str], set[str]]:
+    """The values of the enums that the dynamic model declares, and the names of its variables."""
+    temporaries = [each.temporary for each in model.dynamic_model if each.temporary is not None]
+    values = {value for temporary in temporaries for value in temporary.enum_values}
+    variables = {temporary.name for temporary in temporaries}
+    for _, cpp in read:
+        for declaration in cpp.declarations:
+            is_value = declaration.kind is DeclarationKind.ENUMERATOR
+            (values if is_value else variables).add(declaration.name)
+    return values, variables
+
+
+def _known_names(model: SkillModel, scope: Scope, read: list[tuple[Block, Cpp]]) -> set[str]:
+    known = {*SPECIAL_NAMES, *_KNOWN_TO_CPP, *STATE_COPIES, *scope.enum_values, *scope.enums}
+    known |= scope.shared.all_names
+    known |= {*scope.low_level_names, *(parameter.name for parameter in model.parameters)}
+    blocks = (model.precondition, model.execution_time, model.dynamic_model)
+    for assignment in (assignment for block in blocks for assignment in block):
+        if assignment.temporary is not None:
+            temporary = assignment.temporary
+            known |= {temporary.name, temporary.enum_name, *temporary.enum_values}
+    for block, cpp in read:
+        known |= {*block.names, *(declaration.name for declaration in cpp.declarations)}
+    return known

@@ -1,0 +1,71 @@
+"""The code that all model code of a project shares: can each part of it be shared, and is it used?"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from aos_language.check.blocks import SHARED, environment_blocks, skill_blocks
+from aos_language.check.scope import Scope
+from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
+from aos_language.cpp.shared import SharedName
+from aos_language.document_code import shared_code_of
+from aos_language.findings import Findings
+from aos_protocol.documents import Environment, SkillModel
+
+__all__ = ["check_shared_code", "check_shared_names_are_used"]
+
+_WORD = re.compile(r"[A-Za-z_]\w*")
+
+
+def check_shared_code(environment: Environment, scope: Scope, findings: Findings) -> None:
+    """AOS145 for what cannot be shared, AOS126 for names that mean something else."""
+    snippet = environment.shared_code
+    if snippet is None:
+        return
+    shared = shared_code_of(environment)
+    for misuse in shared.misuses:
+        span = snippet.locate(misuse.extent.line, misuse.extent.column)
+        findings.error("AOS145", misuse.message, span, misuse.hint)
+    of_types = {*scope.enums, *scope.compounds, *scope.enum_values, *scope.low_level_names}
+    functions = {each.name for each in shared.functions}
+    first: dict[str, SharedName] = {}
+    for each in (*shared.names, *shared.functions):
+        span = snippet.locate(each.name_extent.line, each.name_extent.column)
+        other = first.setdefault(each.name, each) if each.name else each
+        if each.name in CPP_KEYWORDS or each.name in SPECIAL_NAMES:
+            findings.error("AOS126", f"`{each.name}` means something else", span, "Choose another name")
+        elif each.name in of_types:
+            message = f"`{each.name}` is already the name of a type, an enum value or a low-level value"
+            findings.error("AOS126", message, span, "Choose another name")
+        elif other is not each and not (each.name in functions and other in shared.functions):
+            place = snippet.locate(other.name_extent.line, other.name_extent.column)
+            findings.error("AOS126", f"a second `{each.name}`", span, f"The first is at {place}")
+
+
+def check_shared_names_are_used(
+    environment: Environment, models: Iterable[SkillModel], findings: Findings
+) -> None:
+    """AOS133 for each constant and function that no code names, and for enums of which nothing is named."""
+    snippet = environment.shared_code
+    if snippet is None:
+        return
+    shared = shared_code_of(environment)
+    words: set[str] = set()
+    blocks = [*environment_blocks(environment), *(block for model in models for block in skill_blocks(model))]
+    for block in blocks:
+        if block.role is not SHARED:
+            words.update(_WORD.findall(block.snippet.code))
+    for kind in (*environment.compounds, *environment.variables):
+        types = [field.type for field in getattr(kind, "fields", ())] or [getattr(kind, "type", "")]
+        words.update(word for each in types for word in _WORD.findall(each))
+    declared = (*shared.names, *shared.functions)
+    for each in declared:
+        others = shared.cpp.code[: each.extent.start] + shared.cpp.code[each.extent.end :]
+        together = [other.name for other in declared if other.extent == each.extent]
+        named = words.union(_WORD.findall(others))
+        if not each.name or not named.isdisjoint(together) or together[0] != each.name:
+            continue
+        span = snippet.locate(each.name_extent.line, each.name_extent.column)
+        message = f"no code uses the shared {each.kind} {each.name}"
+        findings.warning("AOS133", message, span, "Leave it out, or use it")

@@ -1,0 +1,128 @@
+"""How C++ expressions read local variables that may have no value yet, and which they set."""
+
+from __future__ import annotations
+
+import tree_sitter
+
+from aos_language.cpp.facts import CHANGING_METHODS, READING_FUNCTIONS, READING_METHODS
+from aos_language.cpp.flow import is_draw, names_in
+from aos_language.cpp.ways import State
+
+__all__ = ["Evaluation", "below", "operator_of", "text_of"]
+
+_READING_METHODS = (CHANGING_METHODS | READING_METHODS) - {"swap"}
+_NO_READS = frozenset({
+    "comment", "qualified_identifier", "type_descriptor", "template_argument_list", "sizeof_expression",
+    "declaration", "init_statement", "decltype",
+})  # fmt: skip
+
+
+class Evaluation:
+    """Reads expressions in the order in which they are evaluated, as far as it matters.
+
+    `found` has, by where a variable is declared, its first read without a value, its type, and whether no way
+    there sets it. In a `trial` nothing is told.
+    """
+
+    def __init__(self) -> None:
+        self.found: dict[int, tuple[tree_sitter.Node, str, bool]] = {}
+        self.declared: dict[str, tuple[int, str]] = {}
+        self.conditions: list[frozenset[str]] = []
+        self.is_trial = False
+
+    def expression(self, node: tree_sitter.Node | None, state: State) -> None:
+        """Reads and sets in the order of evaluation, as far as it matters."""
+        if node is None or node.type in _NO_READS:
+            return
+        if node.type == "identifier":
+            self._read(node, state)
+        elif node.type == "assignment_expression":
+            self._assign(node, state)
+        elif node.type == "lambda_expression" or (node.type == "pointer_expression" and _is_address(node)):
+            self.may_be_set(node, state)
+        elif node.type == "call_expression":
+            self._call(node, state)
+        elif node.type == "binary_expression" and operator_of(node) in ("&&", "||"):
+            left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+            self.expression(left, state)
+            self._sometimes(left, [right], state)
+        elif node.type == "conditional_expression":
+            condition = node.child_by_field_name("condition")
+            self.expression(condition, state)
+            parts = [node.child_by_field_name("consequence"), node.child_by_field_name("alternative")]
+            self._sometimes(condition, parts, state)
+        elif node.type == "field_expression":
+            self.expression(node.child_by_field_name("argument"), state)
+        else:
+            for child in node.named_children:
+                self.expression(child, state)
+
+    def _sometimes(
+        self, condition: tree_sitter.Node | None, parts: list[tree_sitter.Node | None], state: State
+    ) -> None:
+        """Parts that run under a condition; what one of them sets counts as set."""
+        self.conditions.append(frozenset(name.text for name in names_in(condition)))
+        for part in parts:
+            self.expression(part, state)
+        self.conditions.pop()
+
+    def _assign(self, node: tree_sitter.Node, state: State) -> None:
+        left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
+        while left is not None and left.type == "parenthesized_expression" and left.named_child_count == 1:
+            left = left.named_children[0]
+        self.expression(right, state)
+        if left is not None and left.type == "identifier" and operator_of(node) == "=":
+            state.set(text_of(left))
+        else:
+            self.expression(left, state)
+
+    def _call(self, node: tree_sitter.Node, state: State) -> None:
+        function = node.child_by_field_name("function")
+        arguments = node.child_by_field_name("arguments")
+        name = text_of(function).split("<")[0].removeprefix("std::") if function is not None else ""
+        is_reading = name in READING_FUNCTIONS or is_draw(node)
+        if function is not None and function.type == "field_expression":
+            self.expression(function.child_by_field_name("argument"), state)
+            method = function.child_by_field_name("field")
+            is_reading |= method is not None and text_of(method) in _READING_METHODS
+        for argument in arguments.named_children if arguments is not None else ():
+            if argument.type == "identifier" and not is_reading:
+                state.set(text_of(argument))  # It may be taken by reference.
+            else:
+                self.expression(argument, state)
+
+    def may_be_set(self, node: tree_sitter.Node | None, state: State) -> None:
+        for part in below(node) if node is not None else ():
+            if part.type == "identifier":
+                state.set(text_of(part))
+
+    def _read(self, node: tree_sitter.Node, state: State) -> None:
+        ways = state.unset.get(text_of(node))
+        declared = self.declared.get(text_of(node))
+        if ways is None or declared is None or self.is_trial:
+            return
+        if ways.never or not any(ways.under & named for named in self.conditions):
+            declared_at, kind = declared
+            self.found.setdefault(declared_at, (node, kind, ways.never))
+
+
+def _is_address(node: tree_sitter.Node) -> bool:
+    return node.children[0].type == "&"
+
+
+def operator_of(node: tree_sitter.Node) -> str:
+    operator = node.child_by_field_name("operator")
+    return text_of(operator) if operator is not None else ""
+
+
+def below(node: tree_sitter.Node) -> list[tree_sitter.Node]:
+    found, waiting = [], [node]
+    while waiting:
+        part = waiting.pop()
+        found.append(part)
+        waiting += part.children
+    return found
+
+
+def text_of(node: tree_sitter.Node) -> str:
+    return (node.text or b"").decode("utf-8", "replace")

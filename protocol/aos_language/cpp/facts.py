@@ -1,0 +1,127 @@
+"""What is found in a C++ snippet, as data; `snippets` fills it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from enum import StrEnum
+
+import msgspec
+
+from aos_language.cpp.tokens import Extent, Fault
+
+__all__ = [
+    "CHANGING_METHODS",
+    "HANDLE_METHODS",
+    "READING_FUNCTIONS",
+    "READING_METHODS",
+    "Access",
+    "Call",
+    "Cpp",
+    "Declaration",
+    "DeclarationKind",
+    "Mention",
+]
+
+CHANGING_METHODS = frozenset({
+    "append", "assign", "clear", "emplace", "emplace_back", "erase", "fill", "insert", "insert_or_assign",
+    "pop", "pop_back", "push", "push_back", "reserve", "resize", "swap",
+})  # fmt: skip
+HANDLE_METHODS = frozenset({"begin", "data", "end", "rbegin", "rend"})
+READING_METHODS = frozenset({
+    "at", "back", "c_str", "compare", "contains", "count", "empty", "find", "front", "length", "rfind",
+    "size", "str", "substr", "top",
+})  # fmt: skip
+READING_FUNCTIONS = frozenset({
+    "abs", "acos", "asin", "atan", "atan2", "bool", "ceil", "clamp", "cos", "double", "exp", "exp2", "fabs",
+    "float", "floor", "fmax", "fmin", "fmod", "hypot", "int", "isfinite", "isnan", "log", "log10", "log2",
+    "lround", "make_pair", "make_tuple", "max", "min", "pow", "round", "sin", "sqrt", "static_cast", "string",
+    "tan", "tanh", "to_string", "trunc",
+})  # fmt: skip
+
+
+class Access(StrEnum):
+    """What a mention does. BIND makes a reference, a pointer or an iterator, through which it may change."""
+
+    READ = "read"
+    WRITE = "write"
+    UPDATE = "update"
+    BIND = "bind"
+    CALL = "call"
+
+
+class Mention(msgspec.Struct, frozen=True):
+    """One use of a variable, as a whole access path.
+
+    `state__.robot.at` is `("state__", "robot", "at")`, `->` counts as `.`, a subscript is `"[]"`, and
+    `std::sort` is `("std", "sort")`. For a method call the path is the object's. `extent` covers the path,
+    `root` its first name, `assigned` what an assignment assigns. Names in subscripts and arguments are
+    mentions of their own.
+    """
+
+    path: tuple[str, ...]
+    access: Access
+    extent: Extent
+    root: Extent
+    method: str = ""
+    assigned: Extent | None = None
+
+    @property
+    def text(self) -> str:
+        return ".".join(self.path).replace(".[]", "[]")
+
+
+class Call(msgspec.Struct, frozen=True):
+    """A call: `AOS.Bernoulli(p)` is named `("AOS", "Bernoulli")`. `function` covers the name."""
+
+    name: tuple[str, ...]
+    extent: Extent
+    function: Extent
+    arguments: tuple[Extent, ...]
+
+
+class DeclarationKind(StrEnum):
+    VARIABLE = "variable"
+    PARAMETER = "parameter"
+    ENUM = "enum"
+    ENUMERATOR = "enumerator"
+
+
+class Declaration(msgspec.Struct, frozen=True):
+    """A name that the snippet declares. `type` is as written; for an enumerator it is the enum's name."""
+
+    name: str
+    type: str
+    kind: DeclarationKind
+    extent: Extent
+    initial: Extent | None = None
+
+
+class Cpp(msgspec.Struct, frozen=True):
+    """A snippet as read; everything in text order."""
+
+    code: str
+    mentions: tuple[Mention, ...] = ()
+    calls: tuple[Call, ...] = ()
+    declarations: tuple[Declaration, ...] = ()
+    types: tuple[tuple[str, Extent], ...] = ()
+    literals: tuple[Extent, ...] = ()
+    missing_semicolons: tuple[int, ...] = ()
+    faults: tuple[Fault, ...] = ()
+    is_empty: bool = False
+
+    def writes(self) -> Iterator[Mention]:
+        """The mentions through which something changes or may change."""
+        changing = (Access.WRITE, Access.UPDATE, Access.BIND)
+        return (mention for mention in self.mentions if mention.access in changing)
+
+    def replace(self, edits: Iterable[tuple[Extent | int, str]]) -> str:
+        """The code with pieces replaced; an offset in place of an extent inserts. ValueError on overlap."""
+        pieces: list[str] = []
+        position = 0
+        spans = [((at, at) if isinstance(at, int) else (at.start, at.end), text) for at, text in edits]
+        for (start, end), text in sorted(spans, key=lambda item: item[0]):
+            if start < position:
+                raise ValueError(f"two edits overlap at offset {start}")
+            pieces += [self.code[position:start], text]
+            position = end
+        return "".join([*pieces, self.code[position:]])

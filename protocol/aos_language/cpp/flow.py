@@ -1,0 +1,379 @@
+"""What flows where in C++ statements: which names a change of a name may depend on.
+
+The reading is by name and without order: a flow stands for every time that the statement runs. Where the text
+leaves a doubt, a name counts as `used`: it may have an effect on anything. So a name that no chain of flows
+leads from to what is used has an effect on nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+import msgspec
+import tree_sitter
+
+from aos_language.cpp.facts import (
+    CHANGING_METHODS,
+    HANDLE_METHODS,
+    READING_FUNCTIONS,
+    READING_METHODS,
+    Cpp,
+)
+from aos_language.cpp.tree import tree_of
+
+__all__ = ["STATES", "Flow", "Flows", "Name", "flows_of"]
+
+STATES = frozenset({"state", "state_", "state__", "state___"})
+"""The copies of the state; `state.x` and `state__.x` are one name."""
+
+
+class Name(msgspec.Struct, frozen=True):
+    """A variable of the state, or another one of the snippet. The whole state has no text."""
+
+    text: str
+    is_of_state: bool = False
+
+
+_WHOLE_STATE = Name("", is_of_state=True)
+
+
+class Flow(msgspec.Struct, frozen=True):
+    """A change of `target`, of which the new value and whether it happens depend on `sources` at most."""
+
+    target: Name
+    sources: frozenset[Name]
+
+
+class Flows(msgspec.Struct, frozen=True):
+    """All of a snippet. `is_opaque`: the text cannot be read, so that everything may be used.
+
+    `looped` decides how often a loop runs. `draws` stand for what the snippet's draws give, in the order of
+    the text; each is a name of its own among the sources.
+    """
+
+    flows: tuple[Flow, ...] = ()
+    used: frozenset[Name] = frozenset()
+    looped: frozenset[Name] = frozenset()
+    draws: tuple[Name, ...] = ()
+    is_opaque: bool = False
+
+
+def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset()) -> Flows:
+    """The flows of the statements of a function body; `reading` are functions that change nothing."""
+    if cpp.is_empty:
+        return Flows()
+    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
+    root = tree_of(f"void f() {{{complete}\n}}")
+    if cpp.faults or root.has_error:
+        return Flows(is_opaque=True)
+    walk = _Reading(reading - {declaration.name for declaration in cpp.declarations})
+    walk.statement(root.children[0].child_by_field_name("body"), frozenset(), None)
+    draws = sorted(part.start_byte for part in _below(root) if is_draw(part))
+    return Flows(
+        tuple(walk.flows),
+        frozenset(walk.used),
+        frozenset(walk.looped),
+        tuple(map(_name_of_draw, draws)),
+    )
+
+
+_Control = frozenset[Name]
+
+
+class _Reading:
+    """One walk over the statements.
+
+    `control` is what decides whether a statement runs; `switch_control` is that of the innermost `switch`,
+    where a `break` would leave one.
+    """
+
+    def __init__(self, reading: frozenset[str]) -> None:
+        self._reading = READING_FUNCTIONS | reading
+        self.flows: list[Flow] = []
+        self.used: set[Name] = set()
+        self.looped: set[Name] = set()
+
+    def statement(
+        self, node: tree_sitter.Node | None, control: _Control, switch_control: _Control | None
+    ) -> None:
+        if node is None or not node.is_named or node.type in _WITHOUT_EFFECT:
+            return
+        if node.type in _NESTED:
+            for child in node.named_children:
+                self.statement(child, control, switch_control)
+        elif node.type == "expression_statement":
+            for child in node.named_children:
+                self._expression(child, control)
+        elif node.type == "declaration":
+            self._declaration(node, control)
+        elif node.type == "if_statement":
+            inner = self._condition(node.child_by_field_name("condition"), control)
+            self.statement(node.child_by_field_name("consequence"), inner, switch_control)
+            self.statement(node.child_by_field_name("alternative"), inner, switch_control)
+        elif node.type in ("while_statement", "do_statement"):
+            inner = self._loop_condition(node.child_by_field_name("condition"), control)
+            self.statement(node.child_by_field_name("body"), inner, None)
+        elif node.type == "for_statement":
+            self._for(node, control)
+        elif node.type == "for_range_loop":
+            self._range_for(node, control)
+        elif node.type == "switch_statement":
+            inner = self._condition(node.child_by_field_name("condition"), control)
+            self.statement(node.child_by_field_name("body"), inner, inner)
+        elif node.type == "case_statement":
+            for child in node.named_children:
+                if child != node.child_by_field_name("value"):
+                    self.statement(child, control, switch_control)
+        elif node.type == "break_statement" and switch_control is not None and control == switch_control:
+            pass
+        else:
+            # Jumps decide on all that follows; of other statements nothing is known.
+            self.used |= control | names_in(node)
+
+    # --- statements with parts -------------------------------------------------------------------------
+
+    def _condition(self, node: tree_sitter.Node | None, control: _Control) -> _Control:
+        """The control within; what the condition itself does is read as well."""
+        if node is None:
+            return control
+        for declaration in (part for part in _below(node) if part.type in ("declaration", "init_statement")):
+            self.statement(declaration, control, None)
+        self._no_effects(node, control)
+        return control | names_in(node)
+
+    def _loop_condition(self, node: tree_sitter.Node | None, control: _Control) -> _Control:
+        inner = self._condition(node, control)
+        self.looped |= inner
+        return inner
+
+    def _for(self, node: tree_sitter.Node, control: _Control) -> None:
+        first = node.child_by_field_name("initializer")
+        if first is not None and first.type == "declaration":
+            self._declaration(first, control)
+        elif first is not None:
+            self._expression(first, control)
+        inner = self._loop_condition(node.child_by_field_name("condition"), control)
+        update = node.child_by_field_name("update")
+        if update is not None:
+            self._expression(update, inner)
+        self.statement(node.child_by_field_name("body"), inner, None)
+
+    def _range_for(self, node: tree_sitter.Node, control: _Control) -> None:
+        whole = node.child_by_field_name("right")
+        declarator = node.child_by_field_name("declarator")
+        if whole is None or declarator is None:
+            self.used |= control | names_in(node)
+            return
+        self._no_effects(whole, control)
+        inner = control | names_in(whole)
+        self.looped |= inner
+        self._declare(declarator, inner, is_handle="reference" in declarator.type, of=names_in(whole))
+        self.statement(node.child_by_field_name("body"), inner, None)
+
+    def _declaration(self, node: tree_sitter.Node, control: _Control) -> None:
+        for declarator in node.children_by_field_name("declarator"):
+            value = declarator.child_by_field_name("value") if declarator.type == "init_declarator" else None
+            inner = declarator.child_by_field_name("declarator") if value is not None else declarator
+            if inner is None:
+                self.used |= control | names_in(node)
+                continue
+            initial = names_in(value) if value is not None else frozenset()
+            if value is not None:
+                self._no_effects(value, control)
+            is_handle = any(part.type in _HANDLE_DECLARATORS for part in _below(inner)) or (
+                value is not None and _gives_handle(value)
+            )
+            self._declare(inner, control | initial, is_handle, of=initial)
+
+    def _declare(
+        self, declarator: tree_sitter.Node, sources: _Control, is_handle: bool, of: frozenset[Name]
+    ) -> None:
+        """The names that a declarator gives. What is changed through a handle changes what it is made of."""
+        for part in _below(declarator):
+            if part.type != "identifier":
+                continue
+            local = Name(_text(part))
+            self.flows.append(Flow(local, sources))
+            if is_handle:
+                self.flows += [Flow(name, sources | {local}) for name in of]
+
+    # --- expressions -----------------------------------------------------------------------------------
+
+    def _expression(self, node: tree_sitter.Node, control: _Control) -> None:
+        """An expression that is a statement."""
+        if node.type == "parenthesized_expression" and node.named_child_count == 1:
+            self._expression(node.named_children[0], control)
+        elif node.type == "comma_expression":
+            for child in node.named_children:
+                self._expression(child, control)
+        elif node.type == "assignment_expression":
+            value = node.child_by_field_name("right")
+            self._change(node, node.child_by_field_name("left"), [value], control)
+        elif node.type == "update_expression":
+            self._change(node, node.child_by_field_name("argument"), [], control)
+        elif (target := _changed_by_method(node)) is not None:
+            arguments = node.child_by_field_name("arguments")
+            self._change(node, target, arguments.named_children if arguments is not None else [], control)
+        elif _has_effects(node, self._reading):
+            self.used |= control | names_in(node)
+
+    def _change(
+        self,
+        node: tree_sitter.Node,
+        target: tree_sitter.Node | None,
+        values: Iterable[tree_sitter.Node | None],
+        control: _Control,
+    ) -> None:
+        name = _root(target)
+        if (
+            name is None
+            or target is None
+            or any(_has_effects(part, self._reading) for part in (target, *values) if part)
+        ):
+            self.used |= control | names_in(node)
+            return
+        # The target's own name is a source as well, of an update as of an element among others.
+        self.flows.append(Flow(name, control | names_in(node)))
+
+    def _no_effects(self, node: tree_sitter.Node, control: _Control) -> None:
+        """Where a value is expected, an effect on the side is a doubt."""
+        if _has_effects(node, self._reading):
+            self.used |= control | names_in(node)
+
+
+_WITHOUT_EFFECT = frozenset(
+    {"comment", "type_definition", "using_declaration", "alias_declaration", "enum_specifier"}
+)
+_NESTED = frozenset({"compound_statement", "else_clause", "labeled_statement", "init_statement"})
+_HANDLE_DECLARATORS = frozenset({"reference_declarator", "pointer_declarator"})
+_DRAWS = frozenset({"Bernoulli", "IsInitialized", "SampleDiscrete", "SampleNormal", "SampleUniform"})
+_DRAW = re.compile(r"AOS(?:Utils)?\s*(?:\.|::)\s*(?:Bernoulli|SampleDiscrete|SampleNormal|SampleUniform)")
+_EFFECTS = frozenset({
+    "assignment_expression", "update_expression", "lambda_expression", "new_expression", "delete_expression",
+    "co_await_expression", "throw_statement",
+})  # fmt: skip
+
+
+def names_in(node: tree_sitter.Node | None) -> frozenset[Name]:
+    """Every name that stands in a piece of the tree, but for those of types and members."""
+    return frozenset(_names_in(node)) if node is not None else frozenset()
+
+
+def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
+    waiting = [node]
+    while waiting:
+        part = waiting.pop()
+        if part.type == "field_expression" and (name := _of_state(part)) is not None:
+            yield name
+        elif part.type == "identifier":
+            text = _text(part)
+            yield _WHOLE_STATE if text in STATES else Name(text)
+        elif part.type == "qualified_identifier":
+            waiting += [child for child in part.named_children if child.type == "template_function"]
+        else:
+            if is_draw(part):
+                yield _name_of_draw(part.start_byte)
+            waiting += part.named_children
+
+
+def is_draw(node: tree_sitter.Node) -> bool:
+    """Whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or `AOSUtils::SampleDiscrete(w)`."""
+    function = node.child_by_field_name("function") if node.type == "call_expression" else None
+    return function is not None and _DRAW.fullmatch(_text(function)) is not None
+
+
+def _name_of_draw(start_byte: int) -> Name:
+    return Name(f"draw {start_byte}")
+
+
+def _of_state(node: tree_sitter.Node) -> Name | None:
+    """The variable behind `state.x`."""
+    argument, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
+    while argument is not None and argument.type == "parenthesized_expression":
+        argument = argument.named_children[0] if argument.named_child_count == 1 else None
+    if argument is None or field is None or argument.type != "identifier" or _text(argument) not in STATES:
+        return None
+    return Name(_text(field), is_of_state=True)
+
+
+def _root(node: tree_sitter.Node | None) -> Name | None:
+    """What changes when a place changes: `state__.x[i].y` is a part of `x`."""
+    while node is not None:
+        if node.type == "identifier":
+            return _WHOLE_STATE if _text(node) in STATES else Name(_text(node))
+        if node.type == "field_expression" and (name := _of_state(node)) is not None:
+            return name
+        if node.type == "parenthesized_expression":
+            node = node.named_children[0] if node.named_child_count == 1 else None
+        elif node.type in ("field_expression", "subscript_expression", "pointer_expression"):
+            node = node.child_by_field_name("argument")
+        elif node.type == "call_expression":
+            function = node.child_by_field_name("function")
+            node = function if function is not None and function.type == "field_expression" else None
+        else:
+            return None
+    return None
+
+
+def _method_of(call: tree_sitter.Node) -> str:
+    """The name of the method that a call calls; empty where it calls something else."""
+    function = call.child_by_field_name("function") if call.type == "call_expression" else None
+    field = function.child_by_field_name("field") if function is not None else None
+    return _text(field).split("<")[0] if field is not None else ""
+
+
+def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
+    """The object of a call such as `x.push_back(y)`, which changes nothing else."""
+    method = _method_of(node)
+    if method not in CHANGING_METHODS or method == "swap":
+        return None
+    function = node.child_by_field_name("function")
+    return function.child_by_field_name("argument") if function is not None else None
+
+
+def _has_effects(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
+    """Whether evaluating it may change anything that is named in it; calls of `reading` functions do not."""
+    return any(_is_effect(part, reading) for part in _below(node))
+
+
+def _is_effect(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
+    if node.type == "pointer_expression":
+        return node.children[0].type == "&"
+    return node.type in _EFFECTS or (node.type == "call_expression" and _may_change(node, reading))
+
+
+def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
+    """Whether a call may change its object or an argument."""
+    function = call.child_by_field_name("function")
+    if function is None or function.type == "primitive_type":
+        return False
+    if method := _method_of(call):
+        is_draw = _text(function).split(".")[0].strip() == "AOS" and method in _DRAWS
+        return not is_draw and method not in READING_METHODS | HANDLE_METHODS
+    name = _text(function).split("<")[0].removeprefix("std::")
+    if name in reading or name.removeprefix("AOSUtils::") in _DRAWS:
+        return False
+    return bool(names_in(call.child_by_field_name("arguments")))
+
+
+def _gives_handle(node: tree_sitter.Node) -> bool:
+    """Whether the value of an expression may be an iterator or a pointer."""
+    for part in _below(node):
+        field = part.child_by_field_name("field") if part.type == "field_expression" else None
+        if field is not None and (_text(field) in HANDLE_METHODS or _text(field).endswith("Objects")):
+            return True
+    return False
+
+
+def _below(node: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
+    """The node and all below it. Nodes wait on a stack, so that no text is too deep to read."""
+    waiting = [node]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting += part.children
+
+
+def _text(node: tree_sitter.Node) -> str:
+    return (node.text or b"").decode("utf-8", "replace")

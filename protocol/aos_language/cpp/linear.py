@@ -1,0 +1,154 @@
+"""Draws that a result of C++ statements is a linear function of, and that nothing else sees.
+
+The reading is of the text. Where the text leaves a doubt, the answer is no.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import tree_sitter
+
+from aos_language.cpp.facts import Cpp
+from aos_language.cpp.flow import is_draw
+from aos_language.cpp.tree import tree_of
+
+__all__ = ["adds_only_to", "identifiers_of", "linear_draws"]
+
+_CONTINUOUS = ("SampleNormal", "SampleUniform")
+_DOUBLE = ("double", "auto")
+
+
+def linear_draws(cpp: Cpp, result: str, elsewhere: frozenset[str]) -> tuple[bool, ...]:
+    """For each `SampleNormal` and `SampleUniform` in the order of the text: whether `result` is linear in it.
+
+    Such a draw goes into `result` alone, by sums, differences, and factors and divisors that are free of it,
+    maybe through local variables. `elsewhere` are names that other code knows.
+    """
+    root = _root(cpp)
+    draws = (node for node in _below(root) if is_draw(node) and _function(node) in _CONTINUOUS)
+    return tuple(root is not None and _Linear(root, result, elsewhere).reaches_result(draw) for draw in draws)
+
+
+def adds_only_to(cpp: Cpp, result: str) -> bool:
+    """Whether no statement looks at `result`: each mention of it is the target of `=`, `+=` or `-=`."""
+    if result not in cpp.code:
+        return True
+    root = _root(cpp)
+    return root is not None and all(
+        _is_added_to(node) for node in _below(root) if node.type == "identifier" and _text(node) == result
+    )
+
+
+def identifiers_of(cpp: Cpp) -> frozenset[str]:
+    """The names that stand in it, but for those of types and members."""
+    return frozenset(_identifiers(_root(cpp)))
+
+
+def _is_added_to(node: tree_sitter.Node) -> bool:
+    parent = node.parent
+    return (
+        parent is not None
+        and parent.type == "assignment_expression"
+        and parent.child_by_field_name("left") == node
+        and _operator(parent) in ("=", "+=", "-=")
+        and parent.parent is not None
+        and parent.parent.type == "expression_statement"
+    )
+
+
+class _Linear:
+    """Follows one draw upwards, from expression to statement, and through local variables."""
+
+    def __init__(self, root: tree_sitter.Node, result: str, elsewhere: frozenset[str]) -> None:
+        self._root = root
+        self._result = result
+        self._elsewhere = elsewhere
+        self._carriers: set[str] = set()
+        """The local variables that depend on the draw."""
+        self._factors: list[tree_sitter.Node] = []
+
+    def reaches_result(self, draw: tree_sitter.Node) -> bool:
+        if not self._follows(draw):
+            return False
+        names = {name for factor in self._factors for name in _identifiers(factor)}
+        return not names & self._carriers
+
+    def _follows(self, node: tree_sitter.Node) -> bool:
+        parent = node.parent
+        while parent is not None and self._passes_on(parent, node):
+            node, parent = parent, parent.parent
+        if parent is None:
+            return False
+        if parent.type == "assignment_expression":
+            target = parent.child_by_field_name("left")
+            return target is not None and _text(target) == self._result and _is_added_to(target)
+        return parent.type == "init_declarator" and self._follows_local(parent)
+
+    def _passes_on(self, parent: tree_sitter.Node, node: tree_sitter.Node) -> bool:
+        if parent.type == "parenthesized_expression":
+            return True
+        if parent.type == "unary_expression":
+            return _operator(parent) in ("-", "+")
+        if parent.type == "conditional_expression":
+            return node != parent.child_by_field_name("condition")
+        if parent.type != "binary_expression":
+            return False
+        left, right = parent.child_by_field_name("left"), parent.child_by_field_name("right")
+        operator = _operator(parent)
+        if left is None or right is None:
+            return False
+        if operator == "*" or (operator == "/" and node == left):
+            self._factors.append(right if node == left else left)
+            return True
+        return operator in ("+", "-")
+
+    def _follows_local(self, declarator: tree_sitter.Node) -> bool:
+        """Whether it declares a plain number, once, that never changes and is passed on by each use."""
+        name, declaration = declarator.child_by_field_name("declarator"), declarator.parent
+        kind = declaration.child_by_field_name("type") if declaration is not None else None
+        if name is None or name.type != "identifier" or kind is None or _text(kind) not in _DOUBLE:
+            return False
+        text = _text(name)
+        if text in self._elsewhere or text in self._carriers:
+            return False
+        self._carriers.add(text)
+        uses = (node for node in _below(self._root) if node.type == "identifier" and _text(node) == text)
+        return all(use == name or self._follows(use) for use in uses)
+
+
+def _root(cpp: Cpp) -> tree_sitter.Node | None:
+    """The tree of a function with the snippet in it; None where it cannot be read."""
+    if cpp.faults:
+        return None
+    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
+    root = tree_of(f"void f() {{{complete}\n}}")
+    return None if root.has_error else root
+
+
+def _below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
+    """In the order of the text."""
+    if node is not None:
+        yield node
+        for child in node.children:
+            yield from _below(child)
+
+
+def _identifiers(node: tree_sitter.Node | None) -> Iterator[str]:
+    return (_text(part) for part in _below(node) if part.type == "identifier")
+
+
+def _function(draw: tree_sitter.Node) -> str:
+    """The last name of what is called."""
+    function = draw.child_by_field_name("function")
+    return re.findall(r"\w+", _text(function))[-1] if function is not None else ""
+
+
+def _operator(node: tree_sitter.Node) -> str:
+    operator = node.child_by_field_name("operator")
+    return _text(operator) if operator is not None else ""
+
+
+def _text(node: tree_sitter.Node) -> str:
+    return node.text.decode() if node.text is not None else ""

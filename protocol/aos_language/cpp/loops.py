@@ -1,0 +1,324 @@
+"""The loops of a C++ snippet in which it draws, and the variables that live across their rounds.
+
+A `for` that counts is left out: no two of its rounds begin alike. So is a loop whose variables cannot be told
+from the text, such as one in a lambda that names what it captures.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator
+
+import msgspec
+import tree_sitter
+
+from aos_language.cpp.facts import Cpp
+from aos_language.cpp.tree import tree_of
+
+__all__ = ["DrawingLoop", "Loops", "Scope", "loops_of"]
+
+
+class Scope(msgspec.Struct, frozen=True):
+    """What a snippet finds when it begins, and what it leaves to the next one of its function.
+
+    `variables` are the names of variables; `lambdas` are those of lambdas, `drawing` those of them that draw,
+    and `captured` is every name that a lambda's text has.
+    """
+
+    variables: frozenset[str] = frozenset()
+    lambdas: frozenset[str] = frozenset()
+    drawing: frozenset[str] = frozenset({"AOS", "AOSUtils"})
+    captured: frozenset[str] = frozenset()
+
+    def with_variables(self, names: Iterable[str]) -> Scope:
+        return msgspec.structs.replace(self, variables=self.variables.union(names))
+
+
+class DrawingLoop(msgspec.Struct, frozen=True):
+    """A loop, by offsets in the snippet.
+
+    `start` and `end` are those of the statement, `head` and `head_end` those of its condition, which is true
+    where it is left out. `mentioned` are the variables that the loop's text names, `others` those that it
+    sees besides. `is_in_function`: in a lambda or a function, where a pointer may lead to what the loop does
+    not see.
+    """
+
+    start: int
+    end: int
+    head: int
+    head_end: int
+    mentioned: tuple[str, ...]
+    others: tuple[str, ...]
+    is_in_function: bool
+
+
+class Loops(msgspec.Struct, frozen=True):
+    """`unset`: where declarators of variables without a value end. `after`: the scope at the end."""
+
+    loops: tuple[DrawingLoop, ...]
+    unset: tuple[int, ...]
+    after: Scope
+
+
+def loops_of(cpp: Cpp, scope: Scope, *, are_declarations: bool = False) -> Loops:
+    """The drawing loops of a snippet that is a part of a function body, or functions among declarations."""
+    if cpp.is_empty or cpp.faults:
+        return Loops((), (), scope)
+    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
+    before = "namespace f {" if are_declarations else "void f() {"
+    root = tree_of(f"{before}{complete}\n}}")
+    if root.has_error:
+        return Loops((), (), scope)
+    return _Reading(root, cpp, (before, complete), scope).loops()
+
+
+_LOOPS = ("while_statement", "do_statement", "for_statement")
+_COMPARISONS = ("<", "<=", ">", ">=", "!=")
+
+
+class _Reading:
+    def __init__(self, root: tree_sitter.Node, cpp: Cpp, text: tuple[str, str], scope: Scope) -> None:
+        before, complete = text
+        self._before = len(before)
+        self._body = root.children[0].child_by_field_name("body") or root
+        self._bytes = complete.encode()
+        self._inserted = [at + index for index, at in enumerate(cpp.missing_semicolons)]
+        self._before_it = scope
+        self._scope = self._with_lambdas(scope)
+
+    def loops(self) -> Loops:
+        loops = [loop for node in _below(self._body) if (loop := self._loop(node)) is not None]
+        unset = [self._offset(end) for node in _below(self._body) for end in _unset(node)]
+        declared = [found for node in self._body.named_children for found in _declared(node)]
+        own = {name for name, is_constant in declared if not is_constant}
+        after = self._scope.with_variables(own - self._scope.lambdas)
+        return Loops(tuple(loops), tuple(unset), after)
+
+    def _with_lambdas(self, scope: Scope) -> Scope:
+        lambdas, drawing, captured = set(scope.lambdas), set(scope.drawing), set(scope.captured)
+        others: set[str] = set()
+        for node in _below(self._body):
+            if "declaration" in node.type:
+                others |= {name for name, _ in _declared(node, of_lambdas=False)}
+            if node.type != "lambda_expression":
+                continue
+            names = _names(node)
+            captured |= names
+            if node.parent is not None and node.parent.type == "init_declarator":
+                named = {name for name, _ in _names_of_declarator(node.parent)}
+                lambdas |= named
+                if names & drawing:
+                    drawing |= named
+        return Scope(scope.variables, frozenset(lambdas - others), frozenset(drawing), frozenset(captured))
+
+    def _loop(self, node: tree_sitter.Node) -> DrawingLoop | None:
+        if node.type not in _LOOPS or not _names(node) & self._scope.drawing or _counts(node):
+            return None
+        head = self._head(node)
+        seen = _visible(node, self._scope.variables, self._before_it.lambdas)
+        if head is None or seen is None:
+            return None
+        mentioned = _names(node) | self._scope.captured
+        variables = seen - self._scope.lambdas
+        return DrawingLoop(
+            self._offset(node.start_byte),
+            self._offset(node.end_byte),
+            *head,
+            tuple(sorted(variables & mentioned)),
+            tuple(sorted(variables - mentioned)),
+            _is_in_function(node),
+        )
+
+    def _head(self, loop: tree_sitter.Node) -> tuple[int, int] | None:
+        condition = loop.child_by_field_name("condition")
+        if condition is None:
+            if loop.type != "for_statement":
+                return None
+            last = [child for child in loop.children if child.type == ";"]
+            place = self._offset((last[-1] if last else loop).start_byte)
+            return (place, place) if last else None
+        start, end = condition.start_byte, condition.end_byte
+        if (
+            condition.type in ("condition_clause", "parenthesized_expression")
+            and loop.type != "for_statement"
+        ):
+            start, end = start + 1, end - 1
+            if any(
+                "declaration" in child.type or child.type == "init_statement" for child in condition.children
+            ):
+                return None
+        return self._offset(start), self._offset(end)
+
+    def _offset(self, byte: int) -> int:
+        characters = len(self._bytes[: byte - self._before].decode("utf-8", "replace"))
+        return characters - bisect_left(self._inserted, characters)
+
+
+def _visible(
+    loop: tree_sitter.Node, around: frozenset[str], lambdas: frozenset[str]
+) -> frozenset[str] | None:
+    """The variables that may change and that a loop's condition sees; None where its text does not tell."""
+    seen: list[tuple[str, bool]] = []
+    initializer = loop.child_by_field_name("initializer")
+    if initializer is not None:
+        seen += _declared(initializer)
+    child, parent = loop, loop.parent
+    while parent is not None:
+        if parent.type == "function_definition":
+            seen += _parameters(parent)
+            break
+        if parent.type == "lambda_expression":
+            captures = parent.child_by_field_name("captures")
+            if captures is None or _text(captures).replace(" ", "") != "[&]":
+                return None
+            seen += _parameters(parent)
+        for sibling in parent.children:
+            if sibling == child:
+                break
+            if any(
+                part.type == "function_declarator" for part in sibling.children_by_field_name("declarator")
+            ):
+                return None
+            seen += _declared(sibling)
+        if parent.type == "for_range_loop":
+            seen += _names_of_declarator(parent.child_by_field_name("declarator"))
+        child, parent = parent, parent.parent
+    names = [name for name, _ in seen]
+    if len(names) != len(set(names)) or not (around | lambdas).isdisjoint(names):
+        return None  # One hides another, which may change all the same.
+    return around | {name for name, is_constant in seen if not is_constant}
+
+
+def _is_in_function(loop: tree_sitter.Node) -> bool:
+    parent = loop.parent
+    while parent is not None and parent.type not in ("lambda_expression", "function_definition"):
+        parent = parent.parent
+    # A snippet is the body of a function of its own, at the top.
+    above = parent.parent if parent is not None else None
+    return above is not None and above.type != "translation_unit"
+
+
+def _parameters(function: tree_sitter.Node) -> list[tuple[str, bool]]:
+    parts = _below(function.child_by_field_name("declarator"))
+    return [found for part in parts if "parameter_declaration" in part.type for found in _declared(part)]
+
+
+def _declared(node: tree_sitter.Node, *, of_lambdas: bool = True) -> list[tuple[str, bool]]:
+    """The variables that a statement declares for those after it, each with whether it is constant.
+
+    Without `of_lambdas`, those are left out that are lambdas without a state of their own.
+    """
+    if node.type in ("init_statement", "condition_clause"):
+        return [found for child in node.named_children for found in _declared(child)]
+    if node.type not in ("declaration", "parameter_declaration", "optional_parameter_declaration"):
+        return []
+    words = {
+        _text(child) for child in node.children if child.type in ("type_qualifier", "storage_class_specifier")
+    }
+    found = []
+    for declarator in node.children_by_field_name("declarator"):
+        value = declarator.child_by_field_name("value")
+        if not of_lambdas and _is_lambda(value):
+            continue
+        is_constant = bool(words & {"const", "constexpr"}) and "pointer" not in _inner(declarator).type
+        found += [(name, is_constant) for name, _ in _names_of_declarator(declarator)]
+    return found
+
+
+def _is_lambda(value: tree_sitter.Node | None) -> bool:
+    """Whether it is a lambda that keeps nothing from call to call."""
+    is_lambda = value is not None and value.type == "lambda_expression"
+    return is_lambda and not any(_text(part) == "mutable" for part in _below(value))
+
+
+def _inner(declarator: tree_sitter.Node) -> tree_sitter.Node:
+    if declarator.type != "init_declarator":
+        return declarator
+    return declarator.child_by_field_name("declarator") or declarator
+
+
+def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str, bool]]:
+    waiting = [_inner(declarator)] if declarator is not None else []
+    found: list[tuple[str, bool]] = []
+    while waiting:
+        part = waiting.pop()
+        if part.type == "identifier":
+            found.append((_text(part), False))
+        elif part.type == "array_declarator":
+            inner = part.child_by_field_name("declarator")
+            waiting += [inner] if inner is not None else []
+        elif part.type != "function_declarator":
+            waiting += part.named_children
+    return found
+
+
+def _unset(node: tree_sitter.Node) -> Iterator[int]:
+    """Where a declaration's variables without a first value end."""
+    if node.type != "declaration" or any(child.type == "storage_class_specifier" for child in node.children):
+        return
+    for declarator in node.children_by_field_name("declarator"):
+        if declarator.type in ("identifier", "array_declarator", "pointer_declarator"):
+            yield declarator.end_byte
+
+
+def _counts(loop: tree_sitter.Node) -> bool:
+    """Whether it is a `for` over a variable that only its last part changes."""
+    update, condition = loop.child_by_field_name("update"), loop.child_by_field_name("condition")
+    body = loop.child_by_field_name("body")
+    if loop.type != "for_statement" or update is None or condition is None or body is None:
+        return False
+    counters = {
+        _text(target)
+        for part in _below(update)
+        if part.type in ("update_expression", "assignment_expression")
+        and (target := part.child_by_field_name("argument") or part.child_by_field_name("left")) is not None
+    }
+    compared: set[str] = set()
+    waiting = [condition]
+    while waiting:
+        part = waiting.pop()
+        operator = part.child_by_field_name("operator")
+        if part.type == "binary_expression" and operator is not None and _text(operator) in ("&&", "and"):
+            waiting += part.named_children
+        elif part.type == "binary_expression" and operator is not None and _text(operator) in _COMPARISONS:
+            compared |= {_text(side) for side in part.named_children if side.type == "identifier"}
+    return bool((counters & compared) - _changed(body))
+
+
+def _changed(body: tree_sitter.Node) -> set[str]:
+    """The names that a statement assigns to, or makes a reference or a pointer of."""
+    changed: set[str] = set()
+    for part in _below(body):
+        if part.type in ("update_expression", "pointer_expression"):
+            changed |= _root(part.child_by_field_name("argument"))
+        elif part.type == "assignment_expression":
+            changed |= _root(part.child_by_field_name("left"))
+        elif part.type == "init_declarator" and _inner(part).type == "reference_declarator":
+            changed |= _root(part.child_by_field_name("value"))
+    return changed
+
+
+def _root(place: tree_sitter.Node | None) -> set[str]:
+    """The variable that a place is a part of: `a` of `a[i].b`."""
+    while place is not None and place.type != "identifier":
+        named = place.named_children[:1] if place.type == "parenthesized_expression" else []
+        place = place.child_by_field_name("argument") or next(iter(named), None)
+    return {_text(place)} if place is not None else set()
+
+
+def _names(node: tree_sitter.Node | None) -> set[str]:
+    """The identifiers below a node."""
+    return {_text(part) for part in _below(node) if part.type == "identifier"}
+
+
+def _below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
+    """The node and all below it, in text order. They wait on a stack: no text is too deep to read."""
+    waiting = [node] if node is not None else []
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting += reversed(part.children)
+
+
+def _text(node: tree_sitter.Node) -> str:
+    return (node.text or b"").decode("utf-8", "replace")

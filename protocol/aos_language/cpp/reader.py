@@ -1,0 +1,337 @@
+"""A walk over the syntax tree of a C++ snippet that collects what it mentions, calls and declares."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterable
+
+import tree_sitter
+
+from aos_language.cpp.facts import (
+    CHANGING_METHODS,
+    HANDLE_METHODS,
+    Access,
+    Call,
+    Cpp,
+    Declaration,
+    DeclarationKind,
+    Mention,
+)
+from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
+
+__all__ = ["TreeReader"]
+
+_CHANGING_FUNCTIONS = frozenset({"exchange", "iota", "swap", "tie"})
+
+
+class TreeReader:
+    """One walk over a syntax tree. Nodes wait on a stack, so that no text is too deep to read.
+
+    The tree is that of `complete`, the code with its missing semicolons; places are those of the code.
+    """
+
+    def __init__(self, code: str, complete: str, prefix: int, tokens: Tokens) -> None:
+        self._code = code
+        self._prefix = prefix
+        self._tokens = tokens
+        self._lines = Lines(code)
+        self._offsets = _character_offsets(complete)
+        self._inserted = [at + index for index, at in enumerate(tokens.missing_semicolons)]
+        self._stack: list[tuple[tree_sitter.Node, Access]] = []
+        self.mentions: list[Mention] = []
+        self.calls: list[Call] = []
+        self.declarations: list[Declaration] = []
+        self.types: list[tuple[str, Extent]] = []
+        self.faults: list[Fault] = []
+
+    def read(self, root: tree_sitter.Node) -> Cpp:
+        self._stack.append((root, Access.READ))
+        while self._stack:
+            self._visit(*self._stack.pop())
+        return Cpp(
+            self._code,
+            tuple(m for m in sorted(self.mentions, key=_by_start) if self._is_inside(m.extent)),
+            tuple(sorted(self.calls, key=_by_start)),
+            tuple(d for d in sorted(self.declarations, key=_by_start) if self._is_inside(d.extent)),
+            tuple(sorted(self.types, key=lambda item: item[1].start)),
+            self._tokens.literals,
+            self._tokens.missing_semicolons,
+            tuple(sorted(self.faults, key=_by_start)),
+        )
+
+    def _visit(self, node: tree_sitter.Node, access: Access) -> None:
+        if node.is_missing:
+            self._missing(node)
+            return
+        if node.is_error:
+            text = _text(node).strip().splitlines() or [""]
+            message = f"unexpected {text[0][:40]!r}"
+            self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(node)))
+        handler = _HANDLERS.get(node.type)
+        if handler is None:
+            self._push(node.children)
+        else:
+            handler(self, node, access)
+
+    def _push(self, nodes: Iterable[tree_sitter.Node | None], access: Access = Access.READ) -> None:
+        self._stack += [(node, access) for node in nodes if node is not None]
+
+    def _missing(self, node: tree_sitter.Node) -> None:
+        self.faults.append(Fault(FaultKind.SYNTAX, f"expected {node.type!r}", self.extent(node)))
+
+    # --- paths -----------------------------------------------------------------------------------------
+
+    def _path(self, node: tree_sitter.Node, access: Access, assigned: Extent | None = None) -> None:
+        parts, root = self._flatten(node, access)
+        if root is None:
+            return
+        if node.type == "qualified_identifier" and _is_type(node):
+            self.types.append((_text(node).split("<")[0], self.extent(node)))
+        else:
+            extent, root_extent = self.extent(node), self.extent(root)
+            self.mentions.append(Mention(parts, access, extent, root_extent, assigned=assigned))
+
+    def _flatten(
+        self, node: tree_sitter.Node, access: Access = Access.READ
+    ) -> tuple[tuple[str, ...], tree_sitter.Node | None]:
+        """The parts of an access path; subscripts, and what an unnamed root is made of, go on the stack."""
+        parts: list[str] = []
+        current = node
+        while True:
+            if current.type == "field_expression":
+                parts += reversed(_names(current.child_by_field_name("field")))
+                current = _child(current, "argument")
+            elif current.type == "subscript_expression":
+                parts.append("[]")
+                self._push([current.child_by_field_name("indices")])
+                current = _child(current, "argument")
+            elif current.type == "parenthesized_expression" and current.named_child_count == 1:
+                current = current.named_children[0]
+            elif current.type in ("identifier", "this"):
+                return (_text(current), *reversed(parts)), current
+            elif current.type == "qualified_identifier":
+                self._push_template_arguments(current)
+                return (*_names(current), *reversed(parts)), current
+            else:
+                self._push([current], access)
+                return (), None
+
+    def _push_template_arguments(self, node: tree_sitter.Node | None) -> None:
+        while node is not None and node.type == "qualified_identifier":
+            node = node.child_by_field_name("name")
+        if node is not None and node.type in ("template_function", "template_method", "template_type"):
+            self._push([node.child_by_field_name("arguments")])
+
+    # --- expressions -----------------------------------------------------------------------------------
+
+    def _assignment(self, node: tree_sitter.Node, access: Access) -> None:
+        operator = node.child_by_field_name("operator")
+        is_plain = operator is None or _text(operator) == "="
+        left, right = _child(node, "left"), node.child_by_field_name("right")
+        kind = Access.WRITE if is_plain else Access.UPDATE
+        if _HANDLERS.get(left.type) is TreeReader._path:
+            self._path(left, kind, self.extent(right) if right is not None else None)
+        else:
+            self._push([left], kind)
+        self._push([right])
+        self._push(child for child in node.children if child.is_error)
+
+    def _update(self, node: tree_sitter.Node, access: Access) -> None:
+        self._push([node.child_by_field_name("argument")], Access.UPDATE)
+
+    def _pointer(self, node: tree_sitter.Node, access: Access) -> None:
+        is_address = node.children[0].type == "&"
+        self._push([node.child_by_field_name("argument")], Access.BIND if is_address else access)
+
+    def _pass_on(self, node: tree_sitter.Node, access: Access) -> None:
+        self._push(node.children, access)
+
+    def _conditional(self, node: tree_sitter.Node, access: Access) -> None:
+        self._push([node.child_by_field_name("condition")])
+        branches = [node.child_by_field_name("consequence"), node.child_by_field_name("alternative")]
+        self._push(branches, access)
+        self._push(child for child in node.children if child.is_error)
+
+    def _call(self, node: tree_sitter.Node, access: Access) -> None:
+        function = _child(node, "function")
+        arguments = _child(node, "arguments")
+        named = [child for child in arguments.named_children if child.type != "comment"]
+        name = self._called(function, access)
+        gives_place = access is not Access.READ and function.type != "field_expression"
+        is_changing = gives_place or not _CHANGING_FUNCTIONS.isdisjoint(name)
+        self._push(arguments.children, Access.BIND if is_changing else Access.READ)
+        self.calls.append(
+            Call(name, self.extent(node), self.extent(function), tuple(map(self.extent, named)))
+        )
+
+    def _called(self, function: tree_sitter.Node, access: Access) -> tuple[str, ...]:
+        if function.type == "template_function":
+            self._push([function.child_by_field_name("arguments")])
+            function = _child(function, "name")
+        if function.type != "field_expression":
+            parts, root = self._flatten(function)
+            if root is not None:
+                self.mentions.append(Mention(parts, Access.CALL, self.extent(function), self.extent(root)))
+            return parts
+        target = _child(function, "argument")
+        method = _names(function.child_by_field_name("field"))[-1:]
+        parts, root = self._flatten(target, _method_access("".join(method), access, is_aos=False))
+        if root is not None:
+            kind = _method_access("".join(method), access, is_aos=parts == ("AOS",))
+            path = (*parts, *method) if kind is Access.CALL else parts
+            extent = self.extent(function if kind is Access.CALL else target)
+            self.mentions.append(Mention(path, kind, extent, self.extent(root), "".join(method)))
+        return (*parts, *method)
+
+    # --- declarations ----------------------------------------------------------------------------------
+
+    def _declaration(self, node: tree_sitter.Node, access: Access) -> None:
+        type_node = node.child_by_field_name("type")
+        self._push([type_node])
+        prefix = [child for child in node.children if child.type == "type_qualifier"]
+        type_text = " ".join(_text(part) for part in [*prefix, type_node] if part is not None)
+        is_parameter = "parameter" in node.type
+        kind = DeclarationKind.PARAMETER if is_parameter else DeclarationKind.VARIABLE
+        is_constant = any(_text(part) == "const" for part in prefix)
+        for child in node.children_by_field_name("declarator"):
+            self._declarator(child, type_text, kind, is_constant)
+        self._push([node.child_by_field_name("default_value"), node.child_by_field_name("value")])
+        if node.type == "for_range_loop":
+            declarator = node.child_by_field_name("declarator")
+            binds = declarator is not None and "reference" in declarator.type and not is_constant
+            self._push([node.child_by_field_name("right")], Access.BIND if binds else Access.READ)
+            self._push([node.child_by_field_name("body")])
+        self._push(child for child in node.children if child.is_error or child.is_missing)
+
+    def _declarator(
+        self, node: tree_sitter.Node, type_text: str, kind: DeclarationKind, is_constant: bool
+    ) -> None:
+        initial = node.child_by_field_name("value") if node.type == "init_declarator" else None
+        inner = _child(node, "declarator") if node.type == "init_declarator" else node
+        binds = inner.type == "reference_declarator" and not is_constant
+        self._push([initial], Access.BIND if binds else Access.READ)
+        while inner.type in ("reference_declarator", "pointer_declarator", "array_declarator"):
+            if inner.type == "array_declarator":
+                self._push([inner.child_by_field_name("size")])
+            type_text += {"reference_declarator": "&", "pointer_declarator": "*"}.get(inner.type, "[]")
+            inner = inner.child_by_field_name("declarator") or inner.named_children[-1]
+        names = inner.named_children if inner.type == "structured_binding_declarator" else [inner]
+        for name in names:
+            if name.type == "identifier":
+                extent = self.extent(initial) if initial is not None else None
+                self.declarations.append(Declaration(_text(name), type_text, kind, self.extent(name), extent))
+            else:
+                self._push(name.children)
+
+    def _enum(self, node: tree_sitter.Node, access: Access) -> None:
+        name = node.child_by_field_name("name")
+        enum_name = _text(name) if name is not None else ""
+        if name is not None:
+            self._push([name])
+            extent = self.extent(name)
+            self.declarations.append(Declaration(enum_name, "enum", DeclarationKind.ENUM, extent))
+        body = node.child_by_field_name("body")
+        for enumerator in body.named_children if body is not None else []:
+            value_name = enumerator.child_by_field_name("name")
+            if enumerator.type == "enumerator" and value_name is not None:
+                extent = self.extent(value_name)
+                declaration = Declaration(_text(value_name), enum_name, DeclarationKind.ENUMERATOR, extent)
+                self.declarations.append(declaration)
+                self._push([enumerator.child_by_field_name("value")])
+
+    def _type(self, node: tree_sitter.Node, access: Access) -> None:
+        self.types.append((_text(node), self.extent(node)))
+
+    def _skip(self, node: tree_sitter.Node, access: Access) -> None:
+        pass
+
+    # --- places ----------------------------------------------------------------------------------------
+
+    def extent(self, node: tree_sitter.Node) -> Extent:
+        start, end = (self._offset(byte) for byte in (node.start_byte, node.end_byte))
+        return self._lines.extent(start, end)
+
+    def _offset(self, byte: int) -> int:
+        offset = max(byte - self._prefix, 0)
+        if self._offsets is not None:
+            offset = self._offsets[min(offset, len(self._offsets) - 1)]
+        return min(offset - bisect_left(self._inserted, offset), len(self._code))
+
+    def _is_inside(self, extent: Extent) -> bool:
+        return extent.start < extent.end
+
+
+_HANDLERS = {
+    "assignment_expression": TreeReader._assignment,
+    "call_expression": TreeReader._call,
+    "comment": TreeReader._skip,
+    "conditional_expression": TreeReader._conditional,
+    "declaration": TreeReader._declaration,
+    "enum_specifier": TreeReader._enum,
+    "field_expression": TreeReader._path,
+    "for_range_loop": TreeReader._declaration,
+    "identifier": TreeReader._path,
+    "lambda_capture_specifier": TreeReader._skip,
+    "optional_parameter_declaration": TreeReader._declaration,
+    "parameter_declaration": TreeReader._declaration,
+    "parenthesized_expression": TreeReader._pass_on,
+    "pointer_expression": TreeReader._pointer,
+    "qualified_identifier": TreeReader._path,
+    "subscript_expression": TreeReader._path,
+    "this": TreeReader._path,
+    "type_identifier": TreeReader._type,
+    "update_expression": TreeReader._update,
+}
+
+
+def _method_access(method: str, outer: Access, *, is_aos: bool) -> Access:
+    if is_aos:
+        return Access.CALL
+    if method in CHANGING_METHODS:
+        return Access.UPDATE
+    if method in HANDLE_METHODS:
+        return Access.BIND
+    return outer
+
+
+def _names(node: tree_sitter.Node | None) -> tuple[str, ...]:
+    """The names of a qualified or templated name, without template arguments."""
+    parts: list[str] = []
+    while node is not None:
+        if node.type == "qualified_identifier":
+            scope = node.child_by_field_name("scope")
+            parts += [_text(scope).split("<")[0]] if scope is not None else []
+            node = node.child_by_field_name("name")
+        elif node.type in ("template_function", "template_method", "template_type", "dependent_name"):
+            node = node.child_by_field_name("name") or next(iter(node.named_children), None)
+        else:
+            parts.append(_text(node))
+            node = None
+    return tuple(parts)
+
+
+def _is_type(node: tree_sitter.Node | None) -> bool:
+    while node is not None and node.type == "qualified_identifier":
+        node = node.child_by_field_name("name")
+    return node is not None and node.type in ("type_identifier", "template_type")
+
+
+def _child(node: tree_sitter.Node, field: str) -> tree_sitter.Node:
+    child = node.child_by_field_name(field)
+    return child if child is not None else node.children[0]
+
+
+def _text(node: tree_sitter.Node) -> str:
+    return (node.text or b"").decode("utf-8", "replace")
+
+
+def _by_start(item: Mention | Call | Declaration | Fault) -> int:
+    return item.extent.start
+
+
+def _character_offsets(code: str) -> list[int] | None:
+    """For each byte of the UTF-8 text the character it belongs to; None where they are the same."""
+    if code.isascii():
+        return None
+    offsets = [index for index, character in enumerate(code) for _ in character.encode("utf-8", "replace")]
+    return [*offsets, len(code)]

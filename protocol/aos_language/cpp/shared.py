@@ -1,0 +1,348 @@
+"""Shared code of C++: the constants and functions that all model code of a project sees.
+
+A function that draws, itself or by way of another one, has a source of draws as its first parameter in
+emitted code. Documents do not write it: they write `AOS.Bernoulli(p)` in the function, and call it like any
+other.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+
+import msgspec
+import tree_sitter
+
+from aos_language.cpp.facts import READING_FUNCTIONS
+from aos_language.cpp.snippets import Cpp, read_cpp_declarations
+from aos_language.cpp.tokens import Extent, Lines
+from aos_language.cpp.tree import tree_of
+
+__all__ = ["NO_SHARED_CODE", "SharedCode", "SharedFunction", "SharedMisuse", "SharedName", "shared_code"]
+
+
+class SharedName(msgspec.Struct, frozen=True):
+    """A declaration: what it declares, its kind for people, and where declaration and name stand.
+
+    `is_late`: it needs compound types or functions, and so stands behind them.
+    """
+
+    name: str
+    kind: str
+    extent: Extent
+    name_extent: Extent
+    is_late: bool
+
+
+class SharedFunction(SharedName, frozen=True):
+    """A function. Its parameters begin at offset `parameters`, its body at offset `body`.
+
+    `takes` are its parameters' names, in their order. `draws`: it has a source of draws as a parameter of its
+    own. `only_reads`: a call changes nothing and gives a plain value, which follows from the arguments.
+    """
+
+    parameters: int
+    body: int
+    has_parameters: bool
+    draws: bool = False
+    only_reads: bool = False
+    takes: tuple[str, ...] = ()
+
+
+class SharedMisuse(msgspec.Struct, frozen=True):
+    """What shared code cannot be, at a place of it."""
+
+    extent: Extent
+    message: str
+    hint: str
+
+
+class SharedCode(msgspec.Struct, frozen=True):
+    """What the text declares, in its order."""
+
+    cpp: Cpp
+    names: tuple[SharedName, ...] = ()
+    functions: tuple[SharedFunction, ...] = ()
+    misuses: tuple[SharedMisuse, ...] = ()
+
+    @property
+    def drawing(self) -> frozenset[str]:
+        """The functions that draw."""
+        return frozenset(each.name for each in self.functions if each.draws)
+
+    @property
+    def reading(self) -> frozenset[str]:
+        """The functions of which a call changes nothing and gives a plain value."""
+        changing = {each.name for each in self.functions if not each.only_reads}
+        return frozenset(each.name for each in self.functions) - changing
+
+    @property
+    def changing(self) -> frozenset[str]:
+        """The other functions."""
+        return frozenset(each.name for each in self.functions) - self.reading
+
+    @property
+    def all_names(self) -> frozenset[str]:
+        """The names of constants, functions, types and enum values; of text that is none, every word."""
+        if self.cpp.faults:
+            return frozenset(re.findall(r"[A-Za-z_]\w*", self.cpp.code))
+        return frozenset(each.name for each in (*self.names, *self.functions) if each.name)
+
+    @property
+    def whole_numbers(self) -> dict[str, str]:
+        """The constants that are whole numbers, as they are written."""
+        constants = {each.name for each in self.names if each.kind == "constant"}
+        values = {
+            each.name: self.cpp.code[each.initial.start : each.initial.end]
+            for each in self.cpp.declarations
+            if each.name in constants and each.initial is not None
+        }
+        return {name: value for name, value in values.items() if value.isdecimal()}
+
+    def bodies(self) -> Iterator[str]:
+        """The bodies of the functions, each at its lines and columns with blanks around it."""
+        code = self.cpp.code
+        blank = "".join(character if character == "\n" else " " for character in code)
+        for each in self.functions:
+            yield blank[: each.body - 1] + code[each.body - 1 : each.extent.end]
+
+    def without(self, *, late: bool) -> str:
+        """The text with the declarations of one kind blanked, so that lines and columns stay."""
+        characters = list(self.cpp.code)
+        for each in (*self.names, *self.functions):
+            if each.is_late == late:
+                for index in range(each.extent.start, each.extent.end):
+                    if characters[index] != "\n":
+                        characters[index] = " "
+        return "".join(characters)
+
+
+NO_SHARED_CODE = SharedCode(Cpp(""))
+
+_SOURCES = frozenset({"AOS", "AOSUtils"})
+_OTHER_TYPES = re.compile(r"\b(?:auto|decltype|function|iterator)\b|[*&]")
+_CONSTANT_REFERENCE = re.compile(r"const\b[^*&]*&|[^*&]*\bconst\s*&")
+_HINT = "Shared code has constants, functions, enums and names of types"
+
+
+@lru_cache(maxsize=256)
+def shared_code(code: str, compounds: frozenset[str] = frozenset()) -> SharedCode:
+    """Reads the text; `compounds` are the names of compound types."""
+    cpp = read_cpp_declarations(code)
+    if cpp.is_empty or cpp.faults:
+        return SharedCode(cpp)
+    complete = Cpp(code).replace((offset, ";") for offset in cpp.missing_semicolons)
+    return _Reading(code, cpp, compounds).read(tree_of(complete))
+
+
+class _Reading:
+    """One walk over the declarations."""
+
+    def __init__(self, code: str, cpp: Cpp, compounds: frozenset[str]) -> None:
+        self._data = code.encode()
+        self._lines = Lines(code)
+        self._cpp = cpp
+        self._compounds = compounds
+        self._names: list[SharedName] = []
+        self._functions: list[SharedFunction] = []
+        self._misuses: list[SharedMisuse] = []
+        self._words: dict[str, set[str]] = {}
+        self._late: set[str] = set(compounds)
+
+    def read(self, root: tree_sitter.Node) -> SharedCode:
+        functions = {_declared(node) for node in root.named_children if _is_function(node)}
+        self._late |= {name for name in functions if name}
+        for node in root.named_children:
+            self._declaration(node)
+        drawing = self._closure({name for name, words in self._words.items() if words & _SOURCES})
+        plain = {each.name for each in self._functions if each.only_reads}
+        changing = self._closure({each.name for each in self._functions} - plain) | drawing
+        found = [
+            msgspec.structs.replace(
+                each, draws=each.name in drawing, only_reads=each.only_reads and each.name not in changing
+            )
+            for each in self._functions
+        ]
+        return SharedCode(self._cpp, tuple(self._names), tuple(found), tuple(self._misuses))
+
+    def _closure(self, names: set[str]) -> set[str]:
+        """These functions, and those that call them."""
+        found = set(names)
+        while new := {name for name, words in self._words.items() if words & found} - found:
+            found |= new
+        return found
+
+    def _declaration(self, node: tree_sitter.Node) -> None:
+        kind = node.type
+        if kind == "comment" or (kind == "expression_statement" and _text(node) == ";"):
+            return
+        if kind == "static_assert_declaration":
+            # It has no name, and may ask anything.
+            self._names.append(SharedName("", kind, self._extent(node), self._extent(node), True))
+        elif _is_function(node):
+            self._function(node)
+        elif kind == "declaration":
+            self._constant(node)
+        elif kind == "enum_specifier":
+            self._enum(node)
+        elif kind in ("alias_declaration", "type_definition"):
+            self._add(
+                node, node.child_by_field_name("name") or node.child_by_field_name("declarator"), "type"
+            )
+        elif kind in ("struct_specifier", "class_specifier", "union_specifier"):
+            self._misuse(node, "a structure in shared code", "Declare a compound type with `define_type:`")
+        else:
+            self._misuse(node, "this is no declaration", _HINT)
+
+    def _constant(self, node: tree_sitter.Node) -> None:
+        qualifiers = {_text(child) for child in node.children if child.type in _QUALIFIERS}
+        for declarator in node.children_by_field_name("declarator"):
+            name = _name_node(declarator)
+            if any(part.type == "function_declarator" for part in _declarators(declarator)):
+                self._misuse(
+                    node, "a function without a body", "Write the whole function before its first use"
+                )
+                return
+            if name is None:
+                self._misuse(node, "this is no declaration", _HINT)
+                return
+            is_pointer = any(part.type == "pointer_declarator" for part in _declarators(declarator))
+            is_constant = "constexpr" in qualifiers or ("const" in qualifiers and not is_pointer)
+            value = declarator.child_by_field_name("value")
+            if not is_constant:
+                hint = f"Write `const` before its type, or make a state variable of it: {_HINT.lower()}"
+                self._misuse(name, f"`{_text(name)}` could change, and steps could not be repeated", hint)
+            elif value is None:
+                self._misuse(name, f"the constant `{_text(name)}` has no value", "Write `= VALUE` behind it")
+            elif value.type == "lambda_expression":
+                self._misuse(name, f"`{_text(name)}` is a lambda", "Write a function")
+            elif _SOURCES & set(_identifiers(value)):
+                self._misuse(name, f"the constant `{_text(name)}` is drawn", "Draw where it is needed")
+            self._add(node, name, "constant")
+
+    def _enum(self, node: tree_sitter.Node) -> None:
+        if (name := node.child_by_field_name("name")) is not None:
+            self._add(node, name, "enum")
+        body = node.child_by_field_name("body")
+        for value in body.named_children if body is not None else []:
+            if (name := value.child_by_field_name("name")) is not None:
+                self._add(node, name, "enum value")
+
+    def _add(self, node: tree_sitter.Node, name: tree_sitter.Node | None, kind: str) -> None:
+        if name is None:
+            self._misuse(node, "this is no declaration", _HINT)
+            return
+        is_late = not self._late.isdisjoint(_identifiers(node))
+        if is_late:
+            self._late.add(_text(name))
+        extent = self._extent(node)
+        self._names.append(SharedName(_text(name), kind, extent, self._extent(name), is_late))
+
+    def _function(self, node: tree_sitter.Node) -> None:
+        function = next(each for each in _below(node) if each.type == "function_definition")
+        declarators = [*_declarators(function.child_by_field_name("declarator"))]
+        header = next((each for each in declarators if each.type == "function_declarator"), None)
+        body = function.child_by_field_name("body")
+        name = header.child_by_field_name("declarator") if header is not None else None
+        parameters = header.child_by_field_name("parameters") if header is not None else None
+        if body is None or name is None or parameters is None or name.type != "identifier":
+            self._misuse(node, "this is no function", _HINT)
+            return
+        if _text(name) in READING_FUNCTIONS:
+            message = f"`{_text(name)}` is a function of C++ already"
+            self._misuse(name, message, "Choose another name")
+        for source in (part for part in _below(parameters) if _text(part) in _SOURCES):
+            message = f"`{_text(source)}` is no parameter: a function that draws has it by itself"
+            self._misuse(source, message, "Leave the parameter out, and call the function without it")
+        declared = [each for each in parameters.named_children if each.type != "comment"]
+        is_void = len(declared) == 1 and _text(declared[0]) == "void"
+        self._words.setdefault(_text(name), set()).update(_identifiers(body), _identifiers(parameters))
+        written = _text(function)[: _text(function).index(_text(name))]
+        is_plain = node.type == "function_definition" and _OTHER_TYPES.search(written) is None
+        has_result = re.search(r"\bvoid\b", written) is None
+        only_reads = is_plain and has_result and all(_only_read(each) for each in declared)
+        self._functions.append(
+            SharedFunction(
+                _text(name),
+                "function",
+                self._extent(node),
+                self._extent(name),
+                True,
+                self._offset(parameters.start_byte) + 1,
+                self._offset(body.start_byte) + 1,
+                bool(declared) and not is_void,
+                only_reads=only_reads,
+                takes=() if is_void else tuple(_parameter_name(each) for each in declared),
+            )
+        )
+
+    def _misuse(self, node: tree_sitter.Node, message: str, hint: str) -> None:
+        self._misuses.append(SharedMisuse(self._extent(node), message, hint))
+
+    def _extent(self, node: tree_sitter.Node) -> Extent:
+        return self._lines.extent(self._offset(node.start_byte), self._offset(node.end_byte))
+
+    def _offset(self, byte: int) -> int:
+        """The tree's text has the code's missing semicolon at most behind it."""
+        return len(self._data[:byte].decode("utf-8", "replace"))
+
+
+_QUALIFIERS = ("type_qualifier", "storage_class_specifier")
+
+
+def _is_function(node: tree_sitter.Node) -> bool:
+    if node.type == "template_declaration":
+        return any(child.type == "function_definition" for child in node.named_children)
+    return node.type == "function_definition"
+
+
+def _declared(node: tree_sitter.Node) -> str:
+    for part in _below(node):
+        if part.type == "function_declarator":
+            name = part.child_by_field_name("declarator")
+            return _text(name) if name is not None else ""
+    return ""
+
+
+def _declarators(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
+    """A declarator and those within it."""
+    while node is not None:
+        yield node
+        inner = node.child_by_field_name("declarator")
+        if inner is None and node.type in ("reference_declarator", "parenthesized_declarator"):
+            inner = node.named_children[-1] if node.named_children else None
+        node = inner
+
+
+def _name_node(declarator: tree_sitter.Node) -> tree_sitter.Node | None:
+    last = [*_declarators(declarator)][-1]
+    return last if last.type == "identifier" else None
+
+
+def _only_read(parameter: tree_sitter.Node) -> bool:
+    """Whether a function can change nothing of its caller's through a parameter."""
+    kind = _text(parameter).partition("=")[0]
+    return _OTHER_TYPES.search(kind) is None or _CONSTANT_REFERENCE.match(kind.strip()) is not None
+
+
+def _parameter_name(parameter: tree_sitter.Node) -> str:
+    """Empty for one without a name."""
+    names = [_text(part) for part in _declarators(parameter.child_by_field_name("declarator"))]
+    return names[-1] if names and names[-1].isidentifier() else ""
+
+
+def _identifiers(node: tree_sitter.Node) -> Iterator[str]:
+    return (_text(part) for part in _below(node) if part.type in ("identifier", "type_identifier"))
+
+
+def _below(node: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
+    waiting = [node]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting += reversed(part.children)
+
+
+def _text(node: tree_sitter.Node) -> str:
+    return (node.text or b"").decode("utf-8", "replace")

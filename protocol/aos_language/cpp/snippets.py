@@ -1,0 +1,77 @@
+"""What a C++ snippet of a document mentions, writes, calls and declares.
+
+Reading is tolerant: whatever the text is, the answer is a `Cpp`, with faults where it does not parse. A
+snippet with bracket, quote, comment or preprocessor faults could leave its function, so nothing else of it is
+read. No names are resolved here: a mention is what is written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+
+import msgspec
+
+from aos_language.cpp.facts import Access, Call, Cpp, Declaration, DeclarationKind, Mention
+from aos_language.cpp.reader import TreeReader
+from aos_language.cpp.tokens import Extent, Fault, FaultKind, Tokens, cut
+from aos_language.cpp.tree import tree_of
+
+__all__ = [
+    "Access",
+    "Call",
+    "Cpp",
+    "Declaration",
+    "DeclarationKind",
+    "Extent",
+    "Fault",
+    "FaultKind",
+    "Mention",
+    "read_cpp",
+    "read_cpp_declarations",
+    "read_cpp_expression",
+    "strip_comments",
+]
+
+
+def strip_comments(code: str) -> str:
+    """The code with comments blanked, so that offsets and lines stay."""
+    return _without(cut(code).comments, code)
+
+
+def _without(comments: Iterable[Extent], code: str) -> str:
+    characters = list(code)
+    for comment in comments:
+        for index in range(comment.start, comment.end):
+            if characters[index] != "\n":
+                characters[index] = " "
+    return "".join(characters)
+
+
+@lru_cache(maxsize=4096)
+def read_cpp(code: str) -> Cpp:
+    """Statements, as they stand in a function body."""
+    return _read(code, cut(code), before="void f() {", after="\n}")
+
+
+@lru_cache(maxsize=4096)
+def read_cpp_expression(code: str) -> Cpp:
+    """One expression, or a list in braces that a variable starts with."""
+    tokens = msgspec.structs.replace(cut(code), missing_semicolons=())
+    is_list = strip_comments(code).lstrip().startswith("{")
+    before, after = ("auto x = ", "\n;") if is_list else ("auto x = (", "\n);")
+    return _read(code, tokens, before=before, after=after)
+
+
+@lru_cache(maxsize=256)
+def read_cpp_declarations(code: str) -> Cpp:
+    """Declarations, as they stand in a namespace."""
+    return _read(code, cut(code), before="", after="\n")
+
+
+def _read(code: str, tokens: Tokens, *, before: str, after: str) -> Cpp:
+    is_empty = not _without(tokens.comments, code).strip()
+    if tokens.faults or is_empty:
+        return Cpp(code, literals=tokens.literals, faults=tokens.faults, is_empty=is_empty)
+    complete = Cpp(code).replace((offset, ";") for offset in tokens.missing_semicolons)
+    return TreeReader(code, complete, len(before), tokens).read(tree_of(before + complete + after))

@@ -1,0 +1,300 @@
+"""Local variables of C++ that are read before they have a value, found by definite assignment.
+
+Told are numbers, truths and values of enums that are declared without a value and then read where nothing has
+set them: on no way there (`never`), or on some way only. Whatever may set a variable counts as if it does: a
+call that takes it, a reference, a lambda that names it. Nobody asks whether two conditions exclude each
+other, so a variable that was set under a condition counts as set under another one about the same names.
+"""
+
+from __future__ import annotations
+
+import msgspec
+import tree_sitter
+
+from aos_language.cpp.evaluation import Evaluation, below, operator_of, text_of
+from aos_language.cpp.facts import Cpp
+from aos_language.cpp.flow import names_in
+from aos_language.cpp.reader import TreeReader
+from aos_language.cpp.tokens import Extent, Tokens
+from aos_language.cpp.tree import tree_of
+from aos_language.cpp.ways import State, Ways, merged
+
+__all__ = ["Unset", "unset_reads"]
+
+
+class Unset(msgspec.Struct, frozen=True):
+    """A read of a variable without a value; `never` if no way to it sets one. `type` is as written."""
+
+    name: str
+    type: str
+    extent: Extent
+    never: bool
+
+
+def unset_reads(cpp: Cpp, enums: frozenset[str] = frozenset()) -> tuple[Unset, ...]:
+    """The first such read of each variable of the statements of a function body, in text order."""
+    if cpp.is_empty or cpp.faults:
+        return ()
+    complete = Cpp(cpp.code).replace((offset, ";") for offset in cpp.missing_semicolons)
+    root = tree_of(f"{_BEFORE}{complete}\n}}")
+    if root.has_error or any(part.type in _JUMPS for part in below(root)):
+        return ()
+    walk = _Walk(enums)
+    body = root.children[0].child_by_field_name("body")
+    assert body is not None
+    try:
+        walk.statement(body, State())
+    except RecursionError:
+        return ()  # Text that is nested so deeply no person reads either.
+    reader = TreeReader(cpp.code, complete, len(_BEFORE), Tokens((), (), (), cpp.missing_semicolons))
+    return tuple(
+        Unset(text_of(node), kind, reader.extent(node), never) for node, kind, never in walk.found.values()
+    )
+
+
+_BEFORE = "void f() {"
+_JUMPS = frozenset({"goto_statement", "labeled_statement", "try_statement"})
+_DEEPEST = 6
+"""Loops deeper than this are not looked into: each looks twice at what is in it."""
+_HANDLES = frozenset({"reference_declarator", "pointer_declarator"})
+_NUMBERS = frozenset({"primitive_type", "sized_type_specifier"})
+
+
+class _Loop(msgspec.Struct):
+    """The states at its breaks and at what goes on with the next turn. A `switch` has breaks alone."""
+
+    is_switch: bool = False
+    breaks: list[State] = []
+    turns: list[State] = []
+
+
+class _Walk(Evaluation):
+    """One walk over the statements, in the order in which they run."""
+
+    def __init__(self, enums: frozenset[str]) -> None:
+        super().__init__()
+        self._enums = enums
+        self._loops: list[_Loop] = []
+
+    def statement(self, node: tree_sitter.Node | None, state: State) -> State:
+        if node is None or not node.is_named or state.ended:
+            return state
+        handler = _STATEMENTS.get(node.type)
+        if handler is not None:
+            return handler(self, node, state)
+        self.expression(node, state)
+        return state
+
+    def _block(self, node: tree_sitter.Node, state: State) -> State:
+        outer = set(state.unset)
+        hidden = dict(self.declared)
+        for child in node.named_children:
+            state = self.statement(child, state)
+        self.declared = hidden
+        if node.type == "compound_statement":
+            # A variable of the block is gone with it; one that it hid counts as set.
+            state.unset = {name: ways for name, ways in state.unset.items() if name in outer}
+        return state
+
+    def _declaration(self, node: tree_sitter.Node, state: State) -> State:
+        kind = node.child_by_field_name("type")
+        words = {text_of(child) for child in node.children if child.type == "storage_class_specifier"}
+        is_number = kind is not None and (kind.type in _NUMBERS or text_of(kind) in self._enums)
+        for declarator in node.children_by_field_name("declarator"):
+            if declarator.type == "init_declarator":
+                inner = declarator.child_by_field_name("declarator")
+                value = declarator.child_by_field_name("value")
+                if inner is not None and inner.type in _HANDLES:
+                    self.may_be_set(value, state)
+                self.expression(value, state)
+                self.may_be_set(inner, state)
+            elif declarator.type == "identifier" and is_number and not words & {"static", "extern"}:
+                assert kind is not None
+                self.declared[text_of(declarator)] = (declarator.start_byte, text_of(kind))
+                state.unset[text_of(declarator)] = Ways()
+            else:
+                self.may_be_set(declarator, state)
+        return state
+
+    def _if(self, node: tree_sitter.Node, state: State) -> State:
+        condition = node.child_by_field_name("condition")
+        named = self.condition(condition, state)
+        then = self._under(named, node.child_by_field_name("consequence"), state.copy())
+        alternative = node.child_by_field_name("alternative")
+        if alternative is None and _is_last_case(node):
+            return then  # `if (x == A) .. else if (x == B) ..` may well be all there is.
+        otherwise = self._under(named, alternative, state.copy())
+        return merged([then, otherwise], named)
+
+    def _under(self, named: frozenset[str], node: tree_sitter.Node | None, state: State) -> State:
+        self.conditions.append(named)
+        state = self.statement(node, state)
+        self.conditions.pop()
+        return state
+
+    def _while(self, node: tree_sitter.Node, state: State) -> State:
+        condition = node.child_by_field_name("condition")
+        named = self.condition(condition, state)
+        after, breaks = self._body(named, node.child_by_field_name("body"), state)
+        # Most loops run: what each turn sets counts as set.
+        return merged(breaks if _is_true(condition) else [after, *breaks], named)
+
+    def _do(self, node: tree_sitter.Node, state: State) -> State:
+        state, breaks = self._body(frozenset(), node.child_by_field_name("body"), state)
+        if not state.ended:
+            self.condition(node.child_by_field_name("condition"), state)
+        if _is_true(node.child_by_field_name("condition")):
+            return merged(breaks)
+        return merged([state, *breaks])
+
+    def _for(self, node: tree_sitter.Node, state: State) -> State:
+        outer, hidden = set(state.unset), dict(self.declared)
+        state = self.statement(node.child_by_field_name("initializer"), state)
+        condition = node.child_by_field_name("condition")
+        named = self.condition(condition, state)
+        after, breaks = self._body(named, node.child_by_field_name("body"), state)
+        if not after.ended:
+            self.expression(node.child_by_field_name("update"), after)
+        is_endless = condition is None or _is_true(condition)
+        state = merged(breaks if is_endless else [after, *breaks], named)
+        self.declared = hidden
+        state.unset = {name: each for name, each in state.unset.items() if name in outer}
+        return state
+
+    def _for_range(self, node: tree_sitter.Node, state: State) -> State:
+        whole = node.child_by_field_name("right")
+        named = self.condition(whole, state)
+        hidden = dict(self.declared)
+        inner = state.copy()
+        self.may_be_set(node.child_by_field_name("declarator"), inner)
+        after, breaks = self._body(named, node.child_by_field_name("body"), inner)
+        self.declared = hidden
+        return merged([after, *breaks], named)
+
+    def _body(
+        self, named: frozenset[str], node: tree_sitter.Node | None, state: State
+    ) -> tuple[State, list[State]]:
+        """The state where a turn of a loop ends, and those at its breaks.
+
+        A turn may follow another one, so the first pass only finds out what that would have set.
+        """
+        if len(self._loops) >= _DEEPEST:
+            return State(), []
+        was_trial, self.is_trial = self.is_trial, True
+        after, _ = self._turn(named, node, state.copy())
+        self.is_trial = was_trial
+        return self._turn(named, node, merged([state, after], named))
+
+    def _turn(
+        self, named: frozenset[str], node: tree_sitter.Node | None, state: State
+    ) -> tuple[State, list[State]]:
+        self._loops.append(_Loop())
+        state = self._under(named, node, state)
+        loop = self._loops.pop()
+        return merged([state, *loop.turns], named), loop.breaks
+
+    def _switch(self, node: tree_sitter.Node, state: State) -> State:
+        named = self.condition(node.child_by_field_name("condition"), state)
+        body = node.child_by_field_name("body")
+        self._loops.append(_Loop(is_switch=True))
+        self.conditions.append(named)
+        current = State(ended=True)
+        for case in body.named_children if body is not None else ():
+            if case.type != "case_statement":
+                current = self.statement(case, current)
+                continue
+            # A case is reached from the head, and from the one above that does not break.
+            current = merged([state.copy(), current])
+            value = case.child_by_field_name("value")
+            for child in case.named_children:
+                if value is None or child != value:
+                    current = self.statement(child, current)
+        self.conditions.pop()
+        # Cases without a `default` may well be all values.
+        return merged([current, *self._loops.pop().breaks], named)
+
+    def _break(self, node: tree_sitter.Node, state: State) -> State:
+        if self._loops:
+            self._loops[-1].breaks.append(state.copy())
+        return State(ended=True)
+
+    def _continue(self, node: tree_sitter.Node, state: State) -> State:
+        for loop in reversed(self._loops):
+            if not loop.is_switch:
+                loop.turns.append(state.copy())
+                break
+        return State(ended=True)
+
+    def _leave(self, node: tree_sitter.Node, state: State) -> State:
+        for child in node.named_children:
+            self.expression(child, state)
+        return State(ended=True)
+
+    def _expression_statement(self, node: tree_sitter.Node, state: State) -> State:
+        for child in node.named_children:
+            self.expression(child, state)
+        return state
+
+    def _nothing(self, node: tree_sitter.Node, state: State) -> State:
+        return state
+
+    def condition(self, node: tree_sitter.Node | None, state: State) -> frozenset[str]:
+        """Reads a condition, which may declare; the names in it."""
+        if node is None:
+            return frozenset()
+        for part in node.named_children:
+            if part.type in ("declaration", "init_statement"):
+                for child in [part] if part.type == "declaration" else part.named_children:
+                    self.statement(child, state)
+        self.expression(node, state)
+        return frozenset(name.text for name in names_in(node))
+
+
+_STATEMENTS = {
+    "compound_statement": _Walk._block,
+    "else_clause": _Walk._block,
+    "init_statement": _Walk._block,
+    "declaration": _Walk._declaration,
+    "expression_statement": _Walk._expression_statement,
+    "if_statement": _Walk._if,
+    "while_statement": _Walk._while,
+    "do_statement": _Walk._do,
+    "for_statement": _Walk._for,
+    "for_range_loop": _Walk._for_range,
+    "switch_statement": _Walk._switch,
+    "break_statement": _Walk._break,
+    "continue_statement": _Walk._continue,
+    "return_statement": _Walk._leave,
+    "throw_statement": _Walk._leave,
+    "function_definition": _Walk._nothing,
+    "type_definition": _Walk._nothing,
+    "using_declaration": _Walk._nothing,
+    "alias_declaration": _Walk._nothing,
+    "enum_specifier": _Walk._nothing,
+    "struct_specifier": _Walk._nothing,
+    "class_specifier": _Walk._nothing,
+}
+
+
+def _is_last_case(node: tree_sitter.Node) -> bool:
+    """Whether an `if` without `else` ends a chain that asks the same value for one constant after another."""
+    asked = _asked(node)
+    outer = node.parent.parent if node.parent is not None and node.parent.type == "else_clause" else None
+    return bool(asked) and outer is not None and outer.type == "if_statement" and _asked(outer) == asked
+
+
+def _asked(node: tree_sitter.Node) -> str:
+    """Of `if (x == A)` the `x`; empty for another condition."""
+    condition = node.child_by_field_name("condition")
+    while condition is not None and condition.type in ("condition_clause", "parenthesized_expression"):
+        condition = condition.named_children[0] if condition.named_child_count == 1 else None
+    if condition is None or condition.type != "binary_expression" or operator_of(condition) != "==":
+        return ""
+    left = condition.child_by_field_name("left")
+    return text_of(left) if left is not None else ""
+
+
+def _is_true(node: tree_sitter.Node | None) -> bool:
+    while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
+        node = node.named_children[0] if node.named_child_count == 1 else None
+    return node is not None and text_of(node) in ("true", "1")

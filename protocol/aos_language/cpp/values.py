@@ -1,0 +1,52 @@
+"""Which lone names an expression of C++ can be the value of: not those of its conditions and arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import tree_sitter
+
+from aos_language.cpp.tree import tree_of
+
+__all__ = ["value_names"]
+
+_VALUES = {
+    "parenthesized_expression": (0,),
+    "conditional_expression": (1, 2),
+    "comma_expression": (-1,),
+    "cast_expression": (-1,),
+    "assignment_expression": (-1,),
+    "subscript_expression": (0,),
+}
+"""The parts, by their places among the named ones, that give an expression its value."""
+
+
+def value_names(expression: str) -> list[tuple[str, int]]:
+    """The names with their offsets: of `is_there ? found : missed` these are `found` and `missed`.
+
+    Of an element of an array it is the array's name, and of a list its elements'.
+    """
+    is_list = expression.lstrip().startswith("{")
+    before, after = ("auto x = ", "\n;") if is_list else ("auto x = (", "\n);")
+    data = f"{before}{expression}{after}".encode()
+    names = []
+    for node in _identifiers(tree_of(data.decode())):
+        start = len(data[: node.start_byte].decode()) - len(before)
+        names.append((data[node.start_byte : node.end_byte].decode(), start))
+    return names
+
+
+def _identifiers(root: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        if node.type == "init_declarator":
+            value = node.child_by_field_name("value")
+            waiting += [value] if value is not None else []
+        elif node.type in ("translation_unit", "declaration", "initializer_list"):
+            waiting += reversed(node.named_children)
+        elif node.type == "identifier":
+            yield node
+        elif node.type in _VALUES:
+            parts = [each for each in node.named_children if each.type != "comment"]
+            waiting += [parts[at] for at in reversed(_VALUES[node.type]) if at < len(parts)]

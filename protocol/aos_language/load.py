@@ -1,0 +1,148 @@
+"""Bundles in: a directory or a set of files, read, put together and checked in one run.
+
+Nothing raises for what a user wrote; the diagnostics hold all of it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import msgspec
+
+from aos_language.archive import is_archive_name, read_archive
+from aos_language.assembly import assemble
+from aos_language.check import check
+from aos_language.findings import Findings
+from aos_language.reading.files import (
+    MAX_BUNDLE_BYTES,
+    MAX_BUNDLE_FILES,
+    KnownFiles,
+    is_document_name,
+    read_documents,
+)
+from aos_language.reading.source import open_source
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
+from aos_protocol.documents import Project
+
+__all__ = ["LoadedBundle", "bundle_digest", "load_bundle", "load_files", "read_bundle_files", "with_excerpts"]
+
+
+class LoadedBundle(msgspec.Struct, frozen=True):
+    """`project` is there when no diagnostic is an error. `files` gives the digest of each document's file,
+    `versions` the version of each that declares one."""
+
+    project: Project | None
+    diagnostics: tuple[Diagnostic, ...]
+    digest: str
+    files: dict[str, str]
+    versions: dict[str, str] = {}
+
+    @property
+    def has_errors(self) -> bool:
+        return has_errors(self.diagnostics)
+
+
+def load_bundle(path: Path) -> LoadedBundle:
+    """The bundle in a directory or an archive.
+
+    Folders in a directory and hidden files are not part of it; a link to a file elsewhere is an error.
+    """
+    files, remarks = read_bundle_files(path)
+    return load_files(files, name=path.name or str(path), remarks=remarks)
+
+
+def load_files(
+    files: Mapping[str, bytes],
+    *,
+    name: str = "bundle",
+    remarks: Iterable[Diagnostic] = (),
+    known: KnownFiles | None = None,
+) -> LoadedBundle:
+    """The bundle of these files, by plain file names. `name` is the place of what has no file.
+
+    Files that are in `known` are not read again.
+    """
+    remarks = tuple(remarks)
+    if has_errors(remarks):
+        return LoadedBundle(None, remarks, "", {})
+    findings = Findings()
+    documents = read_documents(files, findings, known) if files else {}
+    has_unread_files = findings.has_errors and any(
+        is_document_name(file) and file not in documents for file in files
+    )
+    assembly = assemble(documents, findings, bundle=name, has_unread_files=has_unread_files)
+    check(assembly, findings)
+    project = None if findings.has_errors else assembly.project()
+    digests = {file: hashlib.sha256(files[file]).hexdigest() for file in documents}
+    versions = {file: each.version.text for file, each in documents.items() if each.version is not None}
+    digest = bundle_digest(files, documents)
+    return LoadedBundle(project, (*remarks, *findings.sorted()), digest, digests, versions)
+
+
+def bundle_digest(files: Mapping[str, bytes], documents: Iterable[str]) -> str:
+    """One digest over the documents' names and bytes, whatever the order."""
+    whole = hashlib.sha256()
+    for file in sorted(documents):
+        whole.update(f"{len(file)}:{file}:{len(files[file])}:".encode())
+        whole.update(files[file])
+    return whole.hexdigest()
+
+
+def with_excerpts(diagnostics: Iterable[Diagnostic], files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
+    """Diagnostics of another service with the source lines they are about."""
+    diagnostics = tuple(diagnostics)
+    findings = Findings()
+    for name in {diagnostic.span.file for diagnostic in diagnostics} & files.keys():
+        source = open_source(name, files[name], Findings())
+        if source is not None:
+            findings.add_source(name, source.lines)
+    for diagnostic in diagnostics:
+        findings.add(diagnostic)
+    return findings.sorted()
+
+
+def read_bundle_files(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
+    """The files of a directory or an archive, and a remark for each thing in it that is left out."""
+    if is_archive_name(path.name) and path.is_file():
+        return read_archive(path)
+    files: dict[str, bytes] = {}
+    remarks: list[Diagnostic] = []
+    try:
+        entries = sorted(path.iterdir())
+    except OSError as error:
+        reason = error.strerror or "cannot be read"
+        hint = "A bundle is a directory with .ef, .sd, .am, .lf or .json files, or an archive of one"
+        return {}, [Diagnostic(Severity.ERROR, "AOS101", reason, Span(str(path)), hint)]
+    total = 0
+    for entry in entries:
+        if entry.name.startswith("."):
+            continue
+        if entry.is_symlink() and not entry.resolve().is_relative_to(path.resolve()):
+            hint = "Put the file itself into the bundle"
+            message = "this link leads out of the bundle"
+            remarks.append(Diagnostic(Severity.ERROR, "AOS120", message, Span(entry.name), hint))
+            continue
+        if entry.is_dir():
+            remarks.append(_remark("a folder inside a bundle", entry, "It is left out"))
+            continue
+        if not is_document_name(entry.name) or not entry.is_file():
+            hint = "It is left out; documents end in .ef, .sd, .am, .lf or .json"
+            remarks.append(_remark("this is not an AOS document", entry, hint))
+            continue
+        try:
+            total += entry.stat().st_size
+            if total > MAX_BUNDLE_BYTES or len(files) >= MAX_BUNDLE_FILES:
+                message = f"more than {MAX_BUNDLE_FILES} files or {MAX_BUNDLE_BYTES} bytes"
+                remarks.append(Diagnostic(Severity.ERROR, "AOS120", message, Span(entry.name)))
+                break
+            files[entry.name] = entry.read_bytes()
+        except OSError as error:
+            reason = error.strerror or "cannot be read"
+            remarks.append(Diagnostic(Severity.ERROR, "AOS101", reason, Span(entry.name)))
+    return files, remarks
+
+
+def _remark(message: str, entry: Path, hint: str) -> Diagnostic:
+    return Diagnostic(Severity.REMARK, "AOS107", message, Span(entry.name), hint)

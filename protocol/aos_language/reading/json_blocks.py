@@ -1,0 +1,66 @@
+"""The JSON form of model code: blocks of assignments, temporary variables, loops over state variables."""
+
+from __future__ import annotations
+
+from aos_language.reading.document import check_name, enum_type, normal_type
+from aos_language.reading.json_record import Record
+from aos_protocol.documents import Assignment, Iteration, TemporaryVariable
+
+__all__ = ["read_block"]
+
+
+def read_block(record: Record, key: str) -> tuple[Assignment, ...]:
+    """The assignments of a block, in order; empty ones are left out."""
+    blocks = (_assignment(item) for item in record.records(key, f'an assignment of "{key}"'))
+    return tuple(block for block in blocks if block is not None)
+
+
+def _assignment(record: Record) -> Assignment | None:
+    name = record.text("AssignmentName")
+    temporary = record.record("TempVar", "a temporary variable")
+    block = Assignment(
+        span=record.span,
+        name=" ".join(name.text.split()) if name else "",
+        temporary=_temporary(temporary) if temporary and not temporary.is_blank else None,
+        over_previous=_iterations(record, "IteratePreviousStateVars"),
+        over_next=_iterations(record, "IterateNextStateVars"),
+        code=record.code("AssignmentCode"),
+    )
+    record.ignore("Comment")
+    record.finish()
+    has_effect = block.temporary or block.over_previous or block.over_next or block.code
+    return block if has_effect else None
+
+
+def _iterations(record: Record, key: str) -> tuple[Iteration, ...]:
+    found = []
+    for item in record.records(key, f'a loop of "{key}"'):
+        kind, name = item.text("Type", required=True), item.text("ItemName", required=True)
+        condition = item.expression("ConditionCode")
+        body = item.code("WhenConditionTrueCode")
+        item.ignore("Comment")
+        item.finish()
+        if kind and name:
+            check_name(name, "a loop's item", record.findings)
+            found.append(Iteration(kind.text, name.text, kind.span, condition, body))
+    return tuple(found)
+
+
+def _temporary(record: Record) -> TemporaryVariable | None:
+    findings = record.findings
+    name, kind = record.text("VarName", required=True), record.text("Type", required=True)
+    enum_name, values = record.text("EnumName"), record.texts("EnumValues")
+    record.ignore("Comment")
+    record.finish()
+    if name is None or kind is None:
+        return None
+    check_name(name, "a temporary variable", findings)
+    if kind.text != "enum":
+        return TemporaryVariable(name.text, normal_type(kind, findings), name.span)
+    if enum_name is None or not values:
+        missing = "EnumName" if enum_name is None else "EnumValues"
+        findings.error("AOS105", f'the temporary enum {name.text} lacks "{missing}"', record.span)
+        return None
+    check_name(enum_name, "an enum", findings)
+    enum = enum_type(enum_name, values, findings)
+    return TemporaryVariable(name.text, "enum", name.span, enum.name, enum.values)

@@ -1,0 +1,77 @@
+"""Which kind of local variable a set of attributes makes, the same for every dialect."""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_language.findings import Findings
+from aos_language.reading.document import check_name
+from aos_language.reading.source import Text
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Import, LocalSource, LocalVariable, Snippet
+
+__all__ = ["LocalVariableParts", "build_local_variable"]
+
+
+class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
+    """What a document gives for a local variable, as it was found."""
+
+    name: Text | None
+    span: Span
+    type: str = ""
+    parameter_path: Text | None = None
+    is_from_service: bool = False
+    topic: Text | None = None
+    message_type: Text | None = None
+    initial_value: Snippet | None = None
+    code: Snippet | None = None
+    imports: tuple[Import, ...] = ()
+    is_heavy: bool = False
+
+
+def build_local_variable(parts: LocalVariableParts, findings: Findings) -> LocalVariable | None:
+    """The variable; None, with a finding, where name, source or code are missing or contradict."""
+    if parts.name is None:
+        findings.error("AOS105", "a local variable lacks its name", parts.span)
+        return None
+    check_name(parts.name, "a local variable", findings)
+    source = _source(parts, findings)
+    if source is None:
+        return None
+    if source is not LocalSource.PARAMETER and parts.code is None:
+        message = f"the local variable {parts.name.text} has no code that gives its value"
+        findings.error("AOS105", message, parts.name.span)
+        return None
+    given = parts.parameter_path or parts.topic
+    return LocalVariable(
+        name=parts.name.text,
+        source=source,
+        span=parts.name.span,
+        type=parts.type,
+        parameter_path=parts.parameter_path.text if parts.parameter_path else "",
+        topic=parts.topic.text if parts.topic else "",
+        message_type=parts.message_type.text if parts.message_type else "",
+        initial_value=parts.initial_value,
+        code=parts.code,
+        imports=parts.imports,
+        is_heavy=parts.is_heavy,
+        source_span=given.span if given is not None else None,
+    )
+
+
+def _source(parts: LocalVariableParts, findings: Findings) -> LocalSource | None:
+    given = {
+        LocalSource.PARAMETER: parts.parameter_path is not None,
+        LocalSource.SERVICE_RESPONSE: parts.is_from_service,
+        LocalSource.TOPIC: parts.topic is not None,
+    }
+    sources = [source for source, is_given in given.items() if is_given]
+    span = parts.name.span if parts.name else parts.span
+    if len(sources) == 1:
+        return sources[0]
+    if not sources:
+        hint = "Take it from a skill parameter, from the service's response or from a topic"
+        findings.error("AOS105", "this local variable has no source", span, hint)
+    else:
+        findings.error("AOS106", "this local variable has more than one source", span, "Keep one of them")
+    return None

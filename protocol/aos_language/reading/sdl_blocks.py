@@ -1,0 +1,110 @@
+"""Model code in SDL: a section's body, or the assignments inside it that JSON blocks are made of."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+from aos_language.findings import Findings
+from aos_language.reading.code import expression
+from aos_language.reading.document import check_name, enum_type, normal_type
+from aos_language.reading.sdl_text import Part, Section, enum_values
+from aos_language.reading.source import Text
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Assignment, Iteration, Snippet, TemporaryVariable
+
+__all__ = ["read_block"]
+
+_TEMPORARY_ENUM = re.compile(r"enum\s+(\S+?)\s*\{(.*)\}\s*(\S+)")
+_TYPE_AND_NAME = re.compile(r"(\S.*?)\s+(\S+)")
+_LOOP_PARTS = ("loop_condition", "loop_body")
+
+
+class _Open(msgspec.Struct):
+    """An assignment that is being read."""
+
+    span: Span
+    name: str = ""
+    temporary: TemporaryVariable | None = None
+    over_previous: list[Iteration] = []
+    over_next: list[Iteration] = []
+    code: Snippet | None = None
+
+    def closed(self) -> Assignment | None:
+        """None where nothing in it has an effect."""
+        if not (self.temporary or self.over_previous or self.over_next or self.code):
+            return None
+        loops = tuple(self.over_previous), tuple(self.over_next)
+        return Assignment(self.span, self.name, self.temporary, *loops, self.code)
+
+
+def read_block(section: Section | None, findings: Findings) -> tuple[Assignment, ...]:
+    """The assignments of a section: its body is one, and each `assignment:` opens another."""
+    if section is None:
+        return ()
+    body = section.code()
+    found = [_Open(body.span, code=body)] if body is not None else []
+    loops: list[Iteration] | None = None
+    is_open = False
+    for part in section.parts:
+        if part.word == "assignment" or not is_open:
+            found.append(_Open(part.span, name=" ".join(part.value.text.split())))
+            is_open, loops = True, None
+            if part.word == "assignment":
+                continue
+            found[-1].name = ""
+        if part.word in _LOOP_PARTS:
+            _add_to_loop(part, loops, findings)
+        elif part.word in ("loop_previous", "loop_next"):
+            loops = found[-1].over_previous if part.word == "loop_previous" else found[-1].over_next
+            loop = _loop(part, findings)
+            loops.extend([loop] if loop is not None else [])
+        elif part.word == "temporary_variable":
+            found[-1].temporary = _temporary(part, findings)
+        else:
+            found[-1].code = part.code()
+    closed = (assignment.closed() for assignment in found)
+    return tuple(assignment for assignment in closed if assignment is not None)
+
+
+def _loop(part: Part, findings: Findings) -> Iteration | None:
+    match = _TYPE_AND_NAME.fullmatch(part.value.text)
+    if match is None:
+        message = f"`{part.word}:` needs a compound type and a name for each variable of it"
+        findings.error("AOS104", message, part.value.span if part.value.text else part.span)
+        return None
+    check_name(Text(match.group(2), part.value.after(match.start(2)).span), "a loop's item", findings)
+    return Iteration(match.group(1), match.group(2), part.value.span)
+
+
+def _add_to_loop(part: Part, loops: list[Iteration] | None, findings: Findings) -> None:
+    code = part.code()
+    if not loops:
+        findings.error("AOS104", f"this `{part.word}:` belongs to no loop", part.span)
+    elif part.word == "loop_body":
+        loops[-1] = msgspec.structs.replace(loops[-1], body=code)
+    elif code is not None:
+        loops[-1] = msgspec.structs.replace(loops[-1], condition=expression(code, drop_semicolon=True))
+
+
+def _temporary(part: Part, findings: Findings) -> TemporaryVariable | None:
+    """`int n`, or `enum Ending { Good, Bad } ending` as in C++."""
+    value = part.value
+    if match := _TEMPORARY_ENUM.fullmatch(value.text):
+        enum_name, name = (Text(match.group(i), value.after(match.start(i)).span) for i in (1, 3))
+        check_name(enum_name, "an enum", findings)
+        check_name(name, "a temporary variable", findings)
+        listed = enum_values(Text(match.group(2), value.after(match.start(2)).span), findings)
+        values = enum_type(enum_name, listed, findings).values
+        return TemporaryVariable(name.text, "enum", name.span, enum_name.text, values)
+    match = _TYPE_AND_NAME.fullmatch(value.text)
+    if match is None:
+        hint = "Write `int n`, or `enum Ending { Good, Bad } ending`"
+        span = value.span if value.text else part.span
+        findings.error("AOS104", f"`{part.word}:` needs a type and a name", span, hint)
+        return None
+    name = Text(match.group(2), value.after(match.start(2)).span)
+    check_name(name, "a temporary variable", findings)
+    kind = normal_type(Text(match.group(1), value.span), findings)
+    return TemporaryVariable(name.text, kind, name.span)

@@ -1,0 +1,72 @@
+"""The one-line forms of SDL: `<type> <name> ...`, numbers, and values."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+from aos_language.findings import Findings
+from aos_language.reading.document import check_name, normal_type
+from aos_language.reading.sdl_text import Part
+from aos_language.reading.source import Text
+
+__all__ = ["Declaration", "read_declaration", "read_number", "read_truth"]
+
+_DECLARATION = re.compile(
+    r"((?:(?:unsigned|signed|long|short)\s+)*[A-Za-z_][\w:]*(?:\s*<.*>)?(?:\s*\[\s*(?:[A-Za-z_]\w*)?\s*\])?)(\s+)([^\s\[]+)(\s*)"
+)
+_TRUTHS = {"true": True, "false": False}
+
+
+class Declaration(msgspec.Struct, frozen=True):
+    """`type name rest`."""
+
+    type: str
+    type_text: Text
+    name: Text
+    rest: Text
+
+
+def read_declaration(part: Part, what: str, findings: Findings) -> Declaration | None:
+    """The declaration in a part's value; None, with an error, where it is none."""
+    match = _DECLARATION.match(part.value.text)
+    if match is None:
+        message = f"`{part.word}:` needs a type and a name"
+        findings.error("AOS104", message, part.value.span if part.value.text else part.span)
+        return None
+    type_text = part.value.after(0)
+    type_text = Text(match.group(1), type_text.span)
+    name = Text(match.group(3), part.value.after(match.start(3)).span)
+    check_name(name, what, findings)
+    kind = normal_type(type_text, findings)
+    return Declaration(kind, type_text, name, part.value.after(match.end()).strip())
+
+
+def read_number(part: Part, findings: Findings) -> float | None:
+    """The number in a part's value; None, with an error, where it is none."""
+    text = part.value.text
+    if text.endswith(";"):
+        text = text.rstrip("; \t")
+        at = part.value.after(len(text)).strip().span
+        findings.warning("AOS127", "a semicolon after a number", at, "It is skipped")
+    try:
+        number = float(text)
+    except ValueError:
+        number = float("nan")
+    if not abs(number) < float("inf"):
+        span = part.value.span if part.value.text else part.span
+        findings.error("AOS106", f"`{part.word}:` needs a number, not {part.value.text!r}", span)
+        return None
+    return number
+
+
+def read_truth(part: Part | None, findings: Findings) -> bool:
+    """true or false in a part's value; false where there is no part."""
+    if part is None:
+        return False
+    truth = _TRUTHS.get(part.value.text.lower())
+    if truth is None:
+        message = f"`{part.word}:` is true or false, not {part.value.text!r}"
+        findings.error("AOS106", message, part.value.span)
+    return bool(truth)

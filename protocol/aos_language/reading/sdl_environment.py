@@ -1,0 +1,218 @@
+"""The environment file (`.ef`)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from aos_language.findings import Findings
+from aos_language.reading.code import expression
+from aos_language.reading.document import array_type, check_name, enum_type
+from aos_language.reading.sdl_blocks import read_block
+from aos_language.reading.sdl_declaration import (
+    Declaration,
+    read_declaration,
+    read_number,
+    read_truth,
+)
+from aos_language.reading.sdl_sections import DEFAULT_DISCOUNT, Sections
+from aos_language.reading.sdl_text import Part, Section, listed_values
+from aos_language.reading.source import Text
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import (
+    CompoundType,
+    EnumType,
+    Environment,
+    Field,
+    SpecialState,
+    StateVariable,
+)
+
+__all__ = ["read_environment"]
+
+_KEY = re.compile(r"\(\s*-?\d+\s*,\s*-?\d+\s*,\s*-?\d+\s*\)|\w+")
+_KEYS = re.compile(rf"(?:{_KEY.pattern})(?:\s*,\s*(?:{_KEY.pattern}))*")
+_LOW_LEVEL_TYPE = re.compile(r"(?:^|(?<=\s)|(?<=\]))of\s+([A-Za-z_]\w*)(?:\s+|$)")
+_ARRAY_MARK = re.compile(r"\[\s*([A-Za-z_]\w*|)\s*\]\s*")
+_ARRAY_WORDS = {"true": True, "false": False, "": False}
+
+
+def read_environment(sections: Sections, project: str, span: Span, findings: Findings) -> Environment:
+    """The environment; what cannot be read of it is reported and left out."""
+    types = [_type(section, findings) for section in sections.all("define_type")]
+    variables = [
+        _variable(section, findings) for section in sections.of("state_variable", "action_parameter")
+    ]
+    return Environment(
+        project=project,
+        span=span,
+        horizon=_horizon(sections, findings),
+        discount=_discount(sections, findings),
+        enums=tuple(kind for kind in types if isinstance(kind, EnumType)),
+        compounds=tuple(kind for kind in types if isinstance(kind, CompoundType)),
+        variables=tuple(variable for variable in variables if variable is not None),
+        initial_belief=sections.block("initial_belief"),
+        special_states=tuple(_special_states(sections, findings)),
+        extrinsic_changes=sections.block("extrinsic_code"),
+        state_heuristic=sections.block("heuristic_code"),
+        print_state=sections.block("print_code"),
+        is_one_state_model=read_truth(sections.last("one_state_model"), findings),
+        shared_mapping_code=python.code()
+        if (python := sections.last("shared_mapping_code")) is not None
+        else None,
+        shared_code=shared.code() if (shared := sections.last("shared_code")) is not None else None,
+    )
+
+
+def _horizon(sections: Sections, findings: Findings) -> int:
+    section = sections.last("horizon")
+    if section is None:
+        findings.error("AOS105", "the environment lacks `horizon:`", sections.span)
+        return 1
+    number = read_number(section, findings)
+    if number is None:
+        return 1
+    if number != int(number) or number < 1:
+        findings.error("AOS106", "the horizon must be an integer of at least 1", section.value.span)
+        return 1
+    return int(number)
+
+
+def _discount(sections: Sections, findings: Findings) -> float:
+    section = sections.last("discount")
+    number = read_number(section, findings) if section is not None else DEFAULT_DISCOUNT
+    if number is None:
+        return DEFAULT_DISCOUNT
+    if section is not None and not 0.0 < number <= 1.0:
+        hint = "It must be above 0 and at most 1"
+        findings.error("AOS106", f"the discount is {number:g}", section.value.span, hint)
+        return DEFAULT_DISCOUNT
+    return number
+
+
+def _special_states(sections: Sections, findings: Findings) -> Iterator[SpecialState]:
+    for section in sections.of("reward_code", "special_state"):
+        if section.word == "special_state":
+            special = _form_a(section, findings)
+        else:
+            code = read_block(section, findings)
+            special = SpecialState(section.span, code=code) if code else None
+        if special is not None:
+            yield special
+
+
+def _form_a(section: Section, findings: Findings) -> SpecialState | None:
+    condition, reward = section.last("state_condition", findings), section.last("reward", findings)
+    is_goal = read_truth(section.last("is_goal_state", findings), findings)
+    is_one_time = read_truth(section.last("is_one_time_reward", findings), findings)
+    failure = section.last("is_failure_state", findings)
+    is_failure = read_truth(failure, findings) if failure is not None else None
+    code = condition.code() if condition is not None else None
+    if code is None:
+        findings.error("AOS105", "a special state needs `state_condition:`", section.span)
+    if reward is None:
+        findings.error("AOS105", "a special state needs `reward:`", section.span)
+    number = read_number(reward, findings) if reward is not None else None
+    if code is None or number is None:
+        return None
+    holds = expression(code, drop_semicolon=True)
+    return SpecialState(section.span, holds, number, is_goal, is_one_time, is_failure)
+
+
+def _type(section: Section, findings: Findings) -> EnumType | CompoundType | None:
+    name = section.value
+    if not name.text:
+        findings.error("AOS105", "`define_type:` needs a name", section.span)
+        return None
+    check_name(name, "a type", findings)
+    members = section.last("enum_members", findings)
+    fields = [_field(part, findings) for part in section.all("variable")]
+    if members is not None and fields:
+        message = f"the type {name.text} is an enum or has variables, not both"
+        findings.error("AOS106", message, members.span)
+    if members is not None:
+        return enum_type(name, listed_values(members, findings), findings)
+    if not fields:
+        hint = "Add `enum_members:` or `variable:` lines"
+        findings.error("AOS105", f"the type {name.text} is empty", name.span, hint)
+    return CompoundType(name.text, tuple(field for field in fields if field is not None), name.span)
+
+
+def _field(part: Part, findings: Findings) -> Field | None:
+    declaration = read_declaration(part, "a field", findings)
+    if declaration is None:
+        return None
+    rest, low_level_type = _low_level_type(declaration)
+    kind = declaration.type
+    if (mark := _ARRAY_MARK.match(rest.text)) is not None:
+        kind, rest = f"{kind}[{mark[1]}]", rest.after(mark.end())
+    if rest.text.startswith("["):
+        hint = f"Write `variable: vector<{kind}> {declaration.name.text}`"
+        findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
+        return None
+    if rest.text.startswith("="):
+        findings.warning("AOS127", "an equals sign before a default", rest.span, "It is skipped")
+        rest = rest.after(1).strip()
+    default = _without_learning_scale(rest)
+    snippet = expression(default.snippet(), drop_semicolon=True) if default.text else None
+    name = declaration.name
+    return Field(name.text, kind, name.span, snippet, low_level_type, declaration.type_text.span)
+
+
+def _low_level_type(declaration: Declaration) -> tuple[Text, str | None]:
+    """What follows the name of an `anyValue` without `of <low-level type>`, and that type."""
+    rest = declaration.rest
+    match = _LOW_LEVEL_TYPE.search(rest.text) if declaration.type == "anyValue" else None
+    if match is None:
+        return rest, None
+    return Text(rest.text[: match.start()] + rest.text[match.end() :], rest.span).strip(), match.group(1)
+
+
+def _without_learning_scale(rest: Text) -> Text:
+    """The default without what AOS's learning planner wants behind it: a scale or `ml_ignore`."""
+    match = re.fullmatch(r"(.*\S)\s+(ml_ignore|[\d.]+)", rest.text)
+    return Text(match.group(1), rest.span) if match else rest
+
+
+def _variable(section: Section, findings: Findings) -> StateVariable | None:
+    is_parameter_value = section.word == "action_parameter"
+    declaration = read_declaration(section, "a variable", findings)
+    if declaration is None:
+        return None
+    rest, low_level_type = _low_level_type(declaration)
+    mark = _ARRAY_MARK.fullmatch(rest.text)
+    if mark is None and rest.text.lower() not in _ARRAY_WORDS:
+        hint = "After the name stands `[]` or `[ENUM]` for an array, or nothing; values go into `code:`"
+        findings.error("AOS104", f"unexpected {rest.text!r}", rest.span, hint)
+    code, value = section.last("code", findings), section.last("default_value", findings)
+    default_value = value.code() if value is not None else None
+    if code is not None and default_value is not None:
+        findings.error("AOS106", "a variable has `default_value:` or `code:`, not both", code.span)
+    keys = section.last("key_types", findings)
+    kind, is_array, index_enum = array_type(declaration.type)
+    index_span = declaration.type_text.after(declaration.type_text.text.find("[") + 1).strip().span
+    if mark is not None:
+        index_enum, index_span = mark[1] or index_enum, rest.after(mark.start(1)).span
+    return StateVariable(
+        name=declaration.name.text,
+        type=kind,
+        span=declaration.name.span,
+        is_array=is_array or mark is not None or _ARRAY_WORDS.get(rest.text.lower(), False),
+        is_parameter_value=is_parameter_value,
+        default_value=expression(default_value, drop_semicolon=True) if default_value else None,
+        default_code=code.code() if code is not None else None,
+        key_types=_key_types(keys.value, findings) if keys is not None else (),
+        low_level_type=low_level_type,
+        type_span=declaration.type_text.span,
+        index_enum=index_enum,
+        index_span=index_span if index_enum else None,
+    )
+
+
+def _key_types(text: Text, findings: Findings) -> tuple[str, ...]:
+    """Enum names and ranges between commas."""
+    if not _KEYS.fullmatch(text.text):
+        hint = "Write enum names and ranges (start,stop,step) between commas"
+        findings.error("AOS104", f"these keys cannot be read: {text.text!r}", text.span, hint)
+        return ()
+    return tuple(match.group() for match in _KEY.finditer(text.text))

@@ -1,0 +1,184 @@
+"""The abstraction mapping (`.am`)."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+from aos_language.findings import Findings
+from aos_language.reading.document import check_name, normal_type
+from aos_language.reading.local_variable import LocalVariableParts, build_local_variable
+from aos_language.reading.sdl_declaration import read_number, read_truth
+from aos_language.reading.sdl_sections import Sections
+from aos_language.reading.sdl_text import Part, Section
+from aos_language.reading.source import Text
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import (
+    ACTIVATION_KINDS,
+    AbstractionMapping,
+    Activation,
+    ActivationField,
+    Import,
+    LocalVariable,
+    LowLevelAssignment,
+    ResponseRule,
+)
+
+__all__ = ["read_mapping"]
+
+_IMPORT = re.compile(r"(?:from(?:\s*:\s*|\s+)(?P<module>\S+)\s+)?import(?:\s*:\s*|\s+)(?P<names>.+)")
+_COLON_AFTER_WORD = re.compile(r"(?:from\s*:.*\s)?import\s*:")
+
+
+def read_mapping(
+    sections: Sections, project: str, name: str, span: Span, findings: Findings
+) -> AbstractionMapping | None:
+    """The mapping; None where the activation cannot be read."""
+    rules = [_rule(section, findings) for section in sections.all("response")]
+    variables = [_local_variable(section, findings) for section in sections.all("local_variable")]
+    text_response = sections.last("response_local_variable")
+    section = sections.last("module_activation")
+    if section is None:
+        findings.error("AOS105", f"the mapping {name} lacks `module_activation:`", sections.span)
+        return None
+    activation = _activation(section, findings)
+    if activation is None:
+        return None
+    return AbstractionMapping(
+        project=project,
+        name=name,
+        span=span,
+        activation=activation,
+        rules=tuple(rule for rule in rules if rule is not None),
+        response_variable=text_response.value.text if text_response is not None else "",
+        local_variables=tuple(variable for variable in variables if variable is not None),
+        response_variable_span=text_response.value.span if text_response is not None else None,
+    )
+
+
+def _rule(section: Section, findings: Findings) -> ResponseRule | None:
+    rule = section.last("response_rule", findings)
+    condition = rule.expression() if rule is not None else None
+    if rule is None:
+        hint = "Write `response_rule: True` for a response that always holds"
+        findings.error("AOS105", f"the response {section.value.text} has no rule", section.span, hint)
+    if not section.value.text:
+        findings.error("AOS105", "`response:` needs a name", section.span)
+        return None
+    check_name(section.value, "a response", findings)
+    assignments = _assignments(section, findings)
+    return ResponseRule(section.value.text, condition, section.value.span, assignments)
+
+
+def _assignments(section: Section, findings: Findings) -> tuple[LowLevelAssignment, ...]:
+    """Each `assign_variable:` with the `value:` after it."""
+    parts = [part for part in section.parts if part.word in ("assign_variable", "value")]
+    assignments = []
+    for part, following in pairwise([*parts, None]):
+        if part is None or part.word == "value":
+            continue
+        value = following.expression() if following is not None and following.word == "value" else None
+        if value is None:
+            hint = "Add `value:` with a Python expression below it"
+            message = f"the low-level assignment to {part.value.text or '(nothing)'} has no value"
+            findings.error("AOS105", message, part.span, hint)
+        else:
+            assignments.append(LowLevelAssignment(part.value.text, value, part.value.span))
+    return tuple(assignments)
+
+
+def _activation(section: Section, findings: Findings) -> Activation | None:
+    kind = section.value.text.lower()
+    if kind not in ACTIVATION_KINDS:
+        name, span = section.value.text, section.value.span if kind else section.span
+        otherwise = f"It is one of {', '.join(ACTIVATION_KINDS)}"
+        message = f"unknown activation {name!r}"
+        findings.unknown(name, ACTIVATION_KINDS, message, span, otherwise, code="AOS106")
+        return None
+    path, service = section.last("path", findings), section.last("srv", findings)
+    duration = section.last("max_duration", findings)
+    fields = _fields(section, findings)
+    imports = _imports(section, findings)
+    max_duration_s = read_number(duration, findings) if duration is not None else None
+    if duration is not None and max_duration_s is not None and max_duration_s <= 0.0:
+        findings.error("AOS106", "the longest duration must be above 0 s", duration.value.span)
+    if kind != "skill" and service is None:
+        findings.error("AOS105", f"a {kind} needs `srv:`, its type", section.span)
+    if path is None or not path.value.text:
+        findings.error("AOS105", "the activation needs `path:`", section.span)
+        return None
+    return Activation(
+        kind=kind,
+        path=path.value.text,
+        span=path.value.span,
+        service_type=service.value.text if service is not None else "",
+        fields=fields,
+        imports=imports,
+        max_duration_s=max_duration_s,
+    )
+
+
+def _fields(section: Section, findings: Findings) -> tuple[ActivationField, ...]:
+    """Each `parameter:` with the `code:` below it."""
+    fields: list[ActivationField] = []
+    pending: Part | None = None
+    for part in section.parts:
+        if part.word == "parameter":
+            _without_code(pending, findings)
+            pending = part
+        elif part.word == "code":
+            value = part.expression()
+            if pending is None:
+                findings.error("AOS104", "this `code:` belongs to no `parameter:`", part.span)
+            elif value is not None and check_name(pending.value, "a service field", findings):
+                fields.append(ActivationField(pending.value.text, value))
+            elif value is None:
+                _without_code(pending, findings)
+            pending = None
+    _without_code(pending, findings)
+    return tuple(fields)
+
+
+def _without_code(pending: Part | None, findings: Findings) -> None:
+    if pending is not None:
+        hint = "Add `code:` with a Python expression below it"
+        findings.error("AOS105", f"the field {pending.value.text} has no value", pending.span, hint)
+
+
+def _imports(section: Section, findings: Findings) -> tuple[Import, ...]:
+    found = []
+    for part in section.all("imports"):
+        match = _IMPORT.fullmatch(part.value.text)
+        if match is None:
+            hint = "Write `imports: from: <module> import: <name>, <name>`"
+            findings.error("AOS104", "this import cannot be read", part.value.span, hint)
+            continue
+        if _COLON_AFTER_WORD.match(part.value.text) is None:
+            hint = "AOS writes `from: <module> import: <name>`"
+            findings.warning("AOS127", "an import as Python writes it", part.value.span, hint)
+        names = tuple(name.strip() for name in match["names"].split(",") if name.strip())
+        found.append(Import(match["module"] or "", names, part.span))
+    return tuple(found)
+
+
+def _local_variable(section: Section, findings: Findings) -> LocalVariable | None:
+    def value(word: str) -> Text | None:
+        part = section.last(word, findings)
+        return part.value if part is not None and part.value.text else None
+
+    kind = value("type")
+    initial, code = section.last("initial_value", findings), section.last("code", findings)
+    parts = LocalVariableParts(
+        name=section.value if section.value.text else None,
+        span=section.span,
+        type=normal_type(kind, findings) if kind else "",
+        parameter_path=value("action_parameter"),
+        is_from_service=read_truth(section.last("from_ros_service_response", findings), findings),
+        topic=value("topic"),
+        message_type=value("message_type"),
+        initial_value=initial.expression() if initial is not None else None,
+        code=code.code() if code is not None else None,
+        imports=_imports(section, findings),
+        is_heavy=read_truth(section.last("is_heavy_variable", findings), findings),
+    )
+    return build_local_variable(parts, findings)

@@ -1,0 +1,41 @@
+"""The skill document (`.sd`)."""
+
+from __future__ import annotations
+
+from aos_language.findings import Findings
+from aos_language.reading.sdl_declaration import read_declaration, read_number
+from aos_language.reading.sdl_sections import Sections
+from aos_protocol.diagnostics import Span
+from aos_protocol.documents import Parameter, SkillModel
+
+__all__ = ["read_skill"]
+
+
+def read_skill(sections: Sections, project: str, name: str, span: Span, findings: Findings) -> SkillModel:
+    """The skill's model; what cannot be read of it is reported and left out."""
+    parameters = []
+    for section in sections.all("parameter"):
+        declaration = read_declaration(section, "a parameter", findings)
+        if declaration is None:
+            continue
+        if declaration.rest.text:
+            message = f"unexpected {declaration.rest.text!r} after the parameter"
+            findings.error("AOS104", message, declaration.rest.span)
+        name_text, kind = declaration.name, declaration.type
+        parameters.append(Parameter(name_text.text, kind, name_text.span, declaration.type_text.span))
+    penalty = sections.last("violate_penalty")
+    if not sections.all("dynamic_model"):
+        findings.error("AOS105", f"the skill {name} lacks `dynamic_model:`", sections.span)
+    return SkillModel(
+        project=project,
+        name=name,
+        span=span,
+        parameters=tuple(parameters),
+        possible_parameters=sections.block("available_parameters_code"),
+        precondition=sections.block("precondition"),
+        rollout_policy=sections.block("rollout_policy"),
+        violation_penalty=(read_number(penalty, findings) or 0.0) if penalty is not None else 0.0,
+        execution_time=sections.block("execution_time"),
+        dynamic_model=sections.block("dynamic_model"),
+        state_given_observation=sections.block("state_given_observation"),
+    )

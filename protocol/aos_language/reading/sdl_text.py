@@ -1,0 +1,279 @@
+"""SDL text cut into sections: a line that starts with a section's word and a colon opens it.
+
+What follows the colon is the section's value, the lines below are its body. Which words open a section, and
+which open a part of the one that is open, is the grammar of the file's kind. A word inside code is code:
+`project::f()` opens nothing. Where no code is expected, a comment may end a line.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from enum import Enum
+from typing import TypeVar
+
+import msgspec
+
+from aos_language.findings import Findings
+from aos_language.reading.code import dedented, expression, without_blank_lines
+from aos_language.reading.source import Source, Text
+from aos_protocol.diagnostics import Mend, Span
+from aos_protocol.documents import Snippet
+from aos_protocol.spelling import nearest
+
+__all__ = [
+    "Body",
+    "Grammar",
+    "Part",
+    "Section",
+    "Word",
+    "enum_values",
+    "last_of",
+    "listed_values",
+    "parse_sdl",
+]
+
+_OPENING = re.compile(r"[ \t\f\v]*([A-Za-z_]\w*)[ \t]*:(?!:)")
+_WORD_ALONE = re.compile(r"[ \t]*(?P<word>[a-z]+(?:_[a-z]+)*)(?:[ \t]+(?P<rest>\S.*?))?[ \t]*$")
+_BETWEEN_NAMES = frozenset({"and", "else", "for", "if", "in", "is", "not", "or"})
+_COMMENT = re.compile(r"\s*(//|#)")
+_COMMENT_AFTER_VALUE = re.compile(r'(?:[^"\n]|"[^"\n]*")*?(?=\s(?://|#)(?:\s|$))')
+_CODE_LABELS = frozenset({
+    "case", "class", "def", "default", "elif", "else", "except", "finally", "for", "if", "lambda", "match",
+    "private", "protected", "public", "try", "while", "with",
+})  # fmt: skip
+
+
+class Body(Enum):
+    """What may stand below a section's line."""
+
+    NONE = "none"
+    CPP = "C++"
+    PYTHON = "Python"
+
+
+class Word(msgspec.Struct, frozen=True):
+    """A word of the grammar: what its body is, the words that open its parts, its canonical spelling.
+
+    `is_list` says that its value is a list, which goes on in the next line where a line ends with a comma.
+    """
+
+    body: Body = Body.NONE
+    parts: Mapping[str, Word] = {}
+    canonical: str = ""
+    is_list: bool = False
+
+
+Grammar = Mapping[str, Word]
+
+
+class Part(msgspec.Struct):
+    """A word with its value and the lines below it."""
+
+    word: str
+    body: Body
+    span: Span
+    value: Text
+    lines: list[Text] = []
+    is_list: bool = False
+
+    def takes(self, line: Text) -> bool:
+        """Whether a line below belongs to it."""
+        if self.body is not Body.NONE or not self.is_list:
+            return self.body is not Body.NONE
+        given = [text for part in (self.value, *self.lines) if (text := part.text.strip())]
+        return bool(line.text.strip()) and (not given or given[-1].endswith(","))
+
+    def code(self) -> Snippet | None:
+        """Value and body as code; None where there is none. Python loses its common indentation."""
+        lines = [self.value, *self.lines] if self.value.text else self.lines
+        if not any(line.text.strip() for line in lines):
+            return None
+        snippet = Snippet("\n".join(line.text for line in lines), tuple(line.span for line in lines))
+        snippet = without_blank_lines(snippet)
+        return dedented(snippet) if self.body is Body.PYTHON else snippet
+
+    def expression(self) -> Snippet | None:
+        """As `code`, without the blanks around it."""
+        code = self.code()
+        return None if code is None else expression(code)
+
+
+P = TypeVar("P", bound=Part)
+
+
+class Section(Part):
+    """A first-level part with the parts inside it, in order."""
+
+    parts: list[Part] = []
+
+    def all(self, word: str) -> Iterator[Part]:
+        return (part for part in self.parts if part.word == word)
+
+    def last(self, word: str, findings: Findings) -> Part | None:
+        """The part of that name; of several the last counts, with a warning."""
+        return last_of(list(self.all(word)), findings)
+
+
+def last_of(parts: list[P], findings: Findings) -> P | None:
+    """The last of several parts of one name, with a warning for each that it replaces."""
+    for part in parts[:-1]:
+        hint = f"The one on line {parts[-1].span.line} counts"
+        findings.warning("AOS125", f"`{part.word}:` is given more than once", part.span, hint)
+    return parts[-1] if parts else None
+
+
+def listed_values(part: Part, findings: Findings) -> list[Text]:
+    """The names between commas in a part's value and the lines below it; an error where there are none."""
+    lines = [line for line in (part.value, *part.lines) if line.text] or [part.value]
+    return [value for line in lines for value in enum_values(line, findings)]
+
+
+def enum_values(text: Text, findings: Findings) -> list[Text]:
+    """The names between commas; an error where there are none."""
+    pieces = [text.after(match.start()) for match in re.finditer(r"(?<![^,])[^,]*", text.text)]
+    values = [Text(piece.text.split(",")[0], piece.span).strip() for piece in pieces]
+    if values and not values[-1].text:  # A comma at the end.
+        values.pop()
+    if not values:
+        findings.error("AOS105", "an enum needs names between commas", text.span)
+    return values
+
+
+def parse_sdl(
+    source: Source, grammar: Grammar, elsewhere: Mapping[str, str], findings: Findings
+) -> list[Section]:
+    """The sections of a file in order. `elsewhere` says, for the words of other kinds, where they belong."""
+    return _Scanner(source, grammar, elsewhere, findings).sections()
+
+
+class _Scanner:
+    def __init__(
+        self, source: Source, grammar: Grammar, elsewhere: Mapping[str, str], findings: Findings
+    ) -> None:
+        self._source = source
+        self._grammar = grammar
+        self._elsewhere = elsewhere
+        self._findings = findings
+        self._sections: list[Section] = []
+        self._current: Part | None = None
+
+    def sections(self) -> list[Section]:
+        for number, line in enumerate(self._source.lines, start=1):
+            self._take(Text(line, Span(self._source.name, number, 1)))
+        return self._sections
+
+    def _take(self, line: Text) -> None:
+        match = _OPENING.match(line.text)
+        name = match.group(1) if match else ""
+        if match is not None and self._opens(name, line.after(match.start(1)), line.after(match.end())):
+            return
+        if not self._opens_without_colon(line):
+            self._add_to_body(line)
+
+    def _opens_without_colon(self, line: Text) -> bool:
+        """Opens the section or part that a line begins with where only its colon is missing."""
+        match = _WORD_ALONE.match(line.text)
+        if match is None:
+            return False
+        word = match["word"]
+        inner = self._grammar[self._sections[-1].word].parts if self._sections else {}
+        is_known = word in inner or word in self._grammar
+        if not is_known or (self._is_in_code() and not self._is_no_code(word, match["rest"])):
+            return False
+        at = line.after(match.end("word"))
+        mend = Mend(at.span, 0, ":")
+        self._findings.error(
+            "AOS104", f"a colon is missing after `{word}`", at.span, f"Write `{word}:`", mend
+        )
+        return self._opens(word, line.after(match.start("word")), at)
+
+    def _is_no_code(self, word: str, rest: str) -> bool:
+        """Whether a line in code that begins with a word of the grammar cannot be meant as code.
+
+        A name stands alone in Python where it is an expression, which is one line.
+        """
+        assert self._current is not None
+        is_first = not any(each.text.strip() for each in (self._current.value, *self._current.lines))
+        if not rest:
+            return "_" in word and not (self._current.body is Body.PYTHON and is_first)
+        first = rest.split()[0]
+        is_statement = rest.endswith((";", "{", "}", ":")) or first in _BETWEEN_NAMES
+        # In Python `a -1` is an expression.
+        is_number = re.fullmatch(r"[-\d][\d.]*" if self._current.body is Body.CPP else r"\d[\d.]*", rest)
+        return (first.isidentifier() or is_number is not None) and not is_statement
+
+    def _opens(self, name: str, at: Text, value: Text) -> bool:
+        """Opens the section or part of that name; False where the line is no opening."""
+        inner = self._grammar[self._sections[-1].word].parts if self._sections else {}
+        is_part = True
+        word = self._match(name, inner, at)
+        if not word:
+            is_part = False
+            word = self._match(name, self._grammar, at)
+        if not word:
+            word, is_part = self._misspelt(name, inner, at)
+        if not word:
+            return self._reports_elsewhere(name, at)
+        entry = inner[word] if is_part else self._grammar[word]
+        canonical = entry.canonical or word
+        value = value.strip() if entry.body is not Body.NONE else _without_comment(value)
+        if is_part:
+            self._current = Part(canonical, entry.body, at.span, value, [], entry.is_list)
+            self._sections[-1].parts.append(self._current)
+        else:
+            section = Section(canonical, entry.body, at.span, value, [], parts=[])
+            self._current = section
+            self._sections.append(section)
+        return True
+
+    def _match(self, name: str, words: Grammar, at: Text) -> str:
+        if name in words:
+            return name
+        lower = name.lower()
+        if lower not in words:
+            return ""
+        self._findings.warning("AOS127", f"`{name}:`", at.span, f"The word is `{lower}:`")
+        return lower
+
+    def _misspelt(self, name: str, inner: Grammar, at: Text) -> tuple[str, bool]:
+        """The word a line that opens nothing was surely meant to be."""
+        if name in _CODE_LABELS:
+            return "", False
+        if name.lower() in self._elsewhere and not self._is_in_code():
+            return "", False
+        close = nearest(name, (*inner, *self._grammar))
+        if not close or (self._is_in_code() and "_" not in close and len(close) < 8):
+            return "", False
+        self._findings.error("AOS102", f"unknown section `{name}:`", at.span, f"Did you mean `{close}:`?")
+        return close, close in inner
+
+    def _is_in_code(self) -> bool:
+        return self._current is not None and self._current.body is not Body.NONE
+
+    def _reports_elsewhere(self, name: str, at: Text) -> bool:
+        """Complains about a section of another kind of file, or of none; its lines are left out."""
+        place = self._elsewhere.get(name)
+        if place is None and self._is_in_code():
+            return False
+        hint = f"It belongs {place}" if place else f"The sections are {', '.join(self._grammar)}"
+        self._findings.error("AOS102", f"`{name}:` has no place here", at.span, hint)
+        self._current = Part(name, Body.CPP, at.span, Text("", at.span), [])
+        return True
+
+    def _add_to_body(self, line: Text) -> None:
+        is_comment = _COMMENT.match(line.text) is not None
+        if self._current is not None and self._current.takes(line):
+            if self._is_in_code():
+                self._current.lines.append(line)
+            elif not is_comment:
+                self._current.lines.append(_without_comment(line))
+        elif line.text.strip() and not is_comment:
+            where = f"after `{self._current.word}:`" if self._current else "before the first section"
+            self._findings.error("AOS104", f"text {where} that belongs to no section", line.strip().span)
+
+
+def _without_comment(value: Text) -> Text:
+    """A line's value without the comment behind it and the blanks around it."""
+    before = _COMMENT_AFTER_VALUE.match(value.text)
+    return Text(before.group() if before else value.text, value.span).strip()

@@ -1,0 +1,180 @@
+"""What a mission does next: an action, an ending, or to hold, for what can be carried out now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import msgspec
+
+from aos_protocol.messages import BeliefSummary, DecisionRecord
+from aos_runtime.clock import Clock
+from aos_solver.child.answers import Plan, Risks
+from aos_solver.child.engine import Engine
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import (
+    Ending,
+    MissionLimits,
+    ending_after_planning,
+    is_held_back,
+    is_worth_nothing,
+)
+from aos_solver.mission.endings import remark_of as remark_of_ending
+from aos_solver.mission.failures import Failures
+from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.risk import RiskBudget
+
+__all__ = ["Available", "Choice", "Chooser", "Ended", "Held"]
+
+_CAUTIOUSLY = "it is decided as if nothing had run that was not observed"
+
+
+class Available(Protocol):
+    """What a choice has to know of the robot."""
+
+    clock: Clock
+
+    @property
+    def unavailable(self) -> Mapping[str, str]:
+        """The skills that nobody could run now, each with the reason."""
+        ...
+
+    @property
+    def announced(self) -> Mapping[str, int]:
+        """How often each skill's adapter has announced itself; 0 for skills that are not there."""
+        ...
+
+
+class Choice(msgspec.Struct, frozen=True):
+    """An action, and what it was chosen without. `is_cautious` says that it is for the cautious belief."""
+
+    plan: Plan
+    risks: Risks | None
+    set_aside: dict[str, str]
+    is_cautious: bool
+
+
+class Ended(msgspec.Struct, frozen=True):
+    """The mission is over."""
+
+    ending: Ending
+    remark: str
+
+
+class Held(msgspec.Struct, frozen=True):
+    """Nothing can be run until something changes."""
+
+    remark: str
+
+
+class Chooser:
+    """Decides within a mission's limits, constraints and rules for failures."""
+
+    def __init__(
+        self, search: Search, limits: MissionLimits, failures: Failures, around: Available, budget: RiskBudget
+    ) -> None:
+        self._search = search
+        self._limits = limits
+        self._failures = failures
+        self._around = around
+        self._budget = budget
+
+    def is_something_available(self, engine: Engine) -> bool:
+        """Whether any action could be carried out now."""
+        away = self._around.unavailable.keys() | self._set_aside().keys()
+        return any(action.skill not in away for action in engine.description.actions)
+
+    async def choose(self, model: RunningModel, step: int, belief: BeliefSummary) -> Choice | Ended | Held:
+        """What follows at this belief; the action still can be carried out when it is chosen."""
+        engine = model.engine
+        actions = engine.description.actions
+        risks = await engine.risks(self._search.seed_of(step)) if self._budget else None
+        forbidden = self._budget.forbidden(risks) if risks is not None else frozenset[int]()
+        if risks is not None and len(forbidden) == len(actions):
+            return Ended(Ending.TOO_RISKY, self._budget.remark(risks))
+        while True:
+            set_aside = self._set_aside()
+            left = [number for number, action in enumerate(actions) if action.skill not in set_aside]
+            if not set(left) - forbidden:
+                return Ended(Ending.SKILLS_FAILED, _nothing_left(set_aside))
+            unavailable = self._around.unavailable
+            barred = [n for n in left if actions[n].skill in unavailable or n in forbidden]
+            if len(barred) == len(left):
+                why = "; ".join(sorted({*unavailable.values(), *set_aside.values()}))
+                risky = ", and all others are too risky" if forbidden else ""
+                return Held(f"the mission holds, for no skill can be run: {why}{risky}")
+            retried = self._failures.to_retry
+            if retried is not None and model.digest == retried.model_digest:
+                index = [action.name for action in actions].index(retried.action)
+                if index in left and index not in barred:
+                    return Choice(await self._repeated(engine, retried, index), risks, set_aside, False)
+            plan, is_cautious = await self._plan(engine, step, belief, barred, set_aside)
+            if actions[plan.index].skill in self._around.unavailable:
+                continue
+            ended = await self._ending(engine, plan, belief, set_aside)
+            return ended or Choice(_explained(plan, set_aside, is_cautious), risks, set_aside, is_cautious)
+
+    def _set_aside(self) -> dict[str, str]:
+        return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
+
+    async def _plan(
+        self,
+        engine: Engine,
+        step: int,
+        belief: BeliefSummary,
+        barred: list[int],
+        set_aside: Mapping[str, str],
+    ) -> tuple[Plan, bool]:
+        """The best action, and whether it is for the cautious belief.
+
+        It is where the mission would be over but for that belief, or else nothing would be worth doing.
+        """
+        without = sorted(set_aside)
+        if is_held_back(belief, self._limits):
+            return await self._search.run(engine, step, barred, without=without, cautious=True), True
+        plan = await self._search.run(engine, step, barred, without=without)
+        if belief.cautious is not None and is_worth_nothing(plan.best, self._limits):
+            cautious = await self._search.run(engine, step, barred, without=without, cautious=True)
+            if not is_worth_nothing(cautious.best, self._limits):
+                return cautious, True
+        return plan, False
+
+    async def _ending(
+        self, engine: Engine, plan: Plan, belief: BeliefSummary, set_aside: Mapping[str, str]
+    ) -> Ended | None:
+        """The ending that the best action calls for.
+
+        Without the skills that are set aside, something is worth doing where it is worth more than nothing,
+        and where it leads to a goal at least.
+        """
+        if set_aside and is_worth_nothing(plan.best, self._limits):
+            is_cautious = belief.cautious is not None
+            reach = await engine.may_reach_goal(without=sorted(set_aside), cautious=is_cautious)
+            if not reach.is_reachable:
+                return Ended(Ending.SKILLS_FAILED, _nothing_left(set_aside))
+        ending = ending_after_planning(plan.best, plan.actions, self._limits)
+        return Ended(ending, remark_of_ending(ending, belief, self._limits)) if ending else None
+
+    async def _repeated(self, engine: Engine, decision: DecisionRecord, index: int) -> Plan:
+        prediction = await engine.predict(index)
+        return Plan(
+            index,
+            0,
+            decision.horizon,
+            decision.actions,
+            prediction.predicted,
+            0.0,
+            planner=decision.planner,
+            why=self._failures.retry_text,
+            place=[action.action for action in decision.actions].index(decision.action),
+        )
+
+
+def _nothing_left(set_aside: Mapping[str, str]) -> str:
+    return f"nothing is left that is worth doing: {'; '.join(set_aside.values())}"
+
+
+def _explained(plan: Plan, set_aside: Mapping[str, str], is_cautious: bool) -> Plan:
+    """The plan, which says what it does without."""
+    reasons = [plan.why, *set_aside.values(), *([_CAUTIOUSLY] if is_cautious else [])]
+    return msgspec.structs.replace(plan, why="; ".join(reason for reason in reasons if reason))

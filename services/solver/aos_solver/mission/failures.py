@@ -1,0 +1,162 @@
+"""What follows from activations that failed: for the belief, and for the mission.
+
+docs/when-a-skill-fails.md has all rules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal
+
+import msgspec
+
+from aos_protocol.messages import DecisionRecord, Outcome
+from aos_solver.mission.setting_aside import SettingAside
+
+__all__ = ["FailureRules", "Failures", "OnFailure", "SkillRule"]
+
+OnFailure = Literal["observe", "retry", "hold", "end"]
+
+RAN_PROBABILITY = 0.5
+"""How probable it is that a skill ran of which nobody knows, unless the deploy file says otherwise."""
+
+
+class SkillRule(msgspec.Struct, frozen=True, kw_only=True):
+    """What the deploy file says about one skill; see docs/deploy-file.md.
+
+    Where `timeout_s`, `set_aside_after` or `set_aside_s` is None the mission's counts. Where `retries` is
+    None the action is tried again once with `retry`, and else not. `ran_probability` None is 0 for failures
+    that the robot reports, and 0.5 where nobody knows.
+    """
+
+    retries: int | None = None
+    timeout_s: float | None = None
+    on_failure: OnFailure = "observe"
+    ran_probability: float | None = None
+    set_aside_after: int | None = None
+    set_aside_s: float | None = None
+
+    @property
+    def tries_again(self) -> int:
+        """How often the same action is tried again before anything else follows."""
+        return self.retries if self.retries is not None else int(self.on_failure == "retry")
+
+
+class FailureRules(msgspec.Struct, frozen=True, kw_only=True):
+    """The mission's rules, and those of single skills."""
+
+    skills: Mapping[str, SkillRule] = {}
+    failure_limit: int = 30
+    set_aside_after: int = 3
+    set_aside_s: float = 300.0
+
+
+_USUAL = SkillRule()
+
+
+class Failures:
+    """Counts failures: of the mission, of each skill in a row, and of the action that is tried again.
+
+    A failure is an activation that failed or that nobody observed, and a report that the model excludes.
+    """
+
+    def __init__(self, rules: FailureRules | None = None) -> None:
+        self._rules = rules or FailureRules()
+        self._count = 0
+        self._tries = 0
+        self._setting_aside = SettingAside()
+        self.to_retry: DecisionRecord | None = None
+        self.to_hold = ""
+        self.to_end = ""
+
+    def rule(self, skill: str) -> SkillRule:
+        return self._rules.skills.get(skill, _USUAL)
+
+    def ran_probability(self, outcome: Outcome) -> float:
+        """How probable it is that a skill ran which brought no observation. Refused, nothing was begun."""
+        if outcome.status == "refused":
+            return 0.0
+        usual = 0.0 if outcome.status == "failed" else RAN_PROBABILITY
+        given = self.rule(outcome.skill).ran_probability
+        return usual if given is None else given
+
+    def set_aside(self, now_s: float, announced: Mapping[str, int]) -> dict[str, str]:
+        """The skills that nobody decides for now, each with the reason."""
+        return self._setting_aside.reasons(now_s, announced)
+
+    def s_until_return(self, now_s: float) -> float:
+        """How long it takes until a skill that is set aside comes back by itself."""
+        return self._setting_aside.s_until_return(now_s)
+
+    @property
+    def retry_text(self) -> str:
+        """Why the same action is taken once more."""
+        assert self.to_retry is not None
+        rule = self.rule(self.to_retry.skill)
+        return f"it is tried again after a failure, {self._tries} of {rule.tries_again}"
+
+    def take(
+        self,
+        decision: DecisionRecord,
+        outcome: Outcome,
+        *,
+        is_excluded: bool,
+        surprise: float,
+        now_s: float,
+        announced: Mapping[str, int],
+    ) -> str:
+        """Says in `to_retry`, `to_hold` and `to_end` what follows; returns what people should be told.
+
+        `is_excluded` says that the model excludes what was observed, and else it was so surprising.
+        """
+        self.to_retry, self.to_hold, self.to_end = None, "", ""
+        skill, rule = decision.skill, self.rule(decision.skill)
+        is_observed = outcome.status == "observed"
+        said = _said(outcome, is_excluded)
+        text = f"{decision.action}: {said}"
+        if is_observed and not is_excluded and outcome.fault is None:
+            self._tries = 0
+            self._setting_aside.end_row(skill)
+            return ""
+        is_told = is_observed and not is_excluded
+        weight = SettingAside.weight_of_told(surprise) if is_told else 1.0
+        self._setting_aside.count(skill, weight, announced.get(skill, 0))
+        if is_observed:
+            self._tries = 0
+        if not is_told:
+            self._count += 1
+        if self._count >= self._rules.failure_limit:
+            self.to_end = f"{self._count} activations of the mission have failed, the last {text}"
+        elif not is_observed:
+            self._follow_rule(rule, decision, text)
+        if self.to_hold or self.to_end:
+            # Whoever lets the mission go on has looked after the skill.
+            self._setting_aside.end_row(skill)
+            return ""
+        after = self._rules.set_aside_after if rule.set_aside_after is None else rule.set_aside_after
+        pause_s = self._rules.set_aside_s if rule.set_aside_s is None else rule.set_aside_s
+        reason = self._setting_aside.set_aside(skill, after, pause_s, now_s, said)
+        if reason:
+            self.to_retry, self._tries = None, 0
+        return reason
+
+    def _follow_rule(self, rule: SkillRule, decision: DecisionRecord, text: str) -> None:
+        if self._tries < rule.tries_again:
+            self._tries += 1
+            self.to_retry = decision
+            return
+        self._tries = 0
+        if rule.on_failure == "end":
+            self.to_end = f"the deploy file ends the mission when {decision.skill} fails; {text}"
+        elif rule.on_failure == "hold":
+            self.to_hold = f"the mission holds: {text}"
+
+
+def _said(outcome: Outcome, is_excluded: bool) -> str:
+    if is_excluded:
+        return f"{outcome.response}, which the model excludes"
+    what = outcome.response or outcome.status
+    if outcome.fault is None:
+        return what
+    hint = f". {outcome.fault.hint}" if outcome.fault.hint else ""
+    return f"{what}, {outcome.fault.code}: {outcome.fault.message}{hint}"
