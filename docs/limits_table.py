@@ -252,15 +252,15 @@ def limits_table() -> str:
     """The tables as Markdown, a heading above each."""
     parts = []
     for title, rows in LIMITS.items():
-        lines = [f"## {title}", "", "| What | At most | Beyond it | Set by | In the sources |"]
-        lines += ["| --- | --- | --- | --- | --- |", *map(_line, rows)]
+        lines = [f"## {title}", "", "| What | At most | Beyond it | Set by |"]
+        lines += ["| --- | --- | --- | --- |", *map(_line, rows)]
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)
 
 
 def _line(row: Row) -> str:
     value = _text(value_at(row.place), row.unit)
-    return f"| {row.what} | {value} | {_linked(row.beyond)} | {row.key} | `{row.place}` |"
+    return f"| {row.what} | {value} | {_linked(row.beyond)} | {row.key} |"
 
 
 def value_at(place: str) -> float:

@@ -1,8 +1,8 @@
-"""Writes what follows from the sources: errors.md, words.md, schemas, colours, tables of other pages.
+"""Writes what follows from the sources: errors.md, schemas, colours, tables of other pages.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
-not). In protocol.md and limits.md the text between `<!-- generated: NAME -->` and `<!-- end -->` is
-replaced; the rest is written by hand.
+not). In languages.md, limits.md and protocol.md the text between `<!-- generated: NAME -->` and
+`<!-- end -->` is replaced; the rest is written by hand.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.schemas import SCHEMAS
-from aos_editor.meanings import BUILT_INS, SECTIONS
+from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_protocol import errors, keys
 from aos_protocol.messages import base, bundles, mission, skills
@@ -100,35 +100,53 @@ def message_sections() -> str:
 
 def _message(node: ast.ClassDef) -> str:
     lines = [f"#### {node.name}", "", " ".join((ast.get_docstring(node) or "").split()), ""]
-    fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
+    fields = [ast.unparse(field).replace("'", '"') for field in node.body if isinstance(field, ast.AnnAssign)]
     if fields:
-        lines += ["| Field | Type | Default |", "| --- | --- | --- |"]
-    for field in fields:
-        default = f"`{ast.unparse(field.value)}`" if field.value else ""
-        kind = ast.unparse(field.annotation).replace("|", "\\|")
-        lines.append(f"| `{ast.unparse(field.target)}` | `{kind}` | {default} |")
+        lines += ["```python", *fields, "```"]
     return "\n".join(lines).rstrip() + "\n"
 
 
 # --- words ---------------------------------------------------------------------------------------------
 
 
-def words_page() -> str:
-    """Every word of SDL by kind of file, then the built-ins; the same texts that editors show."""
-    lines = [
-        "# Words of SDL",
-        "",
-        "What [editors](editors.md) show about a word; [languages.md](languages.md) shows them at work. This",
-        "page is written by `make docs` from `aos_editor.meanings`.",
-    ]
+def words_tables() -> str:
+    """Every word of SDL by kind of file, then the built-ins; the same texts that editors show.
+
+    A word of all files stands in the first table, and parts of several sections below the first of them.
+    """
+    lines: list[str] = []
+    before: dict[str, Meaning] = {}
     for suffix, sections in SECTIONS.items():
-        lines += ["", f"## {suffix}", "", "| Section | Part | Meaning |", "| --- | --- | --- |"]
+        lines += [f"### Words of `{suffix}`", "", "| Section | Part | Meaning |", "| --- | --- | --- |"]
         for word, (meaning, parts) in sections.items():
-            lines.append(f"| `{word}` | | {meaning} |")
-            lines += [f"| | `{part}` | {text} |" for part, text in parts.items()]
-    lines += ["", "## In code", "", "| Name | Meaning |", "| --- | --- |"]
+            if before.get(word) == (meaning, parts):
+                continue
+            same = next(
+                (name for name, (_, known) in before.items() if known and known.items() <= parts.items()), ""
+            )
+            own = [
+                f"| | `{part}` | {text} |"
+                for part, text in parts.items()
+                if not same or part not in before[same][1]
+            ]
+            lines += [f"| `{word}` | {f'those of `{same}`' if same else ''} | {meaning} |", *own]
+            before.setdefault(word, (meaning, parts))
+        lines.append("")
+    lines += ["### Names in code", "", "| Name | Meaning |", "| --- | --- |"]
     lines += [f"| `{name}` | {meaning} |" for name, meaning in BUILT_INS.items()]
     return "\n".join(lines) + "\n"
+
+
+# --- schemas -------------------------------------------------------------------------------------------
+
+
+def schema_text(schema: dict[str, object]) -> str:
+    """A schema as JSON with a line for each definition."""
+    definitions = schema["$defs"]
+    assert isinstance(definitions, dict)
+    lines = [f"{json.dumps(name)}: {json.dumps(part)}" for name, part in schema.items() if name != "$defs"]
+    inner = ",\n".join(f"{json.dumps(name)}: {json.dumps(part)}" for name, part in definitions.items())
+    return "{\n" + ",\n".join(lines) + ',\n"$defs": {\n' + inner + "\n}\n}\n"
 
 
 # --- pages ---------------------------------------------------------------------------------------------
@@ -136,23 +154,23 @@ def words_page() -> str:
 
 def with_generated_parts(current: str) -> str:
     """The page with its generated parts renewed."""
-    parts = {"keys": key_table, "messages": message_sections, "limits": limits_table}
+    parts = {
+        "keys": key_table,
+        "messages": message_sections,
+        "limits": limits_table,
+        "words": words_tables,
+    }
     return GENERATED.sub(lambda match: f"{match[1]}\n{parts[match[2]]()}\n{match[3]}", current)
 
 
 def pages() -> dict[Path, str]:
     """The text that each page should have."""
-    protocol, limits = DOCS / "protocol.md", DOCS / "limits.md"
+    generated_in_part = [DOCS / name for name in ("languages.md", "limits.md", "protocol.md")]
     return {
         DOCS / "errors.md": errors_page(),
-        DOCS / "words.md": words_page(),
         DOCS / "examples/vscode/syntaxes/aos.tmLanguage.json": textmate_grammar(),
-        protocol: with_generated_parts(protocol.read_text(encoding="utf-8")),
-        limits: with_generated_parts(limits.read_text(encoding="utf-8")),
-        **{
-            DOCS / "schemas" / f"{name}.json": json.dumps(schema(), indent=2) + "\n"
-            for name, schema in SCHEMAS.items()
-        },
+        **{page: with_generated_parts(page.read_text(encoding="utf-8")) for page in generated_in_part},
+        **{DOCS / "schemas" / f"{name}.json": schema_text(schema()) for name, schema in SCHEMAS.items()},
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["BUILT_INS", "SECTIONS"]
+__all__ = ["BUILT_INS", "SECTIONS", "Meaning"]
 
 _BLOCK_PARTS = {
     "assignment": "Opens another assignment of this block, with a name if wanted.",

@@ -1,6 +1,6 @@
 """Each construct of the languages used wrongly: refused, or warned of, where the mistake is.
 
-docs/constructs.md lists the constructs, with the tests that show each of them at work.
+docs/languages.md lists the constructs, with the tests that show each of them at work.
 """
 
 from __future__ import annotations
@@ -155,8 +155,8 @@ MISUSES = {
 
 
 def page_rows(root: Path) -> dict[str, tuple[str, str]]:
-    """The table of docs/constructs.md: the test and the code of each construct."""
-    page = (root / "docs" / "constructs.md").read_text(encoding="utf-8")
+    """The test and the code of each construct, as docs/languages.md lists them."""
+    page = (root / "docs" / "languages.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| ([^|]+) \| `([^`|]+)` \| (AOS\d{3}) \|$", page, re.MULTILINE)
     return {name.replace("`", ""): (test, code) for name, test, code in rows}
 

@@ -1,0 +1,114 @@
+"""Measures the figures of pages and pastes them there: `python docs/figures.py linting performance`.
+
+A page has one table of figures, between `<!-- figures -->` and `<!-- end -->`. The table's head says when
+it was measured, at which commit and on which machine, and the table has what the commands print. `linting`
+takes some minutes and `performance` ten, longer beside other work. `--show` prints and changes no page.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+from aos_lab.bench.rows import this_machine
+
+DOCS = Path(__file__).resolve().parent
+
+
+class Row(NamedTuple):
+    """A measurement. Its result is the last `lines` lines that the command prints."""
+
+    what: str
+    command: tuple[str, ...]
+    target: str
+    lines: int = 1
+
+
+LINTING = (
+    Row(
+        "20 bundles with one crash, endless loop, exception or bad reward each",
+        ("python", "tests/lint_times.py"), "each below 5 s",
+    ),
+    Row("150 seeded mistakes in 10 bundles of all dialects", ("python", "tests/mistakes.py"), "150, 143", 3),
+    Row(
+        "2,000 mutated documents, read, lowered and emitted",
+        ("python", "tests/fuzz/mutate_documents.py", "--count", "2000", "--seed", "1"),
+        "no crash, each below 1 s", 20,
+    ),
+)  # fmt: skip
+PERFORMANCE = ("aos", "bench", "--quick", "--metric", "steps", "--metric", "simulations", "--markdown")
+
+
+def linting() -> str:
+    """The rows of `LINTING`, measured now."""
+    machine = this_machine("", 0, 0.0)
+    where = f"{machine.processor}, {machine.cores} cores, load {machine.load:.1f}"
+    lines = [
+        f"{machine.date}, commit {_commit()}, {where}.",
+        "",
+        "| What | Command | Result | Target |",
+        "| --- | --- | --- | --- |",
+    ]
+    for row in LINTING:
+        printed = [line.strip() for line in _printed(row.command).splitlines() if line.strip()]
+        result = ", ".join(printed[-row.lines :])
+        lines.append(f"| {row.what} | `{' '.join(row.command)}` | {result} | {row.target} |")
+    return "\n".join(lines)
+
+
+def performance() -> str:
+    """What `PERFORMANCE` prints, which has a head of its own, below the command and the commit."""
+    return f"`{' '.join(PERFORMANCE)}`, commit {_commit()}.\n{_printed(PERFORMANCE).strip()}"
+
+
+FIGURES = {"linting": linting, "performance": performance}
+
+
+def _printed(command: tuple[str, ...]) -> str:
+    """What a command of the checkout prints; `python` and `aos` are those that this runs with."""
+    program = str(Path(sys.executable).with_name(command[0]))
+    done = subprocess.run(
+        [program, *command[1:]], cwd=DOCS.parent, stdout=subprocess.PIPE, text=True, check=True
+    )
+    return done.stdout
+
+
+def _commit() -> str:
+    """The checkout's commit, with a + where files differ from it."""
+    asked = ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"]
+    return subprocess.run(asked, cwd=DOCS, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "pages", nargs="+", choices=sorted(FIGURES), metavar="PAGE", help=" or ".join(FIGURES)
+    )
+    parser.add_argument("--show", action="store_true", help="print the tables and change no page")
+    options = parser.parse_args()
+    for name in options.pages:
+        table = FIGURES[name]()
+        if options.show:
+            sys.stdout.write(table + "\n")
+        else:
+            paste(table, DOCS / f"{name}.md")
+    return 0
+
+
+def paste(table: str, page: Path) -> None:
+    """Puts a table in the place of the page's figures."""
+    before, begin, rest = page.read_text(encoding="utf-8").partition("<!-- figures -->\n")
+    _, end, after = rest.partition("<!-- end -->")
+    if not begin or not end:
+        raise SystemExit(f"{page.relative_to(DOCS.parent)} has no place for figures")
+    page.write_text(f"{before}{begin}{table}\n\n{end}{after}", encoding="utf-8")
+    sys.stdout.write(f"{page.relative_to(DOCS.parent)} written\n")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
