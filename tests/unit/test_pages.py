@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from functools import cache
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
@@ -93,3 +96,25 @@ def test_the_laboratory_lists_every_page_of_its_own() -> None:
     assert sorted(listed) == [
         page for page in PAGES if page.parent.name == "lab" and page.name != "README.md"
     ]
+
+
+def test_a_measured_table_takes_the_place_of_the_old_one_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    figures = importlib.import_module("figures")
+    page = tmp_path / "page.md"
+    monkeypatch.setattr(figures, "DOCS", tmp_path)
+    page.write_text("before\n<!-- figures -->\nold\n<!-- end -->\nafter\n")
+    figures.paste("new", page)
+    assert page.read_text() == "before\n<!-- figures -->\nnew\n\n<!-- end -->\nafter\n"
+    page.write_text("no place")
+    with pytest.raises(SystemExit, match="no place for figures"):
+        figures.paste("new", page)
+
+
+def test_every_page_that_can_be_measured_has_a_place_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    measured = importlib.import_module("figures").FIGURES
+    with_figures = [page.stem for page in PAGES if FIGURES.search(page.read_text(encoding="utf-8"))]
+    assert sorted(measured) == with_figures
