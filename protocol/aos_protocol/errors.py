@@ -117,6 +117,7 @@ CODES: dict[str, str] = {
     "AOS511": "two adapters serve one path",
     "AOS512": "a skill may still be moving",
     "AOS513": "the mission held for too long",
+    "AOS514": "the id of an activation was used for another one",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
     "AOS603": "another protocol version",

@@ -98,7 +98,7 @@ class Harness:
         )
 
     async def activate(self, skill: str, step: int, deadline_s: float = 10.0) -> Outcome:
-        request = Activate(ActivationId("numbers", 1, step), skill, {}, deadline_s)
+        request = Activate(ActivationId("numbers", step), skill, {}, deadline_s)
         return await self.bus.ask(
             self.keys.activate(skill), request, Outcome, timeout_s=deadline_s + PATIENCE_S
         )

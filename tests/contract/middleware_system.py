@@ -85,12 +85,13 @@ class Registry:
 
 
 class Adapter:
-    """Answers calls as the test says, and remembers them."""
+    """Answers calls as the test says, and remembers them and its motions."""
 
     def __init__(self, bus: Bus, keys: Keys) -> None:
         self._bus = bus
         self._keys = keys
         self._sent: dict[str, int] = {}
+        self.motions: dict[ActivationId, asyncio.Future[dict[str, Any]]] = {}
         self.calls: list[SkillCall] = []
         self.cancelled: list[str] = []
         self.is_called = asyncio.Event()
@@ -105,7 +106,11 @@ class Adapter:
         async def run(call: SkillCall, _: str) -> SkillResult:
             self.calls.append(call)
             self.is_called.set()
-            return changed(SkillResult(call.id, await answer(call), dict(self._sent)))
+            # One motion for each id: a call that comes again joins it.
+            if call.id not in self.motions:
+                self.motions[call.id] = asyncio.ensure_future(answer(call))
+            fields = await asyncio.shield(self.motions[call.id])
+            return changed(SkillResult(call.id, fields, dict(self._sent)))
 
         await self._bus.answer(self._keys.call(path), SkillCall, run)
         await self.announce(path)
@@ -194,7 +199,7 @@ class System:
         deadline_s: float = 10.0,
         revision: int = 0,
     ) -> Outcome:
-        request = Activate(ActivationId("m", 1, step), skill, parameters or {}, deadline_s, revision=revision)
+        request = Activate(ActivationId("m", step), skill, parameters or {}, deadline_s, revision=revision)
         return await self.bus.ask(self.keys.activate(skill), request, Outcome, timeout_s=HANG_S)
 
     async def logged(self, text: str) -> None:

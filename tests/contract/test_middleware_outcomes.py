@@ -25,7 +25,7 @@ async def test_a_skill_is_called_with_the_fields_and_its_result_is_observed(syst
     outcome = await system.activate("navigate", parameters=parameters)
     (call,) = system.adapter.calls
     assert (call.path, call.fields) == ("/navigate", {"x": 4.0, "y": 0.0, "yaw": 0.5})
-    assert call.id == outcome.id == ActivationId("m", 1, 1)
+    assert call.id == outcome.id == ActivationId("m", 1)
     assert 0 < call.deadline_s <= 10.0
     assert (outcome.status, outcome.response, outcome.fault) == ("observed", "arrived", None)
     assert outcome.local_variables["success"] == "true"

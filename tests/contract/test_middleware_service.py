@@ -100,7 +100,7 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
         first = tasks.create_task(system.activate("pick"))
         await system.adapter.is_called.wait()
         second = tasks.create_task(system.activate("pick"))
-        with pytest.raises(SkillError, match="running already, for activation m-1-1"):
+        with pytest.raises(SkillError, match="running already, for activation m-1"):
             await system.activate("pick", step=2)
         go_on.set()
     assert first.result() == second.result()
@@ -109,31 +109,49 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
 
 
 @pytest.mark.parametrize("ending", ["killed", "stopped"])
-async def test_an_activation_cut_off_with_the_service_is_unknown_and_not_run_again(
-    system: System, endpoint: str, ending: str
+@pytest.mark.parametrize(
+    ("skill", "path", "told"),
+    [("pick", "/pick", ("observed", "pick_succeeded")), ("sense", "/sense", ("unknown", ""))],
+    ids=["its_result_tells_all", "its_topics_were_missed"],
+)
+async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
+    system: System, endpoint: str, ending: str, skill: str, path: str, told: tuple[str, str]
 ) -> None:
-    never = asyncio.Event()
+    may_end = asyncio.Event()
 
-    async def hang(_: SkillCall) -> dict[str, Any]:
-        await never.wait()
-        return {}
+    async def move(_: SkillCall) -> dict[str, Any]:
+        await may_end.wait()
+        return {"success": True}
 
-    await system.adapter.serve("/pick", hang)
+    await system.adapter.serve(path, move)
     assert system.child is not None
     async with asyncio.TaskGroup() as tasks:
-        cut_off = tasks.create_task(_error_of(system.activate("pick")))
+        cut_off = tasks.create_task(_error_of(system.activate(skill)))
         await system.adapter.is_called.wait()
         if ending == "killed":
             system.child.kill()
         status = await system.child.stop(5.0)
     assert status == (-9 if ending == "killed" else 0)
     assert isinstance(cut_off.result(), LostAnswerError)
+    system.adapter.is_called.clear()
     await system.start(endpoint)
     await system.state(1)
-    outcome = await system.activate("pick")
-    assert outcome.status == "unknown"
+    async with asyncio.TaskGroup() as tasks:
+        taken_up = tasks.create_task(system.activate(skill))
+        await system.adapter.is_called.wait()
+        may_end.set()
+    assert (taken_up.result().status, taken_up.result().response) == told
+    assert len(system.adapter.motions) == 1
+
+
+async def test_an_id_that_stands_for_another_motion_moves_nothing_and_is_a_step_of_the_mission(
+    system: System,
+) -> None:
+    await system.adapter.serve("/pick", succeed)
+    assert (await system.activate("pick")).status == "observed"
+    outcome = await system.activate("serve")
     assert outcome.fault is not None
-    assert outcome.fault.code == "AOS504"
+    assert (outcome.status, outcome.fault.code) == ("refused", "AOS514")
     assert len(system.adapter.calls) == 1
 
 

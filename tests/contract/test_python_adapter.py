@@ -31,6 +31,7 @@ from aos_runtime.children import Child
 ROBOT = """
 import asyncio, time
 from enum import Enum
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -51,6 +52,12 @@ async def wait(call):
 def block(call):
     while not call.is_cancelled:
         time.sleep(0.01)
+
+async def wait_for_file(call, name):
+    call.publish("/moving")
+    while not Path(name).exists():
+        await asyncio.sleep(0.01)
+    return {"motion": id(call)}
 
 async def hang(call):
     call.progress(0.1, "hanging")
@@ -144,7 +151,7 @@ class Robot:
                     return
 
     async def call(self, path: str, step: int = 1, **fields: Any) -> SkillResult:
-        call = SkillCall(ActivationId("m", 1, step), path, fields, 20.0)
+        call = SkillCall(ActivationId("m", step), path, fields, 20.0)
         return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
 
     async def cancel(self, path: str) -> Cancelled:
@@ -231,7 +238,7 @@ async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, fun
     async with asyncio.timeout(HANG_S), progress:
         running = asyncio.create_task(robot.refusal("/skill", 1))
         await anext(progress)
-        assert (await robot.cancel("/skill")).ids == ("m-1-1",)
+        assert (await robot.cancel("/skill")).ids == ("m-1",)
     assert (await running).code == "AOS507"
     assert (await robot.call("/drive", 2, x=0)).fields == {"success": True}
 

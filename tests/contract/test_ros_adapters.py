@@ -123,7 +123,7 @@ class Lab:
                     return
 
     async def call(self, path: str, fields: dict[str, Any], step: int, limit_s: float = 10.0) -> SkillResult:
-        call = SkillCall(ActivationId("m", 1, step), path, fields, limit_s)
+        call = SkillCall(ActivationId("m", step), path, fields, limit_s)
         return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
 
 
@@ -250,7 +250,7 @@ async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -
         cancelled = await lab.bus.ask(
             lab.keys.cancel("/count"), Cancel("enough"), Cancelled, timeout_s=HANG_S
         )
-        assert cancelled.ids == ("m-1-1",)
+        assert cancelled.ids == ("m-1",)
         with pytest.raises(AosError) as raised:
             await running
         assert raised.value.code == "AOS507"

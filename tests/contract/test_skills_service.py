@@ -69,7 +69,7 @@ class Robot:
         epoch: int = 1,
         limit_s: float = 60.0,
     ) -> SkillResult:
-        call = SkillCall(ActivationId("m", epoch, step), path, fields or {}, limit_s)
+        call = SkillCall(ActivationId("m", step), path, fields or {}, limit_s, epoch=epoch)
         return await self.bus.ask(self.keys.call(path), call, SkillResult, timeout_s=HANG_S)
 
     async def refusal(
@@ -121,7 +121,7 @@ async def test_one_skill_runs_at_a_time_until_it_is_cancelled(robot: Robot) -> N
     assert refused.code == "AOS502"
     assert "/navigate is running" in str(refused)
     answer = await robot.bus.ask(robot.keys.cancel("/pick"), Cancel("enough"), Cancelled, timeout_s=HANG_S)
-    assert answer.ids == ("m-1-1",)
+    assert answer.ids == ("m-1",)
     assert (await driving).code == "AOS507"
     # It can move again, and what was refused never ran.
     assert "gap_m" in (await robot.call("/sense", 3)).fields

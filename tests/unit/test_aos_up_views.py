@@ -54,7 +54,7 @@ DECISION = DecisionRecord(
     why="it was asked for",
     threads=2,
 )
-OUTCOME = Outcome(ActivationId("m", 1, 1), "pick", "observed", "pick_succeeded")
+OUTCOME = Outcome(ActivationId("m", 1), "pick", "observed", "pick_succeeded")
 OBSERVED = msgspec.structs.replace(DECISION, sequence=1, outcome=OUTCOME, surprise=0.5)
 REFUSED = BundleReport(
     "armadillo",
@@ -256,7 +256,7 @@ def test_the_screen_shows_the_skill_while_it_runs() -> None:
 )
 def test_the_screen_shows_how_far_the_skill_is(state: str, progress: float, text: str, expected: str) -> None:
     screen = small_screen()
-    screen.take(SkillProgress(ActivationId("m", 1, 12), "/navigate", state, progress, text))
+    screen.take(SkillProgress(ActivationId("m", 12), "/navigate", state, progress, text))
     lines = shown(screen, 80, 24)
     assert expected in lines
     assert len(lines.rstrip().splitlines()) <= 24
@@ -266,13 +266,13 @@ def test_the_screen_shows_how_far_the_skill_is(state: str, progress: float, text
 def test_progress_of_another_step_or_by_hand_is_not_shown_as_that_of_the_skill() -> None:
     for mission, step in (("m", 11), ("by-hand", 12)):
         screen = small_screen()
-        screen.take(SkillProgress(ActivationId(mission, 1, step), "/navigate", "executing", 0.5))
+        screen.take(SkillProgress(ActivationId(mission, step), "/navigate", "executing", 0.5))
         assert "50%" not in shown(screen, 80, 24)
 
 
 def test_a_long_word_about_progress_keeps_to_the_line() -> None:
     screen = small_screen()
-    screen.take(SkillProgress(ActivationId("m", 1, 12), "/navigate", "executing", 0.5, "very " * 40))
+    screen.take(SkillProgress(ActivationId("m", 12), "/navigate", "executing", 0.5, "very " * 40))
     assert max(map(len, shown(screen, 80, 24).splitlines())) <= 80
 
 

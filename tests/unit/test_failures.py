@@ -20,7 +20,7 @@ def decision(skill: str) -> DecisionRecord:
 
 def outcome(skill: str, status: str, fault: Fault | None = FAULT) -> Outcome:
     response = "seen" if status == "observed" else ""
-    return Outcome(ActivationId("m", 1, 1), skill, status, response, fault=fault)
+    return Outcome(ActivationId("m", 1), skill, status, response, fault=fault)
 
 
 class Mission:

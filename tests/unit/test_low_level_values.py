@@ -68,12 +68,12 @@ seen = __input.seen
 
 def request(variables: dict[str, str] | None = None) -> Activate:
     parameters: dict[str, Any] = {"to": {"pose": True, "number": 1}}
-    return Activate(ActivationId("m", 1, 1), "walk", parameters, 5.0, variables=variables or {})
+    return Activate(ActivationId("m", 1), "walk", parameters, 5.0, variables=variables or {})
 
 
 def outcome(**assigned: Any) -> Outcome:
     values = {path.replace("__", "."): value for path, value in assigned.items()}
-    return Outcome(ActivationId("m", 1, 1), "walk", "observed", "arrived", assigned=values)
+    return Outcome(ActivationId("m", 1), "walk", "observed", "arrived", assigned=values)
 
 
 def observed(mapping: LoadedMapping, seen: Any, low_level: dict[str, Any] | None = None) -> Observed | Raised:

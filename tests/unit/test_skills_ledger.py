@@ -10,7 +10,7 @@ from aos_protocol.errors import SkillError
 from aos_protocol.messages import ActivationId, SkillCall, SkillResult
 from aos_runtime.adapters.ledger import Ledger
 
-ID = ActivationId("mission", 2, 1)
+ID = ActivationId("mission", 1)
 CALL = SkillCall(ID, "/pick", {}, 10.0)
 
 
@@ -38,14 +38,6 @@ def test_an_activation_that_never_ended_is_unknown_and_does_not_move_again(path:
     with pytest.raises(SkillError) as error:
         Ledger(path).stored(ID)
     assert error.value.code == "AOS504"
-
-
-def test_a_stale_epoch_is_refused(path: Path) -> None:
-    ledger = Ledger(path)
-    ledger.start(CALL)
-    with pytest.raises(SkillError) as error:
-        ledger.stored(ActivationId("mission", 1, 7))
-    assert error.value.code == "AOS506"
 
 
 def test_a_repeated_activation_that_failed_fails_again_and_does_not_move(path: Path) -> None:

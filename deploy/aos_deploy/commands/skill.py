@@ -112,7 +112,7 @@ def call(
         if state is not None and state.phase in ("planning", "acting") and not anyway:
             hint = "Let it hold or end first, or use --anyway"
             raise DeployError("the mission moves the robot", code="AOS502", hint=hint)
-        request = SkillCall(ActivationId("by-hand", time.time_ns(), 1), path, _values(fields or []), deadline)
+        request = SkillCall(ActivationId("by-hand", time.time_ns()), path, _values(fields or []), deadline)
         async with aos.bus.listen(aos.keys.progress(path), SkillProgress) as progress:
             telling = asyncio.create_task(_tell(progress, as_json))
             try:

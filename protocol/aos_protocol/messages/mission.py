@@ -100,6 +100,7 @@ class MissionState(Message, frozen=True):
     `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `too_risky`, `step_limit`,
     `skills_failed`, `cancelled`, `fault`, or empty while it runs. The first three are what the belief holds
     for sure enough: how the world has really ended, nobody tells the robot. `remark` is one line for people.
+    `epoch` counts the starts of the mission's solver, and is 0 before the mission has begun.
     """
 
     mission: str
@@ -109,6 +110,7 @@ class MissionState(Message, frozen=True):
     ending: str = ""
     remark: str = ""
     revision: int = 0
+    epoch: int = 0
 
 
 class ActionValue(Message, frozen=True):

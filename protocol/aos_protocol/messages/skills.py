@@ -23,18 +23,21 @@ __all__ = [
 
 
 class ActivationId(Message, frozen=True):
-    """Identifies one run of one grounded action for ever; ordered by epoch and step within a mission."""
+    """Identifies one run of one grounded action for ever, whichever process asks for it."""
 
     mission: str
-    epoch: int
     step: int
 
     def __str__(self) -> str:
-        return f"{self.mission}-{self.epoch}-{self.step}"
+        return f"{self.mission}-{self.step}"
 
 
 class Activate(Message, frozen=True):
-    """The solver's request to run a grounded action. A repeat of an ended id returns the stored outcome.
+    """The solver's request to run a grounded action.
+
+    A repeat of an id joins what runs, or returns the stored outcome. An id stands for one skill with its
+    parameters: a request that uses it for another one is refused (AOS514). `epoch` counts the starts of the
+    mission's solver; a request of an older one than the newest is refused (AOS506).
 
     Parameter values are plain data: numbers, bools, strings (enum values by name), dicts for compounds.
     `deadline_s` bounds the whole activation. `revision` is that of the model which decided, so that the
@@ -48,6 +51,7 @@ class Activate(Message, frozen=True):
     deadline_s: float
     revision: int = 0
     variables: dict[str, str] = {}
+    epoch: int = 1
 
 
 class Outcome(Message, frozen=True):
@@ -101,7 +105,8 @@ class MappingState(Message, frozen=True):
 
 
 class SkillCall(Message, frozen=True):
-    """The middleware's request to an adapter. A repeat of an id returns what the first call returned.
+    """The middleware's request to an adapter. A repeat of an id joins the call that runs, or returns what it
+    returned. What an id stands for, and `epoch`, are as in Activate.
 
     `fields` are what the abstraction mapping makes of the action. The action itself, `skill` with its
     `parameters`, is there for adapters that go by the documents, and empty in a call by hand.
@@ -113,6 +118,7 @@ class SkillCall(Message, frozen=True):
     deadline_s: float
     skill: str = ""
     parameters: dict[str, Any] = {}
+    epoch: int = 1
 
 
 class SkillResult(Message, frozen=True):
@@ -133,11 +139,13 @@ class SkillResult(Message, frozen=True):
 class Cancel(Message, frozen=True):
     """Stop the call of this id; without one, whatever runs. Answered when it has stopped.
 
-    A call that has ended already, or another one, is left alone.
+    A call that has ended already, or another one, is left alone. So is every call where `epoch` is older than
+    the newest of the mission.
     """
 
     reason: str = ""
     id: ActivationId | None = None
+    epoch: int = 1
 
 
 class Cancelled(Message, frozen=True):

@@ -36,6 +36,7 @@ from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.ledger import Ledger
 from aos_runtime.adapters.sendable import sendable
 from aos_runtime.adapters.settings import AdapterSettings, Binding
+from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
 
 __all__ = ["Host", "load_adapter", "serve_adapter"]
@@ -89,6 +90,7 @@ class _Running:
     def __init__(self, call: Call, task: asyncio.Task[Answer]) -> None:
         self.call = call
         self.task = task
+        self.ended = asyncio.Event()
         self.reason = ""
         self.progress = 0.0
         self.reported_s = float("-inf")
@@ -108,6 +110,9 @@ class Host:
         self._settings = settings
         self._loop = asyncio.get_running_loop()
         self._ledger = Ledger(self.run_dir / f"adapter-{self.name}.db")
+        self._fence = Fence(epoch_of_solver(service.bus, service.keys))
+        for call in self._ledger.calls():
+            self._fence.note(call)
         self._published: Counter[str] = Counter()
         self._unsent: deque[tuple[str, dict[str, Any]]] = deque(maxlen=MAX_UNSENT_MESSAGES)
         self._sending = threading.Lock()
@@ -235,6 +240,11 @@ class Host:
     # --- calls ---------------------------------------------------------------------------------------
 
     async def _call(self, request: SkillCall, _: str) -> SkillResult:
+        """Runs a call, joins the one of the same id, or tells again how it ended."""
+        await self._fence.check(request)
+        running = self._running
+        if running is not None and running.call.id == request.id:
+            await running.ended.wait()
         stored = self._ledger.stored(request.id)
         if stored is not None:
             return stored
@@ -262,25 +272,33 @@ class Host:
             self.publish,
         )
         self._ledger.start(request)
+        self._fence.note(request)
         may_take_s = call.deadline_s + self._settings.cancel_s
+        running = self._begin(call)
         try:
             with ends_if_blocked(call.path, may_take_s):
-                answer = await self._run(call)
+                answer = await self._run(running)
             result = self._result(call, binding, answer)
         except AosError as error:
             self._ledger.fail(call.id, error)
             self._tell_end(call, _STATES.get(error.code, "failed"), error.message)
             raise
-        self._ledger.end(result)
+        else:
+            self._ledger.end(result)
+        finally:
+            running.ended.set()
         self._tell_end(call, "succeeded")
         return result
 
-    async def _run(self, call: Call) -> Answer:
-        """Runs a call to its end, by itself, by its deadline or by a cancellation."""
+    def _begin(self, call: Call) -> _Running:
         assert self._adapter is not None
-        task = asyncio.ensure_future(self._adapter.call(call))
-        running = self._running = _Running(call, task)
+        running = self._running = _Running(call, asyncio.ensure_future(self._adapter.call(call)))
         self._tell(running, "accepted")
+        return running
+
+    async def _run(self, running: _Running) -> Answer:
+        """Runs a call to its end, by itself, by its deadline or by a cancellation."""
+        call, task = running.call, running.task
         await asyncio.wait({task}, timeout=call.deadline_s)
         is_late = not task.done()
         if is_late and not await self._stop(running, "its time is over"):
@@ -325,7 +343,8 @@ class Host:
 
     async def _cancel(self, cancel: Cancel, _: str) -> Cancelled:
         running = self._running
-        if running is None or (cancel.id is not None and cancel.id != running.call.id):
+        is_meant = running is not None and cancel.id in (None, running.call.id)
+        if running is None or not is_meant or self._fence.is_stale(cancel):
             return Cancelled()
         if not await self._stop(running, cancel.reason):
             raise self._stuck(running.call)

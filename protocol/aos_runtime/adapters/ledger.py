@@ -1,8 +1,7 @@
 """The ledger of calls: at most one motion for each id, whatever is sent twice or crashes.
 
 A repeat of an ended id gets the stored answer, or the same error. A repeat of one that started and never
-ended gets "outcome unknown", and nothing moves. An older epoch than the highest seen is a stale solver and is
-refused.
+ended gets "outcome unknown", and nothing moves, unless it runs: then whoever carries the ledger lets it join.
 """
 
 from __future__ import annotations
@@ -29,12 +28,12 @@ class Ledger:
     def __init__(self, path: Path) -> None:
         # After a loss of power no mission goes on, and its ids are never used again.
         self._journal = Journal.open(path, survives_power_loss=False)
-        self._started: set[ActivationId] = set()
+        self._started: dict[ActivationId, SkillCall] = {}
         self._ended: dict[ActivationId, SkillResult | Fault] = {}
-        self._epochs: dict[str, int] = {}
         for row in self._journal.rows():
             if row.kind == "started":
-                self._note(msgspec.json.decode(row.payload, type=SkillCall).id)
+                call = msgspec.json.decode(row.payload, type=SkillCall)
+                self._started[call.id] = call
             elif row.kind == "ended":
                 result = msgspec.json.decode(row.payload, type=SkillResult)
                 self._ended[result.id] = result
@@ -45,7 +44,7 @@ class Ledger:
     def stored(self, id: ActivationId) -> SkillResult | None:
         """The answer to an id that has ended; None for a new one.
 
-        The error with which it ended, or SkillError AOS504 or AOS506.
+        The error with which it ended, or SkillError AOS504.
         """
         ended = self._ended.get(id)
         if isinstance(ended, Fault):
@@ -58,14 +57,16 @@ class Ledger:
                 code="AOS504",
                 hint="Let the robot sense what became of it",
             )
-        if id.epoch < self._epochs.get(id.mission, id.epoch):
-            raise SkillError(f"activation {id} comes from an older epoch", code="AOS506")
         return None
+
+    def calls(self) -> tuple[SkillCall, ...]:
+        """Every call that was started, in order."""
+        return tuple(self._started.values())
 
     def start(self, call: SkillCall) -> None:
         """Before anything moves."""
         self._journal.append("started", call)
-        self._note(call.id)
+        self._started[call.id] = call
 
     def end(self, result: SkillResult) -> None:
         """After it moved."""
@@ -80,7 +81,3 @@ class Ledger:
 
     def close(self) -> None:
         self._journal.close()
-
-    def _note(self, id: ActivationId) -> None:
-        self._started.add(id)
-        self._epochs[id.mission] = max(id.epoch, self._epochs.get(id.mission, id.epoch))

@@ -38,7 +38,7 @@ from aos_runtime.bus import Bus, Subscription
 from aos_runtime.clock import Clock
 from aos_runtime.subscription import merged
 
-__all__ = ["Surroundings", "fault_of", "run_activation"]
+__all__ = ["Surroundings", "refused", "run_activation"]
 
 CATCH_UP_S = 0.5
 """How long to wait, after the call, for topic messages that were sent during it."""
@@ -55,7 +55,7 @@ _STATUS = {
     "AOS504": "unknown",
     "AOS507": "cancelled",
     "AOS606": "unknown",
-    **dict.fromkeys(("AOS502", "AOS505", "AOS506", "AOS511", "AOS512"), "refused"),
+    **dict.fromkeys(("AOS502", "AOS505", "AOS506", "AOS511", "AOS512", "AOS514"), "refused"),
 }
 """What an error says about the skill; AOS606 is a defect of the adapter, in the middle of anything."""
 
@@ -91,8 +91,14 @@ class _Observation(msgspec.Struct, frozen=True):
     failure: AosError | None = None
 
 
-async def run_activation(request: Activate, evaluator: Evaluator, around: Surroundings) -> Outcome:
-    """How the activation ended, within its deadline. Whatever goes wrong is in the outcome."""
+async def run_activation(
+    request: Activate, evaluator: Evaluator, around: Surroundings, *, is_taken_up: bool = False
+) -> Outcome:
+    """How the activation ended, within its deadline. Whatever goes wrong is in the outcome.
+
+    An activation `is_taken_up` that a middleware had begun which is gone. It joins the call that still runs.
+    Where its mapping reads topics, their messages were missed, and the outcome is `unknown`.
+    """
     started_ns = around.clock.now_ns()
     observation = _Observation()
     fault: AosError | None = None
@@ -100,6 +106,9 @@ async def run_activation(request: Activate, evaluator: Evaluator, around: Surrou
     activation = _Activation(request, evaluator, around)
     try:
         observation = await activation.run()
+        if is_taken_up and activation.reads_topics:
+            observation = _Observation()
+            raise _missed_topics(request)
     except MappingFault as error:
         fault, observation = error, _Observation(local_variables=error.local_variables)
         # A skill that was called may have done its work: its mapping has failed, not the robot.
@@ -115,15 +124,30 @@ async def run_activation(request: Activate, evaluator: Evaluator, around: Surrou
         observation.local_variables,
         started_ns,
         around.clock.now_ns(),
-        None if told is None else fault_of(told),
+        None if told is None else _fault_of(told),
         observation.assigned,
         observation.numbers,
     )
 
 
-def fault_of(error: AosError) -> Fault:
+def refused(request: Activate, error: AosError, now_ns: int) -> Outcome:
+    """The outcome of an activation that nothing was begun for."""
+    return Outcome(
+        request.id, request.skill, "refused", started_ns=now_ns, ended_ns=now_ns, fault=_fault_of(error)
+    )
+
+
+def _fault_of(error: AosError) -> Fault:
     """An exception as a message."""
     return Fault(error.code, error.message, error.hint, error.diagnostics)
+
+
+def _missed_topics(request: Activate) -> SkillError:
+    return SkillError(
+        f"the middleware was started anew while {request.skill} ran, and what its topics told is missing",
+        code="AOS504",
+        hint="The skill has ended; let the robot sense what became of it",
+    )
 
 
 class _Activation:
@@ -146,6 +170,11 @@ class _Activation:
         self._has_seen = asyncio.Event()
         self._fault: AosError | None = None
         self.was_called = False
+
+    @property
+    def reads_topics(self) -> bool:
+        """Says whether the observation depends on messages that were sent during the call."""
+        return bool(self._topic_of)
 
     async def run(self) -> _Observation:
         """From the fields of the call to what is observed."""
@@ -236,7 +265,7 @@ class _Activation:
         limit_s = max(self._ends_at_s - started_s, 0.0)
         if self._mapping.activation.max_duration_s is not None:
             limit_s = min(limit_s, self._mapping.activation.max_duration_s)
-        call = SkillCall(request.id, path, fields, limit_s, request.skill, request.parameters)
+        call = SkillCall(request.id, path, fields, limit_s, request.skill, request.parameters, request.epoch)
         has_ended = False
         try:
             result = await self._bus.ask(
@@ -262,7 +291,7 @@ class _Activation:
             raise
         finally:
             if not has_ended:
-                self._around.gate.doubt(request.id, path)
+                self._around.gate.doubt(request, path)
         if not has_ended:
             self._note_stray("foreign", result)
             raise SkillError(
@@ -274,7 +303,7 @@ class _Activation:
 
     async def _cancel(self, reason: str) -> bool:
         """Has the skill stopped; whether its adapter says that it has."""
-        cancel = Cancel(reason, self._request.id)
+        cancel = Cancel(reason, self._request.id, self._request.epoch)
         key = self._keys.cancel(self._mapping.activation.path)
         try:
             await self._bus.ask(key, cancel, Cancelled, timeout_s=_CANCEL_S)

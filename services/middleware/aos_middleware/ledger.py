@@ -7,7 +7,7 @@ from typing import Self
 
 import msgspec
 
-from aos_protocol.messages import Activate, ActivationId, Fault, Outcome, Stray
+from aos_protocol.messages import Activate, ActivationId, Outcome, Stray
 from aos_runtime.journal import Journal
 
 __all__ = ["OutcomeLedger"]
@@ -22,13 +22,12 @@ class OutcomeLedger:
 
     def __init__(self, journal: Journal) -> None:
         self._journal = journal
-        self._outcomes: dict[ActivationId, Outcome | None] = {}
-        self._skills: dict[ActivationId, str] = {}
+        self._requests: dict[ActivationId, Activate] = {}
+        self._outcomes: dict[ActivationId, Outcome] = {}
         for row in journal.rows():
             if row.kind == _STARTED:
                 request = msgspec.json.decode(row.payload, type=Activate)
-                self._outcomes.setdefault(request.id, None)
-                self._skills[request.id] = request.skill
+                self._requests[request.id] = request
             elif row.kind == _ENDED:
                 outcome = msgspec.json.decode(row.payload, type=Outcome)
                 self._outcomes[outcome.id] = outcome
@@ -45,8 +44,7 @@ class OutcomeLedger:
     def start(self, request: Activate) -> None:
         """Notes that an activation begins."""
         self._journal.append(_STARTED, request)
-        self._outcomes[request.id] = None
-        self._skills[request.id] = request.skill
+        self._requests[request.id] = request
 
     def end(self, outcome: Outcome) -> None:
         """Notes how an activation ended."""
@@ -57,23 +55,18 @@ class OutcomeLedger:
         """Keeps a reply that was not used."""
         self._journal.append(_STRAY, stray)
 
+    def requests(self) -> tuple[Activate, ...]:
+        """Every activation that was started, in order."""
+        return tuple(self._requests.values())
+
     def outcomes(self) -> list[Outcome]:
         """How the activations ended that did, in the order in which they were started."""
-        return [outcome for outcome in self._outcomes.values() if outcome is not None]
+        return [self._outcomes[id] for id in self._requests if id in self._outcomes]
 
     def outcome(self, activation: ActivationId) -> Outcome | None:
-        """The outcome of an activation that was started before, None for a new one.
+        """The outcome of an activation that has ended; None for every other one."""
+        return self._outcomes.get(activation)
 
-        `unknown` if it was started and never ended: the service went down in between.
-        """
-        if activation not in self._outcomes:
-            return None
-        ended = self._outcomes[activation]
-        if ended is not None:
-            return ended
-        fault = Fault(
-            "AOS504",
-            f"activation {activation} was running when the middleware went down",
-            "Whether the skill did its work is not known; it is not run a second time",
-        )
-        return Outcome(activation, self._skills[activation], "unknown", fault=fault)
+    def was_started(self, activation: ActivationId) -> bool:
+        """Says whether an activation was begun, by this process or by an earlier one."""
+        return activation in self._requests

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from aos_middleware.served_paths import ServedPaths
 from aos_protocol.errors import AosError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
-from aos_protocol.messages import ActivationId, Cancel, Cancelled
+from aos_protocol.messages import Activate, ActivationId, Cancel, Cancelled
 from aos_runtime.bus import Bus
 
 __all__ = ["GONE_S", "MotionGate"]
@@ -31,7 +31,7 @@ class MotionGate:
         self._keys = keys
         self._served = served
         self._moving = ""
-        self._doubts: dict[ActivationId, str] = {}
+        self._doubts: dict[ActivationId, tuple[str, int]] = {}
 
     @contextmanager
     def passing(self, path: str) -> Iterator[None]:
@@ -48,23 +48,22 @@ class MotionGate:
         finally:
             self._moving = ""
 
-    def doubt(self, activation: ActivationId, path: str) -> None:
+    def doubt(self, request: Activate, path: str) -> None:
         """Nobody has said that this call has ended."""
-        self._doubts[activation] = path
+        self._doubts[request.id] = path, request.epoch
 
     async def confirm(self) -> None:
         """Returns when everything that was called before stands still; SkillError AOS512 if nobody says so.
 
         Whoever has left the bus moves nothing any more, as far as can be known.
         """
-        for activation, path in list(self._doubts.items()):
+        for activation, (path, epoch) in list(self._doubts.items()):
             if self._served.servers(path):
-                await self._confirm(activation, path)
+                await self._confirm(Cancel("another skill is to run", activation, epoch), path)
             del self._doubts[activation]
             _log.info("%s of %s has stopped", path, activation)
 
-    async def _confirm(self, activation: ActivationId, path: str) -> None:
-        cancel = Cancel("another skill is to run", activation)
+    async def _confirm(self, cancel: Cancel, path: str) -> None:
         try:
             await self._bus.ask(self._keys.cancel(path), cancel, Cancelled, timeout_s=CONFIRM_S)
         except AosError as error:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_middleware.activation import Surroundings, run_activation
+from aos_middleware.activation import Surroundings, refused, run_activation
 from aos_middleware.emit import EmittedMapping
 from aos_middleware.evaluator import EvaluationLimits, Evaluator
 from aos_middleware.ledger import OutcomeLedger
@@ -31,6 +31,7 @@ from aos_protocol.messages import (
     ProjectQuery,
     ProjectRevision,
 )
+from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
 
 __all__ = ["serve"]
@@ -67,6 +68,9 @@ class _Middleware:
         self._mappings = Mappings(folder, self._make_evaluator, self._tell_state)
         self._served = ServedPaths(service.bus, service.keys, self._tell_state)
         self._ledger = OutcomeLedger.open(run_dir / "middleware.db")
+        self._fence = Fence(epoch_of_solver(service.bus, service.keys))
+        for request in self._ledger.requests():
+            self._fence.note(request)
         self._low_level = LowLevelValues(self._ledger.outcomes())
         self._around = Surroundings(
             service.bus,
@@ -131,6 +135,11 @@ class _Middleware:
         """Runs an activation, joins the one of the same id, or tells again how it ended."""
         if key != self._service.keys.activate(request.skill):
             raise BusError(f"an activation of {request.skill} was sent to {key}", code="AOS602")
+        try:
+            await self._fence.check(request)
+        except SkillError as error:
+            _log.warning("%s", error)
+            return refused(request, error, self._service.clock.now_ns())
         if request.id in self._running:
             await self._running[request.id].wait()
         known = self._ledger.outcome(request.id)
@@ -151,8 +160,10 @@ class _Middleware:
         self._running_skills[request.skill] = request.id
         try:
             async with evaluator.in_use:
+                is_taken_up = self._ledger.was_started(request.id)
                 self._ledger.start(request)
-                outcome = await run_activation(request, evaluator, self._around)
+                self._fence.note(request)
+                outcome = await run_activation(request, evaluator, self._around, is_taken_up=is_taken_up)
                 self._ledger.end(outcome)
                 self._low_level.take(outcome)
         finally:

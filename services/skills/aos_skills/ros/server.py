@@ -135,7 +135,7 @@ class _Server:
 
     async def _call(self, path: str, fields: Fields) -> Fields:
         call = SkillCall(
-            ActivationId(self._mission, 1, next(self._steps)), path, fields, self._settings.timeout_s
+            ActivationId(self._mission, next(self._steps)), path, fields, self._settings.timeout_s
         )
         try:
             result = await self._bus.ask(

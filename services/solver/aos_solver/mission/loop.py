@@ -73,7 +73,7 @@ class Mission:
         failures: Failures | None = None,
         hold_s: float = 600.0,
     ) -> None:
-        self.state = MissionState(name, "waiting", 0, 0.0, revision=model.revision)
+        self.state = MissionState(name, "waiting", 0, 0.0, revision=model.revision, epoch=epoch)
         self.records: list[DecisionRecord] = []
         self._epoch = epoch
         self._model = model
@@ -184,12 +184,13 @@ class Mission:
 
     async def _act(self, decision: DecisionRecord) -> Outcome:
         request = Activate(
-            ActivationId(decision.mission, decision.epoch, decision.step),
+            ActivationId(decision.mission, decision.step),
             decision.skill,
             decision.parameters,
             self._failures.rule(decision.skill).timeout_s or self._activation_timeout_s,
             decision.revision,
             self._model.engine.variables_of(decision.action),
+            self._epoch,
         )
         self._ports.journal("intended", request)
         outcome = await self._ports.activate(request)

@@ -1,0 +1,94 @@
+"""Which requests of a mission count: those of its newest solver, and each id for one motion only.
+
+A solver that was replaced may still have messages on their way, and somebody else may use ids or epochs
+that are not his. Middleware and adapters each have a fence.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Awaitable, Callable
+
+import msgspec
+
+from aos_protocol.errors import AosError, NobodyAnswersError, SkillError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import Activate, ActivationId, Cancel, MissionQuery, MissionState, SkillCall
+from aos_runtime.bus import Bus
+
+__all__ = ["Fence", "epoch_of_solver", "meaning"]
+
+_ASK_TIMEOUT_S = 5.0
+
+
+def meaning(request: Activate | SkillCall) -> str:
+    """A digest of what a request's id stands for: skill and parameters, of a call by hand path and fields."""
+    if isinstance(request, SkillCall):
+        stands_for: object = (request.path, request.skill, request.parameters or request.fields)
+    else:
+        stands_for = (request.skill, request.parameters)
+    return hashlib.blake2b(msgspec.json.encode(stands_for, order="deterministic"), digest_size=16).hexdigest()
+
+
+class Fence:
+    """Remembers the newest epoch of each mission and what each id stands for.
+
+    `epoch_of_solver` tells the epoch that a mission's solver has in its journal; None if no solver answers.
+    """
+
+    def __init__(self, epoch_of_solver: Callable[[str], Awaitable[int | None]]) -> None:
+        self._epoch_of_solver = epoch_of_solver
+        self._epochs: dict[str, int] = {}
+        self._meanings: dict[ActivationId, str] = {}
+
+    def note(self, request: Activate | SkillCall) -> None:
+        """Takes a request that was let through, now or by an earlier process."""
+        mission = request.id.mission
+        self._epochs[mission] = max(request.epoch, self._epochs.get(mission, 0))
+        self._meanings[request.id] = meaning(request)
+
+    async def check(self, request: Activate | SkillCall) -> None:
+        """Returns if the request counts.
+
+        SkillError AOS506 for an epoch that is not the mission's, AOS514 for an id of another motion.
+        """
+        await self._check_epoch(request.id, request.epoch)
+        if self._meanings.get(request.id, meaning(request)) != meaning(request):
+            raise SkillError(
+                f"activation {request.id} stands for another skill or other parameters",
+                code="AOS514",
+                hint="Somebody has used an id that is not his; nothing moves for it",
+            )
+
+    def is_stale(self, cancel: Cancel) -> bool:
+        """Says whether a cancellation comes from a solver that was replaced."""
+        return cancel.id is not None and cancel.epoch < self._epochs.get(cancel.id.mission, 0)
+
+    async def _check_epoch(self, id: ActivationId, epoch: int) -> None:
+        newest = self._epochs.get(id.mission, 0)
+        if epoch < newest:
+            raise SkillError(f"activation {id} comes from an older epoch, {epoch}", code="AOS506")
+        if epoch > max(newest, 1):
+            real = await self._epoch_of_solver(id.mission)
+            # Where no solver answers, and none was heard before, nobody's epochs are at stake.
+            if real != epoch and not (real is None and newest == 0):
+                raise SkillError(
+                    f"activation {id} comes from epoch {epoch}, which is not the mission's",
+                    code="AOS506",
+                    hint="Only the mission's solver counts its epochs",
+                )
+
+
+def epoch_of_solver(bus: Bus, keys: Keys) -> Callable[[str], Awaitable[int | None]]:
+    """Asks the solver on the bus for the epoch of its mission."""
+
+    async def asked(mission: str) -> int | None:
+        try:
+            state = await bus.ask(keys.mission_state, MissionQuery(), MissionState, timeout_s=_ASK_TIMEOUT_S)
+        except NobodyAnswersError:
+            return None
+        except AosError:
+            return 0
+        return state.epoch if state.mission == mission else None
+
+    return asked
