@@ -1,4 +1,5 @@
-"""What pyproject.toml cannot say: a wheel also holds deploy files, bundles, worlds and benchmarks by hand.
+"""The parts that pyproject.toml cannot say: a wheel also holds deploy files, bundles, worlds and benchmarks
+by hand.
 
 They keep their places, below `aos_deploy/share`, and `aos_deploy.shipped` finds them there as in a checkout.
 """

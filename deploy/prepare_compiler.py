@@ -46,7 +46,7 @@ async def build_engines(compiler: Compiler) -> None:
 
 
 def _complaint_about(compiler: Compiler) -> str:
-    """What the compiler says to a small program, built the way models are; nothing if it runs."""
+    """Returns the compiler's complaint about a small program, built the way models are; empty if it runs."""
     with tempfile.TemporaryDirectory() as folder:
         source, thing, program = (str(Path(folder) / name) for name in ("try.cpp", "try.o", "try"))
         Path(source).write_text(PROGRAM)

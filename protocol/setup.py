@@ -1,4 +1,5 @@
-"""What pyproject.toml cannot say: which modules an adapter needs, and how `aos-adapter` stays out of the way.
+"""The parts that pyproject.toml cannot say: which modules an adapter needs, and how `aos-adapter` stays out
+of the way.
 
 It has packages of the same names as `aos-autonomy`. Had they the same files, too, the one that is installed
 last would win, and whichever is removed would take the other's files with it. So those of `aos-adapter` stand

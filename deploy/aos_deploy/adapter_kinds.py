@@ -18,7 +18,7 @@ __all__ = ["COMMAND", "EXTERNAL", "MODEL", "Kind", "adapter_kinds", "check_insta
 
 
 class Kind(msgspec.Struct, frozen=True, kw_only=True):
-    """How an adapter of this kind is started.
+    """The way to start an adapter of this kind.
 
     `adapter` is `module:Class`, empty where no adapter class of Python runs. The value of the kind's own word
     in the deploy file becomes the option `value`. `options` are those it knows, None for any. Its process may

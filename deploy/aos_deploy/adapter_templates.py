@@ -21,7 +21,7 @@ ROS_KINDS = {
     "dds": ("lo", "the network interface; lo is this machine alone"),
     "ros1": ("http://127.0.0.1:11311", "ROS_MASTER_URI"),
 }
-"""What the adapter is given of itself, and what that is."""
+"""The options that the adapter of a kind gets, and what each of them is."""
 
 _FIELD = re.compile(r"\b__input(?:\.|, \")([A-Za-z_]\w*)")
 _EXAMPLES: dict[str, Any] = {
@@ -107,7 +107,7 @@ def _deploy_file(kind: str, project: Project, bundle: str, program: str, paths: 
 
 
 def _interfaces(project: Project) -> str:
-    """Which interface files the documents ask for."""
+    """Writes which interface files the documents ask for."""
     known = documented(project)
     lines = ["# The robot's own interfaces", ""]
     lines += ["Copy here, from the robot's workspace, what is not common to all of ROS:", ""]

@@ -41,12 +41,12 @@ class AdapterPlan(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def is_process(self) -> bool:
-        """Whether aos-up starts a process for it."""
+        """True if aos-up starts a process for it."""
         return self.kind_name != EXTERNAL
 
     @property
     def is_command(self) -> bool:
-        """Whether it is a program of the user's own."""
+        """True if it is a program of the user's own."""
         return self.kind_name == COMMAND
 
 

@@ -26,7 +26,7 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
 
 
 def project_of(deployment: Deployment) -> Project:
-    """What all bundles make together, with the mission's constraints.
+    """Reads the project that all bundles make together, with the mission's constraints.
 
     DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
     constraints.

@@ -83,7 +83,7 @@ def _needed_modules(arguments: Sequence[str]) -> list[str]:
 
 
 def _words_to_complete() -> list[str]:
-    """What stands before the word that a shell wants completed; empty if no shell asks."""
+    """Returns the words before the one that a shell wants completed; none if no shell asks."""
     line = os.environ.get("COMP_WORDS") or os.environ.get("_TYPER_COMPLETE_ARGS") or ""
     return line.split()[1:]
 

@@ -50,7 +50,7 @@ _ENDPOINT = re.compile(r"tcp/(127\.\d+\.\d+\.\d+|localhost|\[::1\]):\d{1,5}")
 
 
 class BusPart(msgspec.Struct, frozen=True, kw_only=True):
-    """Where the router listens; port 0 takes any free one."""
+    """The address at which the router listens; port 0 takes any free one."""
 
     listen: str = "tcp/127.0.0.1:7447"
 
@@ -68,7 +68,7 @@ class ConstraintPart(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """When a mission ends. `stop_below_value` is an expected return; without one nothing is too poor.
+    """The end of a mission. `stop_below_value` is an expected return; without one nothing is too poor.
 
     A skill is set aside for `set_aside_s` after `set_aside_after` failures in a row, and the mission ends
     after `failure_limit` failures of all skills; see docs/when-a-skill-fails.md. It holds for `hold_s` at
@@ -87,7 +87,8 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
 
 
 class SkillPart(msgspec.Struct, frozen=True, kw_only=True):
-    """What follows when a skill fails. `timeout_s` is the mission's `activation_timeout_s` if not given.
+    """The consequences of a skill's failure. `timeout_s` is the mission's `activation_timeout_s` if not
+    given.
 
     The same action is tried again up to `retries` times, by default once for `retry` and else never. Then
     `observe` goes on, `hold` waits for `aos resume`, and `end` ends the mission. `ran_probability` is how
@@ -298,7 +299,7 @@ def _texts(node: YamlMap, key: str) -> Iterator[tuple[str, Span]]:
 
 
 def _place(node: YamlMap, *path: str) -> Span:
-    """Where a value stands; where the file begins, if it is not in the file."""
+    """Returns the place of a value; the file's beginning, if the value is not in the file."""
     found: YamlNode = node
     for key in path:
         if not isinstance(found, YamlMap) or key not in found.entries:

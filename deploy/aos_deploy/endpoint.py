@@ -58,7 +58,7 @@ def _take_any(name: socket.socket, address: str) -> int:
 
 
 def _has_taken(name: socket.socket, port: int) -> bool:
-    """Whether this start has the port's name, an abstract socket of Linux, now."""
+    """Binds the port's name, an abstract socket of Linux; returns whether this start has it now."""
     try:
         name.bind(f"\0aos-port-{port}")
     except OSError:

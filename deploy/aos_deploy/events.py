@@ -1,4 +1,4 @@
-"""What aos-up tells while a mission runs: to the live view, as plain lines, or as JSON."""
+"""The events that aos-up tells while a mission runs: to the live view, as plain lines, or as JSON."""
 
 from __future__ import annotations
 

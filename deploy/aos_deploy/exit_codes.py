@@ -1,4 +1,4 @@
-"""How aos-up and aos end: one number that says what happened."""
+"""The exit codes of aos-up and aos: one number that says what happened."""
 
 from __future__ import annotations
 

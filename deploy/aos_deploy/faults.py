@@ -1,4 +1,4 @@
-"""How a fault is told at the terminal."""
+"""The text of a fault at the terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which missions run on this machine, whatever folder they were started in, and which one a command means.
+"""The missions that run on this machine, whatever folder they were started in, and the one a command means.
 
 A run is noted while it lasts, in $AOS_RUNNING_DIR or `running` in the cache directory. What is noted there
 and does not run was killed.
@@ -18,7 +18,7 @@ from aos_protocol.errors import BusError, DeployError
 __all__ = ["RUNS", "chosen_run", "living_run", "living_runs", "noted"]
 
 RUNS = Path("runs")
-"""Where run directories are looked for unless a command is told otherwise."""
+"""Commands look for run directories here unless told otherwise."""
 
 
 @contextmanager

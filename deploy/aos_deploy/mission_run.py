@@ -64,7 +64,7 @@ class MissionRun:
         self._first_decision_s: float | None = None
 
     async def run(self) -> Summary:
-        """Until the mission has ended and every process with it, by itself, by a fault or cancelled.
+        """Runs until the mission has ended and every process with it, by itself, by a fault or cancelled.
 
         A fault is kept in `error`. In every case the run directory holds the summary, if there is a run
         directory; AosError if there is none, because its endpoint is taken or it cannot be made.
@@ -247,7 +247,7 @@ class _End(Protocol):
 
 
 class Stoppable(Protocol):
-    """What runs until it ends or is cancelled, and can be ended at once."""
+    """A run that lasts until it ends or is cancelled, and that can be ended at once."""
 
     async def run(self) -> _End: ...
 

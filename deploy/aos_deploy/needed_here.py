@@ -1,4 +1,4 @@
-"""Whether what a deploy file starts is on this machine: looked at before anything is started."""
+"""The check that what a deploy file starts is on this machine, before anything is started."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 
 
 class ReadyPart(msgspec.Struct, frozen=True, kw_only=True):
-    """When a program counts as ready; one of these.
+    """The sign that a program is ready; one of these.
 
     A TCP `port` of the `address` takes connections. A `line` of what it prints matches a regular expression.
     A `file` was made or written since its start. A `command` succeeds, which is tried again and again. So
@@ -41,7 +41,7 @@ class ReadyPart(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def kinds(self) -> list[str]:
-        """Which of them are given."""
+        """The names of the fields that are given."""
         kinds = ("port", "line", "file", "command", "seconds", "exit")
         return [kind for kind in kinds if getattr(self, kind) not in (None, ())]
 
@@ -78,7 +78,7 @@ class ProgramPart(msgspec.Struct, frozen=True, kw_only=True):
 def check_programs(
     programs: dict[str, ProgramPart], node: YamlMap, findings: Findings, taken: Iterable[str]
 ) -> None:
-    """What the types alone cannot say. `taken` are the names of adapters and services."""
+    """Adds findings about what the types alone cannot say. `taken` are the names of adapters and services."""
     given = node.entries.get("programs")
     places = given.keys if isinstance(given, YamlMap) else {}
     for name, part in programs.items():

@@ -1,4 +1,4 @@
-"""What commands print: findings, JSON, numbers of things."""
+"""The output of commands: findings, JSON, numbers of things."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Why a process of the system ended: the fault it left, what ssh says, or its status and its last lines."""
+"""The reason why a process of the system ended: the fault it left, what ssh says, or its status and last
+lines."""
 
 from __future__ import annotations
 
@@ -35,7 +36,7 @@ def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool)
 
 
 def look_at_log(run: RunDirectory, name: str) -> str:
-    """Where a service's log is, and how it ends."""
+    """Returns the place of a service's log, and its last lines."""
     lines = run.last_log_lines(name)
     where = f"Its log is {run.log(name)}"
     return "\n    ".join([f"{where}; it ends:", *lines]) if lines else where

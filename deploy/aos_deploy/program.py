@@ -49,12 +49,13 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def is_own(self) -> bool:
-        """Whether it is one of the deploy file's `programs:`."""
+        """True if it is one of the deploy file's `programs:`."""
         return bool(self.on_exit)
 
     @property
     def ending_s(self) -> float:
-        """How long the process may take to end: a command, then what it leaves behind, are asked first."""
+        """The time that the process may take to end: a command, then what it leaves behind, are asked
+        first."""
         return 2 * self.stop_s + 1.0 if self.command else self.stop_s
 
     def argv(self, settings: Path) -> list[str]:
@@ -103,7 +104,7 @@ def _own(deployment: Deployment, name: str, part: ProgramPart) -> Program:
 
 
 def _played(deployment: Deployment) -> dict[str, Any]:
-    """Which skills are played by their documents, for the middleware."""
+    """Returns the paths of the skills that are played by their documents, for the middleware."""
     plans = [plan for plan in deployment.adapters if plan.kind_name == MODEL]
     paths = [path for plan in plans for path in (*plan.bind, *(["*"] if plan.serves_others else []))]
     return {"played": paths, "elsewhere": [path for plan in plans for path in plan.elsewhere]}
@@ -140,7 +141,7 @@ def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:
 
 
 def _folder(deployment: Deployment, plan: AdapterPlan) -> str:
-    """Where a program of the user's own is started; on another host, a folder there."""
+    """Returns the folder where a program of the user's own is started; on another host, a folder there."""
     return plan.options.get("folder", "") if "host" in plan.options else str(deployment.path.parent)
 
 
@@ -159,7 +160,7 @@ def _solver_settings(deployment: Deployment) -> dict[str, Any]:
 
 
 def cache_dir() -> Path:
-    """Where compiled models are kept: $AOS_CACHE_DIR, or `aos` in the user's cache directory."""
+    """Returns the folder of compiled models: $AOS_CACHE_DIR, or `aos` in the user's cache directory."""
     if named := os.environ.get("AOS_CACHE_DIR"):
         return Path(named).absolute()
     base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
@@ -167,5 +168,5 @@ def cache_dir() -> Path:
 
 
 def settings_of(program: Program, base: ServiceSettings) -> dict[str, Any]:
-    """What the service's settings file holds."""
+    """Returns the contents of the service's settings file."""
     return {**msgspec.structs.asdict(base), **program.settings}

@@ -1,4 +1,4 @@
-"""Whether a program of the user's own is ready, as the deploy file says it is seen."""
+"""The wait until a program of the user's own is ready, as the deploy file says it is seen."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LOOK_EVERY_S = 0.1
 _CONNECT_S = 2.0
 _COMMAND_S = 10.0
 _CLOCK_NS = 20_000_000
-"""How much coarser the times of files can be than the clock."""
+"""The times of files can be this much coarser than the clock."""
 
 
 async def until_seen_ready(ready: ReadyPart, log: Path, log_start: int, folder: Path) -> None:
@@ -57,7 +57,7 @@ async def check_port_is_free(name: str, ready: ReadyPart | None) -> None:
 
 
 class _Printed:
-    """What is added to a log, line by line; the last line may be unfinished."""
+    """The lines that are added to a log; the last one may be unfinished."""
 
     def __init__(self, log: Path, start: int, pattern: str) -> None:
         self._log = log
@@ -66,7 +66,7 @@ class _Printed:
         self._rest = ""
 
     def has_line(self) -> bool:
-        """Whether one of the lines since the last question matches."""
+        """Returns whether one of the lines since the last question matches."""
         with self._log.open("rb") as log:
             log.seek(self._position)
             new = log.read()
@@ -77,7 +77,7 @@ class _Printed:
 
 
 def _was_written(path: Path, began_ns: int) -> bool:
-    """Whether a file was made or written since; a device that is there counts as it is."""
+    """Returns whether a file was made or written since; a device that is there counts as it is."""
     try:
         found = path.stat()
     except OSError:

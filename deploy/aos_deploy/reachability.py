@@ -19,7 +19,7 @@ _NAMED_ACTIONS = 3
 _TIME_S = 1.5
 _DRAWN_TIME_S = 0.3
 MAX_CPU_S = 4.0
-"""Of each of the two: what takes longer is told, and where."""
+"""The processor time of each of the two looks; a place that takes longer is told."""
 
 
 async def reachability_findings(project: Project, built: BuiltModel) -> tuple[Diagnostic, ...]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["HOST", "check_ssh", "remote_command", "why_it_failed"]
 
 HOST = re.compile(r"(ssh://)?([A-Za-z0-9_][\w.-]*@)?[A-Za-z0-9\[][A-Za-z0-9_.:\]-]*")
-"""What ssh takes for a host; nothing that it would take for an option."""
+"""A text that ssh takes for a host; it cannot be one that ssh would take for an option."""
 
 _SSH_FAILED = 255
 _NOT_FOUND = 127

@@ -120,7 +120,7 @@ class RunDirectory:
         return cls((runs / _LATEST).resolve())
 
     def write_settings(self, service: str, settings: dict[str, Any]) -> Path:
-        """Where the service finds its settings."""
+        """Writes the settings of a service and returns their path."""
         path = self.path / "settings" / f"{service}.json"
         path.write_bytes(_pretty(settings))
         return path
@@ -148,7 +148,8 @@ class RunDirectory:
         fault_path(self.path, service).unlink(missing_ok=True)
 
     def write_record(self, record: RunRecord) -> None:
-        """From now on the run can be found, and `latest` names it. The record may be written anew."""
+        """Writes the record by which the run can be found from now on, and lets `latest` name it. The
+        record may be written anew."""
         path = self.path / "run.json"
         is_known = path.exists()
         path.write_bytes(_pretty(record))
@@ -178,7 +179,7 @@ class RunDirectory:
 
     @property
     def is_running(self) -> bool:
-        """Whether its aos-up is still there and others can talk to its services.
+        """True while its aos-up is still there and others can talk to its services.
 
         A process id would not tell: in a new container, say, it may be that of another program.
         """

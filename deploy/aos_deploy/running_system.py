@@ -29,13 +29,13 @@ class System(NamedTuple):
 
     @property
     def is_at_endpoint(self) -> bool:
-        """Whether an endpoint was named; AosError where the robot there was not."""
+        """True if an endpoint was named; AosError where the robot there was not."""
         if self.connect and not self.robot:
             raise DeployError("which robot?", code="AOS801", hint="Name it with --robot")
         return bool(self.connect)
 
     def do(self, work: Callable[[AosClient], Awaitable[T]]) -> T:
-        """What `work` makes of the system; AosError if there is none."""
+        """Returns what `work` makes of the system; AosError if there is none."""
         connect, robot = self.connect, self.robot
         if not self.is_at_endpoint:
             record = living_run(self.run, self.runs).read_record()

@@ -49,4 +49,4 @@ SCHEMAS: Mapping[str, Callable[[], dict[str, Any]]] = {
     "gsdl": gsdl_schema,
     "deploy": _deploy_schema,
 }
-"""By name: AOS 1.x JSON (`PlpMain`), the paper's JSON (`GsdlMain`), the deploy file."""
+"""The schemas by name: AOS 1.x JSON (`PlpMain`), the paper's JSON (`GsdlMain`), the deploy file."""

@@ -26,7 +26,7 @@ __all__ = ["ServeEnd", "ServeRun"]
 
 
 class ServeEnd(msgspec.Struct, frozen=True):
-    """How it ended."""
+    """The end of a run without a mission."""
 
     exit_code: int
 
@@ -43,7 +43,7 @@ class ServeRun:
         self.error: AosError | None = None
 
     async def run(self) -> ServeEnd:
-        """Until it is cancelled, which is its normal end, or a process ends by itself."""
+        """Runs until it is cancelled, which is its normal end, or a process ends by itself."""
         with hold_endpoint(self._deployment.file.bus.listen) as endpoint:
             run = RunDirectory.create(
                 self._deployment.runs, self._deployment.file.robot, self._clock.now_ns()

@@ -1,4 +1,4 @@
-"""What comes along with AOS beside its code: deploy files, bundles, worlds, benchmarks by hand."""
+"""The files that come with AOS beside its code: deploy files, bundles, worlds, benchmarks by hand."""
 
 from __future__ import annotations
 

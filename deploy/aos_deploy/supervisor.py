@@ -36,13 +36,13 @@ from aos_runtime.subscription import merged
 __all__ = ["ROUTER", "Supervisor", "supervised"]
 
 STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
-"""What follows when a process ends by itself."""
+"""The consequences of a process that ends by itself."""
 
 ROUTER = Program(name="router", module="aos_runtime.router", start_s=ROUTER_S)
 
 _CANCEL_TIMEOUT_S = 2.5
 _HOST_S = 2.0
-"""What a program on another host may take longer to end than one here."""
+"""A program on another host may take this much longer to end than one here."""
 _MISTAKES = (2, 126, NOT_STARTED)
 """Statuses that programs and shells have for a command line that is wrong, which stays wrong."""
 _RESTART_S = 0.2
@@ -277,7 +277,7 @@ class Supervisor:
             self._changed(program.name, "starting", f"for the {running.starts}. time")
 
     def _what_follows(self, running: _Running, status: int) -> str:
-        """What becomes of a program that ended by itself."""
+        """Returns the consequence of a program that ended by itself."""
         program, was_ready = running.program, running.ready.is_set()
         if program.on_exit == "ignore" and was_ready:
             return IGNORED
@@ -299,7 +299,7 @@ class Supervisor:
         return end_of(running.program, self._run, status, was_ready=running.ready.is_set())
 
     def look_at_log(self, name: str) -> str:
-        """Where a service's log is, and how it ends."""
+        """Returns the place of a service's log, and its last lines."""
         return look_at_log(self._run, name)
 
     # --- stopping ------------------------------------------------------------------------------------------

@@ -29,12 +29,12 @@ class YamlScalar(msgspec.Struct, frozen=True):
 
     @property
     def is_block(self) -> bool:
-        """Whether its text begins in the line below."""
+        """True if its text begins in the line below."""
         return self.style in ("|", ">")
 
     @property
     def text_span(self) -> Span:
-        """Where its text begins: of one in quotes, behind the first."""
+        """The place where its text begins: of one in quotes, behind the first."""
         quote = len(self.style) if not self.is_block else 0
         return Span(self.span.file, self.span.line, self.span.column + quote)
 

@@ -21,7 +21,7 @@ _TOKEN = re.compile(r"\w+|\S")
 def check_folder(
     folder: Path, open_texts: Mapping[str, str]
 ) -> dict[str, tuple[list[str], list[Diagnostic]]]:
-    """For each file of the bundle its lines and what is wrong with it.
+    """Returns for each file of the bundle its lines and what is wrong with it.
 
     `open_texts` are texts by file name. What belongs to no file is told at the first open one. Empty where
     the folder holds no AOS documents; the C++ compiler is not asked, for it takes seconds.
@@ -51,6 +51,6 @@ def lines_of(name: str, data: bytes) -> list[str]:
 
 
 def end_column(line: str, column: int) -> int:
-    """Where the word or the sign ends that starts at a column (from 0); at least one further."""
+    """Returns the end of the word or sign that starts at a column (from 0); at least one further."""
     match = _TOKEN.match(line, column)
     return match.end() if match is not None else column + 1

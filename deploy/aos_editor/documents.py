@@ -1,4 +1,5 @@
-"""What an SDL text has at a place: the meaning of a word, the words that may stand there, its outline."""
+"""The contents of an SDL text at a place: the meaning of a word, the words that may stand there, its
+outline."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What each word of an SDL file is, for colours: of the grammar, C++, Python, and the bundle's names."""
+"""The kind of each word of an SDL file, for colours: of the grammar, C++, Python, and the bundle's names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""What each word of SDL and each built-in of model code means, in one sentence: for editors and the docs."""
+"""The meaning of each word of SDL and of each built-in of model code, in one sentence: for editors and
+docs."""
 
 from __future__ import annotations
 
@@ -177,7 +178,7 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
         ),
     },
 }
-"""By suffix and section: what it means, and what each of its parts means."""
+"""The meaning of each section and of its parts, by suffix and section."""
 
 BUILT_INS: Mapping[str, str] = {
     "state": "The state before the step.",

@@ -22,7 +22,7 @@ Lines = Callable[[str], Sequence[str]]
 def definition(
     bundle: Bundle, at: Occurrence, folder: Path, lines: Lines, codec: PositionCodec
 ) -> types.Location | None:
-    """Where the symbol is declared."""
+    """Returns the place where the symbol is declared; None where no file declares it."""
     declared = bundle.definition(at.symbol)
     return None if declared is None else _location(declared, folder, lines, codec)
 
@@ -30,7 +30,7 @@ def definition(
 def references(
     bundle: Bundle, at: Occurrence, folder: Path, lines: Lines, codec: PositionCodec, *, declares: bool
 ) -> list[types.Location]:
-    """Where the symbol stands, with its declaration if that is wanted."""
+    """Returns the places where the symbol stands, with its declaration if that is wanted."""
     found = (each for each in bundle.of(at.symbol) if declares or not each.is_declaration)
     return [place for each in found if (place := _location(each, folder, lines, codec)) is not None]
 

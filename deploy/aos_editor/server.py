@@ -31,7 +31,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity
 __all__ = ["language_server"]
 
 DEBOUNCE_S = 0.2
-"""How long after the last key stroke a bundle is checked."""
+"""A bundle is checked this long after the last key stroke."""
 
 _SEVERITIES = {
     Severity.ERROR: types.DiagnosticSeverity.Error,
@@ -196,7 +196,7 @@ def language_server() -> BundleServer:
 
 
 def _add_navigation(server: BundleServer) -> None:
-    """What crosses the files of a bundle, colours, and quick fixes."""
+    """Adds the features that cross the files of a bundle, colours, and quick fixes."""
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def go_to_definition(params: types.DefinitionParams) -> types.Location | None:

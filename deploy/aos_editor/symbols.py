@@ -1,4 +1,4 @@
-"""Which names of a bundle mean the same thing, and where they stand, in all of its files."""
+"""The names of a bundle that mean the same thing, and their places, in all of its files."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Occurrence(msgspec.Struct, frozen=True):
 
 
 class UnrenamableError(Exception):
-    """Why a symbol cannot get a name; for people."""
+    """The symbol cannot get that name; the message says why, for people."""
 
 
 class Bundle(msgspec.Struct, frozen=True):
@@ -74,7 +74,7 @@ class Bundle(msgspec.Struct, frozen=True):
 
     occurrences: tuple[Occurrence, ...]
     is_whole: bool
-    """Whether all of its documents and code could be read."""
+    """True if all of its documents and code could be read."""
     reported: frozenset[str] = frozenset()
     """The state variables that local variables of the same name report."""
     names: frozenset[str] = frozenset()

@@ -67,7 +67,7 @@ def _captures() -> dict[str, dict[str, str]]:
 
 
 def _region(names: str, next_names: str) -> dict[str, Any]:
-    """From a word's line to that of the next word."""
+    """Returns a pattern from a word's line to that of the next word."""
     return {
         "begin": _opening(names),
         "beginCaptures": _captures(),

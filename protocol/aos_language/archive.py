@@ -22,7 +22,8 @@ __all__ = ["ARCHIVE_SUFFIXES", "is_archive_name", "read_archive"]
 
 ARCHIVE_SUFFIXES = (".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".zip")
 MAX_UNPACKED_BYTES = 4 * MAX_BUNDLE_BYTES
-"""Of all entries together, those that are left out as well: compressed ones are unpacked to get past them."""
+"""The limit counts all entries together, those that are left out as well: compressed ones are unpacked to
+get past them."""
 MAX_RATIO = 200
 _RATIO_COUNTS_FROM_BYTES = 512 * 1024
 _MAX_NAME = 255
@@ -52,7 +53,7 @@ _UNREADABLE = (
     struct.error,
     zlib.error,
 )
-"""What the readers of archives raise at broken ones."""
+"""The readers of archives raise these errors at broken archives."""
 
 
 class _Entry(msgspec.Struct, frozen=True):
@@ -72,7 +73,7 @@ class _RefusedError(Exception):
 
 
 def is_archive_name(name: str) -> bool:
-    """Whether a file of this name is taken for an archive; hidden files are not."""
+    """Returns whether a file of this name is taken for an archive; hidden files are not."""
     return not name.startswith(".") and name.lower().endswith(ARCHIVE_SUFFIXES)
 
 
@@ -120,7 +121,7 @@ def read_archive(path: Path) -> tuple[dict[str, bytes], list[Diagnostic]]:
 
 
 def _in_tar(path: Path) -> Iterator[tuple[_Entry, IO[bytes]]]:
-    """As a stream, so that nothing is unpacked before it was looked at."""
+    """Reads the archive as a stream, so that nothing is unpacked before it was looked at."""
     with tarfile.open(path, "r|*", tarinfo=_BoundedTarInfo) as archive:
         for member in archive:
             kind = (

@@ -27,7 +27,7 @@ __all__ = ["Assembly", "assemble"]
 
 
 class Assembly(msgspec.Struct):
-    """What the documents of a bundle make together, complete or not."""
+    """The parts of a project that a bundle's documents make together, complete or not."""
 
     environment: Environment | None = None
     models: dict[str, SkillModel] = {}

@@ -88,7 +88,7 @@ def derived_mapping(model: SkillModel, environment: Environment | None) -> Abstr
 
 
 def sets_response(model: SkillModel) -> Span | None:
-    """Where the model first sets `__moduleResponse`; None where it does not."""
+    """Returns the place where the model first sets `__moduleResponse`; None where it does not."""
     for snippet, cpp in snippets_of(model.dynamic_model):
         for mention in cpp.mentions:
             if mention.path == ("__moduleResponse",) and mention.assigned is not None:
@@ -109,7 +109,7 @@ def _of_result(name: str, field: str, span: Span, kind: str = "") -> LocalVariab
 
 
 def _responses(model: SkillModel, environment: Environment | None) -> dict[str, Span]:
-    """What the dynamic model gives as the response and declares nowhere, in the order of the text."""
+    """Returns the responses that the dynamic model gives and declares nowhere, in the order of the text."""
     known = {*SPECIAL_NAMES, *_NO_RESPONSES, *(parameter.name for parameter in model.parameters)}
     if environment is not None:
         known |= {value for enum in environment.enums for value in enum.values}

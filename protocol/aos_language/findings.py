@@ -23,7 +23,7 @@ class Findings:
         self._lines: dict[str, Sequence[str]] = dict(lines or {})
 
     def add_source(self, file: str, lines: Sequence[str]) -> None:
-        """From now on what is found in the file shows its line."""
+        """Takes a file's lines: findings in it show theirs from now on."""
         self._lines[file] = lines
 
     def lines_of(self, file: str) -> Sequence[str]:
@@ -70,11 +70,11 @@ class Findings:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """In the order in which they were found."""
+        """The diagnostics in the order in which they were found."""
         return tuple(self._diagnostics)
 
     def sorted(self) -> tuple[Diagnostic, ...]:
-        """By file and place; what is said twice is said once."""
+        """Returns the diagnostics by file and place; what is said twice is said once."""
         unique = dict.fromkeys(self._diagnostics)
         return tuple(sorted(unique, key=lambda diagnostic: (diagnostic.span, diagnostic.code)))
 

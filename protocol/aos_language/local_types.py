@@ -17,7 +17,7 @@ RESERVED_LOCAL_NAMES = frozenset({
     "CONSTANTS", "RESPONSE", "TOPICS", "__input", "__skill_error", "__skill_status", "local_variables",
     "low_level_type", "observe", "parameters", "request", "stand_in",
 })  # fmt: skip
-"""What no local variable can be called: the names of the generated module and of what it is given."""
+"""No local variable can have these names: the generated module uses them, or is given them."""
 
 _ELEMENTS = ("bool", "int", "float", "double", "string")
 
@@ -41,7 +41,7 @@ def local_type(text: str) -> LocalType | None:
 
 
 def local_type_text() -> str:
-    """What can be written, for hints."""
+    """Returns the types that can be written, for hints."""
     return f"{', '.join(_ELEMENTS)}, or an array such as int[]"
 
 

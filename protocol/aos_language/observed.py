@@ -55,7 +55,7 @@ class Report(msgspec.Struct, frozen=True):
 
 
 class Misuse(msgspec.Struct, frozen=True):
-    """What is done with `__observed` and cannot be, at a place of a snippet."""
+    """A use of `__observed` that cannot be, at a place of a snippet."""
 
     extent: Extent
     message: str
@@ -68,7 +68,7 @@ def reports_in(cpp: Cpp) -> tuple[Report, ...]:
 
 
 def misuses_of(cpp: Cpp) -> tuple[Misuse, ...]:
-    """What a snippet of a dynamic model does with `__observed` besides reporting."""
+    """Returns the uses of `__observed` in a snippet of a dynamic model that are no reports."""
     return tuple(found for found in _read(cpp) if isinstance(found, Misuse))
 
 
@@ -113,7 +113,7 @@ def _report_or_misuse(mention: Mention, cpp: Cpp, code: str) -> Report | Misuse:
 
 
 def is_draw(call: Call) -> bool:
-    """Whether it is a call such as `AOS.Bernoulli(p)`."""
+    """Returns whether it is a call such as `AOS.Bernoulli(p)`."""
     return len(call.name) == 2 and call.name[0] in ("AOS", "AOSUtils") and call.name[1] in _DRAWS
 
 
@@ -126,7 +126,8 @@ def _example(name: str) -> str:
 
 
 def _reported(mention: Mention, cpp: Cpp, code: str) -> Extent | None:
-    """What is assigned or appended, without the blanks around it; None for any other use."""
+    """Returns the expression that is assigned or appended, without the blanks around it; None for any
+    other use."""
     if mention.access is Access.WRITE and mention.assigned is not None and not mention.method:
         return _stripped(mention.assigned, code)
     if mention.method == "push_back" and len(mention.path) == 2:

@@ -1,4 +1,4 @@
-"""What is said about a user's document: where, which code, what, and what to do.
+"""Findings about a user's document: where, which code, what is wrong, and what to do.
 
 A diagnostic is collected, never raised: one run over a bundle reports all of them. Machine faults are
 exceptions and live in `errors`.
@@ -19,7 +19,7 @@ _EXCERPT_WIDTH = 100
 
 
 class Severity(StrEnum):
-    """How bad it is: an error keeps a bundle out of the catalogue, a warning does not."""
+    """The weight of a finding: an error keeps a bundle out of the catalogue, a warning does not."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -66,7 +66,7 @@ class Diagnostic(msgspec.Struct, frozen=True):
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Whether any of them is an error."""
+    """Returns whether any of them is an error."""
     return any(diagnostic.is_error for diagnostic in diagnostics)
 
 

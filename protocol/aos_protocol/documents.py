@@ -61,7 +61,7 @@ class Snippet(msgspec.Struct, frozen=True):
 
     @property
     def span(self) -> Span:
-        """Where the snippet starts."""
+        """The place where the snippet starts."""
         return self.origins[0]
 
     def locate(self, line: int, column: int = 1) -> Span:
@@ -268,7 +268,7 @@ class ResponseRule(msgspec.Struct, frozen=True):
 
 
 class LocalSource(StrEnum):
-    """Where a local variable's value comes from."""
+    """The sources of a local variable's value."""
 
     PARAMETER = "parameter"
     SERVICE_RESPONSE = "service_response"
@@ -317,7 +317,7 @@ Those of ROS name the type of what they call. Whatever the kind, the path's adap
 
 
 class Activation(msgspec.Struct, frozen=True):
-    """How to run the skill: the kind (one of `ACTIVATION_KINDS`), the path, the request's fields."""
+    """The way to run the skill: the kind (one of `ACTIVATION_KINDS`), the path, the request's fields."""
 
     kind: str
     path: str

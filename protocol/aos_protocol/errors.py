@@ -188,7 +188,7 @@ class EndlessCodeError(CodeFaultError):
 
 
 class IntractableError(ModelError):
-    """What was asked cannot be enumerated: a draw is continuous, or there is too much of it."""
+    """The answer cannot be enumerated: a draw is continuous, or there is too much of it."""
 
     code = "AOS220"
 

@@ -41,7 +41,7 @@ _PATH = re.compile(r"/?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*")
 
 
 class Serving(NamedTuple):
-    """What a token of an adapter says; `instance` tells two processes of one adapter apart."""
+    """The contents of an adapter's token; `instance` tells two processes of one adapter apart."""
 
     adapter: str
     version: str
@@ -126,7 +126,7 @@ class Keys:
         return f"{self._root}/serve/**"
 
     def serving_of(self, serve_key: str) -> Serving | None:
-        """What a token says; None for one that says nothing."""
+        """Returns the contents of a token; None for one that says nothing."""
         head = f"{self._root}/serve/"
         parts = serve_key.removeprefix(head).split("/", 3)
         if len(parts) != 4 or not serve_key.startswith(head):

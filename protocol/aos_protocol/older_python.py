@@ -1,4 +1,4 @@
-"""What Python 3.10 lacks, for robots that have no newer one: it is that of Ubuntu 22.04 and ROS 2 Humble."""
+"""The parts of newer Pythons that Python 3.10 lacks, for robots on Ubuntu 22.04 and ROS 2 Humble."""
 
 from __future__ import annotations
 

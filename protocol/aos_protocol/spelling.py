@@ -8,7 +8,7 @@ from collections.abc import Iterable
 __all__ = ["did_you_mean", "nearest", "quoted"]
 
 _ALIKE = 0.65
-"""How much of two names has to be the same, from 0 to 1: of `itn` and `int` it is 0.67."""
+"""The share of two names that has to be the same, from 0 to 1: of `itn` and `int` it is 0.67."""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -36,14 +36,15 @@ R = TypeVar("R", bound=Message)
 _RETRY_S = 0.02
 _ROUND_TRIP_S = 2.0
 _ROUND_TRIPS = 5
-"""How often the router is asked: on a machine that stands still for a while a link is lost, and made anew."""
+"""The router is asked this many times: on a machine that stands still for a while a link is lost, and made
+anew."""
 
 _LATE_S = 0.5
-"""How long after Zenoh's own deadline a question ends by ours, in case Zenoh says nothing."""
+"""A question ends this long after Zenoh's own deadline by ours, in case Zenoh says nothing."""
 
 _UNANSWERED_S = 1.0
-"""How often it is asked whether the key of an open question is served still, and how long an answer may be
-under way whose giver has left."""
+"""An open question asks this often whether its key is served still, and waits this long for an answer under
+way whose giver has left."""
 
 _TAKEN = b"taken"
 """The attachment of a question that asks for a receipt, and of the receipt: a first, empty reply. Somebody
@@ -54,7 +55,7 @@ _ZENOH_TIMEOUT = b"Timeout"
 
 MAX_STRAYS = 10
 STRAYS_S = 60.0
-"""How long after its deadline a question still hears of late replies, where somebody wants to know."""
+"""A question hears of late replies this long after its deadline, where somebody wants to know."""
 
 _log = logging.getLogger("aos.bus")
 
@@ -262,7 +263,8 @@ class Bus:
         return str(self._session.zid())
 
     def presence(self, key_expression: str) -> Subscription[tuple[str, bool]]:
-        """Which keys are present: (key, True) for each that is there or comes, (key, False) when it goes.
+        """Watches which keys are present: (key, True) for each that is there or comes, (key, False) when it
+        goes.
 
         Once entered, the keys already there are in the queue.
         """
@@ -411,7 +413,7 @@ def _stray(result: tuple[bool, bytes], key: str, reply: type[R]) -> R | AosError
 
 
 def _ignore(_: object) -> None:
-    """For replies whose end alone matters."""
+    """Takes replies whose end alone matters."""
 
 
 def _settle(future: asyncio.Future[None]) -> None:

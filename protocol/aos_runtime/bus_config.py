@@ -1,4 +1,4 @@
-"""How every Zenoh session of AOS is configured: the only file that names Zenoh's options.
+"""The configuration of every Zenoh session of AOS: the only file that names Zenoh's options.
 
 One router, all others its clients: no scouting, no gossip, no listening anywhere but where the deploy file
 says. Zenoh itself refuses options it does not know.

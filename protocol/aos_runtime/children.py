@@ -31,7 +31,7 @@ _LAUNCH_GUARD = (
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True):
-    """What a guarded command may use; None is unlimited. `grace_s` lies between SIGTERM and SIGKILL.
+    """The limits of a guarded command; None is unlimited. `grace_s` lies between SIGTERM and SIGKILL.
 
     The `niceness` is added to this process's own: of a command with 19, all others come first.
     """
@@ -127,7 +127,7 @@ class Child:
         return await self._process.wait()
 
     async def wait_for(self, timeout_s: float) -> bool:
-        """Whether it has ended, now or within a time."""
+        """Waits until it has ended, at most for a time; returns whether it has."""
         try:
             async with asyncio.timeout(timeout_s):
                 await self.wait()

@@ -29,7 +29,7 @@ _HISTORY_TIMEOUT_S = 5.0
 
 
 class AosClient:
-    """What may be watched of one robot. Watching changes nothing."""
+    """A watcher of one robot. Watching changes nothing."""
 
     def __init__(self, bus: Bus, robot: str) -> None:
         self.bus = bus
@@ -46,7 +46,7 @@ class AosClient:
             yield cls(bus, robot)
 
     async def mission_state(self) -> MissionState:
-        """Where the mission is now; NobodyAnswersError if there is no solver."""
+        """Asks for the mission's state now; NobodyAnswersError if there is no solver."""
         return await self.bus.ask(
             self.keys.mission_state, MissionQuery(), MissionState, timeout_s=_HISTORY_TIMEOUT_S
         )
@@ -62,7 +62,8 @@ class AosClient:
                 yield event
 
     async def follow(self) -> AsyncIterator[DecisionRecord | MissionState | BundleReport]:
-        """As `decisions`, with each change of the mission's state, and what becomes of dropped bundles."""
+        """Yields what `decisions` yields, each change of the mission's state, and what becomes of dropped
+        bundles."""
         keys = self.keys
         feed = DecisionFeed()
         stream = merged(
@@ -90,7 +91,7 @@ class AosClient:
                     return
 
     async def _history(self, since: int) -> History:
-        """What the solver has; nothing, if it has gone."""
+        """Asks the solver for its records; none if it has gone."""
         try:
             return await self.bus.ask(
                 self.keys.decision_history, HistoryQuery(since), History, timeout_s=_HISTORY_TIMEOUT_S
@@ -118,7 +119,7 @@ class DecisionFeed:
 
     @property
     def has_gap(self) -> bool:
-        """Whether records are held back for one that is missing."""
+        """True while records are held back for one that is missing."""
         return bool(self._ahead)
 
     def take(self, record: DecisionRecord) -> list[DecisionRecord]:
@@ -136,5 +137,5 @@ class DecisionFeed:
         return ready
 
     def take_history(self, history: History) -> list[DecisionRecord]:
-        """As `take`, for all records of an answer."""
+        """Does what `take` does, for all records of an answer."""
         return [ready for record in history.records for ready in self.take(record)]

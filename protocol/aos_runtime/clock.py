@@ -12,7 +12,7 @@ __all__ = ["Clock", "SystemClock"]
 
 
 class Clock(Protocol):
-    """What a component may ask about the time."""
+    """The questions that a component may ask about the time."""
 
     def now_ns(self) -> int:
         """Wall-clock nanoseconds since the epoch; may jump."""

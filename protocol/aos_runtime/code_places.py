@@ -1,4 +1,4 @@
-"""Where in somebody's Python something happened: the innermost line that is in no library."""
+"""The place in somebody's Python where something happened: the innermost line that is in no library."""
 
 from __future__ import annotations
 

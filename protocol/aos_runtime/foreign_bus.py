@@ -31,7 +31,7 @@ Undo = Callable[[], None]
 
 
 class Packet(NamedTuple):
-    """What is sent: a payload, and the attachment beside it."""
+    """A sent message: a payload, and the attachment beside it."""
 
     payload: bytes
     attachment: bytes = b""

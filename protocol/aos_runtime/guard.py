@@ -83,7 +83,8 @@ def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], list[str]]
 
 
 def _become(command: list[str], niceness: int, limits: dict[int, int], guard_pid: int) -> NoReturn:
-    """In the child: own process group, niceness, limits, and the command in place of this program."""
+    """Turns the child into the command: own process group, niceness, limits, then the command in place of
+    this program."""
     try:
         os.setpgid(0, 0)
         _give_way(niceness)

@@ -40,7 +40,8 @@ PRAGMA user_version = {_SCHEMA_VERSION};
 
 
 _PAGES_IN_A_CHECKPOINT = 100
-"""Where a checkpoint does not wait for the disk, many small ones are better than a long one."""
+"""A checkpoint comes after this many pages: where none waits for the disk, many small ones are better than a
+long one."""
 
 
 class JournalRow(NamedTuple):

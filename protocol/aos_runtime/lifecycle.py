@@ -1,4 +1,4 @@
-"""How a service process lives: settings in, bus open, serve, and a word on why it ended.
+"""The life of a service process: settings in, bus open, serve, and a word on why it ended.
 
     python -m aos_registry SETTINGS.json
 
@@ -36,7 +36,7 @@ __all__ = ["ROUTER_S", "Service", "ServiceSettings", "root_cause", "run_process"
 
 
 ROUTER_S = 10.0
-"""How long the router may take to listen. Services start at the same time, and wait for it as long."""
+"""The router may take this time to listen. Services start at the same time, and wait for it as long."""
 
 S = TypeVar("S", bound=ServiceSettings)
 
@@ -44,7 +44,8 @@ _log = logging.getLogger("aos.service")
 
 
 class Service(Generic[S]):
-    """What `serve` works with. `keys` are those of the robot; `bus` closes after `serve` has ended."""
+    """The surroundings that `serve` works with. `keys` are those of the robot; `bus` closes after `serve`
+    has ended."""
 
     def __init__(self, settings: S, bus: Bus, clock: Clock) -> None:
         self.settings = settings
@@ -100,7 +101,7 @@ def run_service(
 def run_process(
     settings_type: type[S], run: Callable[[S], Coroutine[Any, Any, None]], settings: S | None = None
 ) -> NoReturn:
-    """As `run_service`, for a process that opens its own connection to the bus."""
+    """Runs a process as `run_service` does, where it opens its own connection to the bus."""
     die_with_parent()
     settings = settings or _read_settings(settings_type)
     logging.basicConfig(

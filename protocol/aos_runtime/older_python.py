@@ -1,4 +1,4 @@
-"""What Python 3.10 lacks, as `aos_protocol.older_python`, where it has to do with asyncio."""
+"""The parts of newer Pythons that have to do with asyncio and that Python 3.10 lacks."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def die_with_parent(death_signal: signal.Signals = signal.SIGKILL) -> None:
 
 
 def request_death_signal(death_signal: signal.Signals, parent_pid: int) -> None:
-    """As `die_with_parent`, for a child that knows its parent."""
+    """Does what `die_with_parent` does, for a child that knows its parent."""
     _prctl(_PR_SET_PDEATHSIG, death_signal)
     if os.getppid() != parent_pid:
         os._exit(128 + death_signal)

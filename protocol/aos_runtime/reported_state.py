@@ -17,7 +17,8 @@ M = TypeVar("M", bound=Message)
 _QUESTION_S = 5.0
 
 _IS_AWAY = (NobodyAnswersError, LostAnswerError, LateAnswerError)
-"""What an asker hears of a service that starts, stops or is busy: it tells its state when it has one."""
+"""An asker gets these errors from a service that starts, stops or is busy: it tells its state when it has
+one."""
 
 
 async def state_when(

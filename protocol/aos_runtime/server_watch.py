@@ -1,4 +1,4 @@
-"""Whether somebody serves a key, watched while a question on it is open."""
+"""A watch on whether somebody serves a key, while a question on it is open."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a service process is told, and where it leaves word of its end."""
+"""The settings of a service process, and the place of its last word."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["ServiceSettings", "fault_path"]
 
 
 class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
-    """What every service is told; each adds its own. `run_dir` is absolute."""
+    """The settings that every service has; each adds its own. `run_dir` is absolute."""
 
     robot: str
     service: str
@@ -19,5 +19,5 @@ class ServiceSettings(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def fault_path(run_dir: str | Path, service: str) -> Path:
-    """Where a service leaves the fault that ended it, a JSON `Fault`."""
+    """Returns the path where a service leaves the fault that ended it, a JSON `Fault`."""
     return Path(run_dir) / "faults" / f"{service}.json"

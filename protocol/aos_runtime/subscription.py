@@ -43,7 +43,7 @@ class Subscription(Generic[T]):
 
     @property
     def has_items(self) -> bool:
-        """Whether the next item is there already."""
+        """True where the next item is there already."""
         return bool(self._items)
 
     def close(self) -> None:

@@ -62,7 +62,7 @@ def decisions(
 
 
 def _reason(event: DecisionRecord | MissionState) -> list[str]:
-    """Why the decision was made by that planner, below the decision."""
+    """Returns the lines below a decision that say why that planner made it."""
     if not isinstance(event, DecisionRecord) or event.outcome is not None or not event.why:
         return []
     return [f"         {event.planner}: {event.why}"]

@@ -108,7 +108,7 @@ def _files_of(bundles: Iterable[Path]) -> tuple[dict[str, bytes], list[Diagnosti
 
 
 def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) -> tuple[Diagnostic, ...]:
-    """What generating and compiling the model finds."""
+    """Generates and compiles the model and returns what that finds."""
     import asyncio  # These would make the other commands start slower.
 
     from aos_deploy.program import cache_dir
@@ -176,6 +176,6 @@ def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:
 
 
 def refusal(bundle: Path, diagnostics: tuple[Diagnostic, ...]) -> DocumentError:
-    """What is raised for a bundle with errors."""
+    """Returns the error that is raised for a bundle with errors."""
     hint = "Mend the places named above"
     return DocumentError(f"{bundle} has errors", code="AOS120", hint=hint, diagnostics=diagnostics)

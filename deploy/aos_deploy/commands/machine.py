@@ -94,7 +94,8 @@ def examine_machine() -> list[Finding]:
 
 
 def examine_needs(deploy: Path) -> list[Finding]:
-    """What each adapter and program of a deploy file needs here; DeployError AOS801 if it has errors."""
+    """Looks at each need of a deploy file's adapters and programs here; DeployError AOS801 if the file has
+    errors."""
     from aos_deploy.deploy_file import read_deploy_file
     from aos_deploy.needed_here import needs_of
 

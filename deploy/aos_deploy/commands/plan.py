@@ -61,7 +61,7 @@ def register(app: typer.Typer) -> None:
 
 
 class Decision(msgspec.Struct):
-    """What `aos plan --json` prints; the action worth most comes first."""
+    """The output of `aos plan --json`; the action worth most comes first."""
 
     action: str
     value: float
@@ -143,7 +143,7 @@ def _decision(values: list[ActionValue], simulations: int) -> Decision:
 
 
 class Campaign(msgspec.Struct):
-    """What `aos simulate --json` prints."""
+    """The output of `aos simulate --json`."""
 
     runs: list[SimulatedRun]
     summary: dict[str, float]
@@ -230,7 +230,7 @@ def _by_policy(search: Search, path: Path) -> Search:
 
 
 class Rate(msgspec.Struct):
-    """What `aos rate --json` prints: samples per second."""
+    """The output of `aos rate --json`: samples per second."""
 
     mean: float
     sd: float

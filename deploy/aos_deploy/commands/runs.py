@@ -23,7 +23,8 @@ def register(app: typer.Typer) -> None:
 
 
 class Entry(msgspec.Struct):
-    """What `aos runs --json` prints of a run. `ending` is `running`, or `killed` where there is no other."""
+    """A run in the output of `aos runs --json`. `ending` is `running`, or `killed` where there is no
+    other."""
 
     directory: str
     robot: str

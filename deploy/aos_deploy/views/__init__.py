@@ -1,4 +1,4 @@
-"""How a mission is shown: the live view, plain lines, or JSON lines.
+"""The views of a mission: the live view, plain lines, or JSON lines.
 
 A view takes the events of `events` by calling it, and is a context manager around the time it is shown.
 """

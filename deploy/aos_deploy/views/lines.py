@@ -117,7 +117,7 @@ def _value(action: ActionValue) -> str:
 
 
 def effort_text(record: DecisionRecord) -> str:
-    """Who decided, and with how much work; short."""
+    """Says who decided, and with how much work; short."""
     if not record.simulations:
         by = f"{record.planner} without a search" if record.planner else ""
         return f"{by} in {record.planning_s:.2f} s"
@@ -127,14 +127,14 @@ def effort_text(record: DecisionRecord) -> str:
 
 
 def risk_text(constraint: ConstraintRisk) -> str:
-    """What a decision risks, and what it may."""
+    """Says what a decision risks, and what it may."""
     sign = "about " if constraint.is_sampled else ""
     bound = f"{constraint.left:.3g} left of {constraint.probability:g}"
     return f"risks {sign}{constraint.risk:.3g}, {bound}: never {constraint.never}"
 
 
 def endings_text(belief: BeliefSummary) -> str:
-    """How probable the goal is, and each other ending that is likelier than one in two thousand.
+    """Says how probable the goal is, and each other ending that is likelier than one in two thousand.
 
     In brackets stands how probable the goal is if nothing ran that was not observed, where that differs.
     """

@@ -31,7 +31,7 @@ _SERVICE_STYLES = {"starting": "yellow", "ready": "green", "stopping": "yellow",
 
 
 class Screen:
-    """What is on the screen, as far as the events have told.
+    """The contents of the screen, as far as the events have told.
 
     It keeps to the height of the terminal from 24 rows on, and needs 80 columns.
     """
@@ -143,7 +143,7 @@ class Screen:
             yield Spinner("dots", text)
 
     def _of_the_skill(self) -> Text:
-        """How far the skill of this step is; nothing before it says so, and when it has ended."""
+        """Shows how far the skill of this step is; empty before a skill says so, and when it has ended."""
         state, told = self.state, self.progress
         if state is None or told is None or state.phase != "acting" or told.state not in _RUNNING:
             return Text()
@@ -151,7 +151,7 @@ class Screen:
         return Text("  ").append_text(progress_text(told)) if is_of_this_step else Text()
 
     def _step_remark(self, shown: list[int]) -> Iterator[Text]:
-        """What the newest of the steps that has a remark has to say."""
+        """Yields the remark of the newest of the steps that has one."""
         remarked = [step for step in shown if self.steps[step].remark]
         if remarked:
             told = f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}"

@@ -19,7 +19,7 @@ _SHOWN_VALUES = 4
 _WIDE = 100
 _BOUNDS_CELLS = 24
 _STEP_COLUMNS_CELLS = 36
-"""Of the step table without its action and its observation."""
+"""The width of the step table without its action and its observation."""
 _PARAMETER_NAME = re.compile(r"(?<=[(,])( ?)\w+=")
 
 
@@ -53,7 +53,7 @@ def step_table(records: Iterable[DecisionRecord], width: int) -> Table:
 
 
 def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
-    """What the actions are worth, the best first; the last row tells how many are not shown.
+    """Shows the values of the actions, the best first; the last row tells how many are not shown.
 
     What is proven of values has room on a wide screen.
     """
@@ -81,7 +81,7 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
 
 
 def _risks(record: DecisionRecord) -> dict[str, str]:
-    """For each action the most that it risks of any constraint, and whether that is too much."""
+    """Returns for each action the most that it risks of any constraint, and whether that is too much."""
     if not record.constraints:
         return {}
     told = {}
@@ -106,7 +106,7 @@ def belief_bars(belief: BeliefSummary, rows: int) -> Table:
 
 
 def progress_text(progress: SkillProgress) -> Text:
-    """How far a skill is, as a bar and a number, and what it does."""
+    """Shows how far a skill is, as a bar and a number, and what it does."""
     text = _bar(progress.progress, _PROGRESS_CELLS).append(f" {progress.progress:.0%}")
     said = ": ".join(word for word in (progress.state, progress.text) if word and word != "executing")
     return text.append(f" {said}" if said else "")

@@ -18,9 +18,9 @@ __all__ = ["print_runs", "print_states", "print_values"]
 
 BAR_WIDTH = 30
 LONGEST_ACTION = 48
-"""In letters; what is longer takes several lines."""
+"""The limit in letters; a longer action takes several lines."""
 NUMBERS_WIDTH = 38
-"""Of all but the action, the bounds and the bar, with the lines between."""
+"""The width of all but the action, the bounds and the bar, with the lines between."""
 BOUNDS_WIDTH = 24
 
 _LESS_THAN_THE_PLAN = (

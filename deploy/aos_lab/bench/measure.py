@@ -1,4 +1,4 @@
-"""What is asked of our own engine: rates, and returns of whole missions."""
+"""The measurements of our own engine: rates, and returns of whole missions."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ SIMULATIONS = 65_536
 """Descents of one search from a fresh root, about; in the baselines just as many."""
 
 THREADED_SEARCH_S = 0.3
-"""Of a search by one thread that several are compared with: long beside the start of a thread, which may wait
-some milliseconds for a core."""
+"""The time of a search by one thread that several are compared with: long beside the start of a thread,
+which may wait some milliseconds for a core."""
 
 _NEVER = 2.0
 """A probability that no belief reaches: a mission ends when its world does."""
@@ -58,7 +58,7 @@ async def _simulations_for(engine: Engine, descents: int, seed: int) -> int:
 
 
 def _descents(plan: Plan) -> int:
-    """Of a search from a fresh root."""
+    """Returns the number of descents in a search from a fresh root."""
     return sum(action.n for action in plan.actions)
 
 
@@ -92,7 +92,7 @@ async def discounted_returns(
     budget_s: float,
     on_run: Callable[[], None],
 ) -> list[float]:
-    """Of one mission for each seed, planned with so much processor time for each step."""
+    """Returns the return of one mission for each seed, planned with so much processor time for each step."""
     limits = MissionLimits(goal_probability=_NEVER, step_limit=problem.steps, stop_below_value=None)
     returns = []
     for seed in seeds:

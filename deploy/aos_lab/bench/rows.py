@@ -1,4 +1,4 @@
-"""What a benchmark says: rows of figures, what was left out and why, and on what machine it was."""
+"""The report of a benchmark: rows of figures, what was left out and why, and on what machine it was."""
 
 from __future__ import annotations
 
@@ -43,7 +43,8 @@ class Skipped(msgspec.Struct, frozen=True):
 
 
 class Machine(msgspec.Struct, frozen=True):
-    """Where, when and with what. `load` is of the last minute, `budget_s` a decision's processor time."""
+    """The circumstances of a benchmark. `load` is of the last minute, `budget_s` a decision's processor
+    time."""
 
     processor: str
     cores: int

@@ -31,14 +31,14 @@ __all__ = ["METRICS", "Effort", "Suite"]
 METRICS = ("steps", "simulations", "return")
 STEPS_BY_CODE = "steps, by code"
 WITHOUT_POLICIES = ", no rollout policy"
-"""Of a return whose problem has rollout policies, measured without them."""
+"""A mark of a return whose problem has rollout policies, measured without them."""
 
 Step = Callable[[str], None]
-"""Told before each piece of work, with its name."""
+"""A call before each piece of work, with its name."""
 
 
 class Effort(msgspec.Struct, frozen=True, kw_only=True):
-    """How long to measure. `runs` and `budget_s` are of returns; `jobs` missions are run at a time."""
+    """The effort of a benchmark. `runs` and `budget_s` are of returns; `jobs` missions are run at a time."""
 
     metrics: tuple[str, ...] = METRICS
     repetitions: int = 5
@@ -69,7 +69,7 @@ class Suite:
 
     @property
     def steps(self) -> int:
-        """How often `on_step` is called at most: missions may be run without rollout policies, too."""
+        """The most calls of `on_step`: missions may be run without rollout policies, too."""
         planners = len(self._effort.planners)
         return sum(3 + 2 * planners * self._effort.runs_of(problem) for problem in self._problems)
 
@@ -117,7 +117,7 @@ class Suite:
                 await self._returns(problem, planner, plain, f"{metric}{WITHOUT_POLICIES}")
 
     async def _sampling_rates(self, engine: Engine, problem: Problem) -> None:
-        """Of steps as POMCP makes them; where that is by a table, of those by the code, too."""
+        """Measures steps as POMCP makes them; where that is by a table, those by the code, too."""
         effort = self._effort
 
         async def rates(stepping: Stepping) -> list[float]:
@@ -134,7 +134,7 @@ class Suite:
         self._rows.append(figure(OURS, problem.name, metric, rates, "1/s"))
 
     async def _two_threads(self, engines: Mapping[int, Engine], problem: Problem) -> None:
-        """In real time, and so of use only where two cores are idle."""
+        """Measures in real time, and so is of use only where two cores are idle."""
         rates = await threaded_search_rates(engines, self._effort.repetitions, self._effort.seed)
         for threads, name in ((2, OURS), (1, "one thread")):
             row = figure(name, problem.name, "simulations, two threads", rates[threads], "1/s")

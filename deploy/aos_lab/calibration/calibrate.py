@@ -1,4 +1,4 @@
-"""From documents and recorded missions to estimates, and the patch that they suggest."""
+"""The way from documents and recorded missions to estimates, and to the patch that they suggest."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["Calibration", "calibrate"]
 
 
 def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
-    """Where the records contradict what is no number to be estimated."""
+    """Yields the places where the records contradict a number that is not to be estimated."""
     for each in estimates:
         excluded = [outcome for outcome in each.outcomes if outcome.is_excluded and not outcome.is_inside]
         for outcome in excluded:
@@ -40,7 +40,8 @@ def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
 
 
 class Calibration(msgspec.Struct, frozen=True):
-    """What came of it. `remarks` say which steps were not used, and `by_hand` what the patch leaves out."""
+    """The result of a calibration. `remarks` say which steps were not used, and `by_hand` what the patch
+    leaves out."""
 
     missions: int
     steps: int

@@ -92,7 +92,7 @@ class _Search:
         )
 
     def environment(self, environment: Environment) -> Environment:
-        """With the variables of all draws so far and of its own."""
+        """Returns the environment with the variables of all draws so far and of its own."""
         extrinsic = self._section(environment.extrinsic_changes, "", "state_")
         before = len(self.draws)
         initial = self._section(environment.initial_belief, "", "state")
@@ -236,7 +236,7 @@ def _extent(code: str, start: int, text: str) -> Extent:
 
 
 def _is_repeated(code: str, offset: int) -> bool:
-    """Whether one step may come more than once to what stands there."""
+    """Returns whether one step may come more than once to what stands there."""
     place = len((_BEFORE + code[:offset]).encode())
     node = tree_of(f"{_BEFORE}{code}\n}}").descendant_for_byte_range(place, place)
     while node is not None:

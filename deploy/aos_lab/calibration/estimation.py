@@ -22,7 +22,7 @@ __all__ = ["DrawEstimate", "Estimate", "estimate"]
 
 PRIOR = 0.5
 LEAST_DIFFERENCE = 0.1
-"""Whether a number is wrong by less than this, nobody asks."""
+"""Nobody asks whether a number is wrong by less than this."""
 NORMAL_QUANTILE = 1.96
 SWEEPS, FIRST_SWEEPS = 600, 150
 QUANTILE_SAMPLES = 400_000
@@ -32,7 +32,7 @@ Numbers = npt.NDArray[np.float64]
 
 
 class Estimate(msgspec.Struct, frozen=True):
-    """Of one outcome: how often it was drawn, as far as is known, and its probability.
+    """The estimate of one outcome: how often it was drawn, as far as is known, and its probability.
 
     `document` is the probability that the documents give it; with 0 they exclude it, which no record changes.
     """
@@ -44,17 +44,17 @@ class Estimate(msgspec.Struct, frozen=True):
 
     @property
     def is_inside(self) -> bool:
-        """Whether the document's number is one that the records allow."""
+        """True if the document's number is one that the records allow."""
         return self.probability.low <= self.document <= self.probability.high
 
     @property
     def is_excluded(self) -> bool:
-        """Whether the documents say that it never comes."""
+        """True if the documents say that it never comes."""
         return self.document == 0.0
 
 
 class DrawEstimate(msgspec.Struct, frozen=True):
-    """Of all outcomes of a draw, or of draws that share their numbers.
+    """The estimate of all outcomes of a draw, or of draws that share their numbers.
 
     With `is_counted` the records leave none of them open. `records_to_tell` is about how many it would take
     to contradict the document's numbers: if they are as wrong as the records have it, or by 0.1 if less.
@@ -68,12 +68,12 @@ class DrawEstimate(msgspec.Struct, frozen=True):
 
     @property
     def is_inside(self) -> bool:
-        """Whether the records allow the document's numbers; they do where they say nothing."""
+        """True if the records allow the document's numbers; they do where they say nothing."""
         return not self.count or all(outcome.is_inside for outcome in self.outcomes)
 
     @property
     def is_contradicted(self) -> bool:
-        """Whether the records are reason to change a number: one of an outcome that comes now and then."""
+        """True if the records are reason to change a number: one of an outcome that comes now and then."""
         possible = [outcome for outcome in self.outcomes if not outcome.is_excluded]
         if not self.count or len(possible) < 2 or self.draw.is_initial:
             return False
@@ -103,7 +103,8 @@ class _Parameters:
         return drawn
 
     def odds(self, drawn: npt.NDArray[np.int64], probabilities: Sequence[Numbers]) -> Numbers:
-        """Of each state of a layer: by how much its draws are likelier than with equal probabilities."""
+        """Returns for each state of a layer by how much its draws are likelier than with equal
+        probabilities."""
         odds = np.ones(len(drawn))
         for draw, owner in enumerate(self.of_draw):
             factors = np.r_[1.0, probabilities[owner] * self.sizes[draw]]
@@ -121,7 +122,7 @@ def estimate(
     lattices: Sequence[Lattice],
     on_sweep: Callable[[int, int], None] = lambda done, of: None,
 ) -> tuple[DrawEstimate, ...]:
-    """For each draw whose numbers no draw before it has."""
+    """Returns an estimate for each draw whose numbers no draw before it has."""
     random = np.random.default_rng(SEED)
     parameters = _Parameters(draws)
     fixed = [np.zeros(len(draw.outcomes)) for draw in draws]
@@ -242,7 +243,8 @@ def _records_to_tell(estimate: Estimate, records: float) -> int:
 
 
 def _is_improbable(outcome: Estimate, records: float) -> bool:
-    """Whether so many, or so few, of the records come in less than 2.5 of 100 cases by the document's number.
+    """Returns whether so many, or so few, of the records come in less than 2.5 of 100 cases by the document's
+    number.
 
     Of few records Jeffreys's interval leaves out more than that.
     """

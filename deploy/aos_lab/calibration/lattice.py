@@ -25,7 +25,7 @@ Numbers = npt.NDArray[np.float64]
 Outcomes = npt.NDArray[np.int64]
 
 _MAX_STATES = 5000
-"""In a layer. A mission of which so little is known says little about any draw."""
+"""The limit for one layer. A mission of which so little is known says little about any draw."""
 
 
 class Lattice(msgspec.Struct, frozen=True):
@@ -83,7 +83,7 @@ class Layers:
         return self._known[key]
 
     async def state(self, text: str) -> _State:
-        """What a state's variables are."""
+        """Returns the values of a state's variables."""
         if text not in self._states:
             single = msgspec.structs.replace(self._initial, states=1, particles=((1.0, text),))
             values = _values(await self._engine.import_belief(single))
@@ -102,7 +102,8 @@ class Layers:
 
 
 async def lattice_of(mission: RecordedMission, layers: Layers) -> Lattice:
-    """Up to the first step that the documents cannot explain, whatever their numbers; the remark names it."""
+    """Builds the lattice up to the first step that the documents cannot explain, whatever their numbers;
+    the remark names it."""
     start = await layers.begin()
     layer = [text for text, _ in start]
     odds = np.array([weight for _, weight in start])

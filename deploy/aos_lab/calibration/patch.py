@@ -1,4 +1,4 @@
-"""What documents would say with estimated numbers, as a unified diff. Nothing is changed here."""
+"""The documents with estimated numbers, as a unified diff. Nothing is changed here."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SAME = 0.5 * 10.0**-_DIGITS
 
 
 def proposed_numbers(estimate: DrawEstimate) -> tuple[float, ...]:
-    """In place of the draw's numbers; the weights of a discrete draw make 1.
+    """Returns the numbers in place of the draw's; the weights of a discrete draw make 1.
 
     An outcome outside its interval gets its share of the records. Those inside share the rest as the
     documents have them. What the documents exclude stays 0. An outcome that they allow and that never came

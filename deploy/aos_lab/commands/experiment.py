@@ -223,7 +223,7 @@ def statistics(
 
 
 def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: Sequence[str]) -> str:
-    """What runs the same missions again."""
+    """Returns the command that runs the same missions again."""
     command = f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}"
     if first_seed != 1:
         command += f" --first-seed {first_seed}"
@@ -231,7 +231,7 @@ def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: S
 
 
 def _known_optimum(out: Path, digest: str, setting: Setting, folder: Path) -> Optimum:
-    """What was worked out for the same documents and settings, or worked out now."""
+    """Reads the optimum that was worked out for the same documents and settings, or works it out now."""
     from aos_lab.experiments.optimum import Optimum, optimum_of
     from aos_lab.trials.setting import deployment_of
 

@@ -33,7 +33,7 @@ worlds.close()
 
 
 class Spaces(msgspec.Struct):
-    """What `aos gym --json` prints. `steps_per_second` is of all worlds together, None if not measured."""
+    """The output of `aos gym --json`. `steps_per_second` is of all worlds together, None if not measured."""
 
     action_space: str
     actions: tuple[str, ...]

@@ -53,8 +53,8 @@ def register(app: typer.Typer) -> None:
 
 
 class _Target(msgspec.Struct, frozen=True):
-    """What is solved: `digest` is of the compiled model or the file, `states` are the texts of its states,
-    which are not told apart by what is `left_out`."""
+    """The problem to solve: `digest` is of the compiled model or the file, `states` are the texts of its
+    states, which are not told apart by what is `left_out`."""
 
     model: ExplicitModel
     digest: str
@@ -63,7 +63,7 @@ class _Target(msgspec.Struct, frozen=True):
 
 
 class Report(msgspec.Struct):
-    """What `aos solve --json` prints.
+    """The output of `aos solve --json`.
 
     States are not told apart by the variables `left_out`. `history` is every progress; `graph_value` is what
     the graph gives.
@@ -140,7 +140,7 @@ def solve(
 
 
 def _check_names(exports: list[Path], graph: Path | None) -> None:
-    """Told before the work begins."""
+    """Refuses names of files with a wrong ending before the work begins."""
     for path in exports:
         if path.suffix not in WRITERS:
             raise typer.BadParameter(f"{path} needs to end in {' or '.join(WRITERS)}", param_hint="--export")

@@ -18,7 +18,7 @@ from aos_deploy.terminal import progress
 __all__ = ["register"]
 
 SHOWN_MISSIONS = 3
-"""Of those where a claim did not hold; all are in the JUnit file and in the JSON."""
+"""The number of missions shown where a claim did not hold; all are in the JUnit file and in the JSON."""
 
 
 def register(app: typer.Typer) -> None:

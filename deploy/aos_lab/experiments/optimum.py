@@ -42,7 +42,7 @@ class Optimum(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Regret(msgspec.Struct, frozen=True, kw_only=True):
-    """What is missing from the optimum to the missions' mean, which is `value`.
+    """The difference from the optimum to the missions' mean, which is `value`.
 
     `scale` is the difference of the largest and the smallest value of these missions. `share` is what is
     missing as a share of it; below 0 the missions were lucky, or ended where the documents would not.
@@ -55,7 +55,7 @@ class Regret(msgspec.Struct, frozen=True, kw_only=True):
 
 
 async def optimum_of(deployment: Deployment) -> Optimum:
-    """Of a deployment's mission, by SARSOP; IntractableError where the model cannot be listed."""
+    """Solves a deployment's mission by SARSOP; IntractableError where the model cannot be listed."""
     player = await ModelPlayer.prepared(ModelMissions.of(deployment))
     engine = await Engine.start(player.model, seed=1, keeps_belief=False)
     try:

@@ -1,4 +1,4 @@
-"""What missions in a simulated world have left besides actions: how fast they were, and pictures."""
+"""The traces of missions in a simulated world besides actions: how fast they were, and pictures."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def draw_plots(results: Results, folder: Path) -> dict[str, Path]:
 
 
 def _length(half: float) -> float:
-    """What is drawn to one side; nothing where the end is not known."""
+    """Returns the length of a bar to one side; 0 where the end is not known."""
     return max(0.0, half) if math.isfinite(half) else 0.0
 
 

@@ -1,4 +1,5 @@
-"""What came of an experiment: figures with intervals and verdicts of each part, and what it was run with."""
+"""The results of an experiment: figures with intervals and verdicts of each part, and what it was run
+with."""
 
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ _PACKAGES = ("eclipse-zenoh", "pybullet", "numpy")
 
 
 class Figures(msgspec.Struct, frozen=True, kw_only=True):
-    """Of the missions of one part. `value` is the discounted return, which only a model can count.
+    """The figures of one part's missions. `value` is the discounted return, which only a model can count.
 
     `counts` are the means of the experiment's counted steps. `world_goal` is the share of missions that have
     reached the goal in the simulated world, whatever the belief. `speed` is how many seconds are simulated in
@@ -64,7 +65,7 @@ class PartResult(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Surroundings(msgspec.Struct, frozen=True, kw_only=True):
-    """Where and when it was run."""
+    """The place and time of a run."""
 
     date: str
     machine: str
@@ -144,7 +145,8 @@ def surroundings() -> Surroundings:
 
 
 def _commit() -> str:
-    """Of the checkout that this runs from; with a + where files differ from it, empty where it is none."""
+    """Returns the commit of the checkout that this runs from, with a + where files differ from it; empty
+    without a checkout."""
     try:
         asked = subprocess.run(
             ["git", "describe", "--always", "--abbrev=12", "--exclude=*", "--dirty=+"],

@@ -1,4 +1,4 @@
-"""How often the steps of a script come out how, and what that says about documents."""
+"""The shares of a script's steps that come out in each way, and what that says about documents."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Statistics(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def steps_of(part: str, missions: Sequence[RecordedMission]) -> Iterator[ScriptedStep]:
-    """Of whole missions of the same script."""
+    """Yields the steps of whole missions of the same script."""
     for number, step in enumerate(missions[0].steps if missions else ()):
         told = Counter(mission.steps[number].response for mission in missions)
         yield ScriptedStep(

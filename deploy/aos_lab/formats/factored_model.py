@@ -1,4 +1,4 @@
-"""From a POMDP over variables to one over states: those that can be reached, and no others."""
+"""The way from a POMDP over variables to one over states: those that can be reached, and no others."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def flatten(
 
 
 class _Steps(msgspec.Struct, frozen=True):
-    """What an action does in states: outcomes by state code, and the key of what is observed."""
+    """The effects of an action in states: outcomes by state code, and the key of what is observed."""
 
     before: Integers
     after: Integers

@@ -26,7 +26,7 @@ Outcomes = tuple[Integers, Integers, Floats]
 
 
 class Variable(msgspec.Struct, frozen=True, dict=True):
-    """What a variable can be: a state before or after the step, an action, an observation."""
+    """A variable with its values: a state before or after the step, an action, an observation."""
 
     name: str
     values: tuple[str, ...]
@@ -56,7 +56,7 @@ class DenseFactor(msgspec.Struct, frozen=True):
         return np.broadcast_to(self.cells[tuple(columns[axis] for axis in self.axes)], rows)
 
     def outcomes(self, columns: Columns, rows: int) -> Outcomes:
-        """What the distribution gives for every row of its parents."""
+        """Returns the outcomes of the distribution for every row of its parents."""
         parents = tuple(columns[axis] for axis in self.axes[:-1])
         chances = self.cells[parents] if parents else np.tile(self.cells, (rows, 1))
         row, value = np.nonzero(chances)
@@ -77,7 +77,7 @@ class SparseFactor(msgspec.Struct, frozen=True):
         raise TypeError("a distribution is drawn from")
 
     def outcomes(self, columns: Columns, rows: int) -> Outcomes:
-        """What the distribution gives for every row of its parents."""
+        """Returns the outcomes of the distribution for every row of its parents."""
         code = np.zeros(rows, dtype=np.int64)
         for axis, size in zip(self.axes[:-1], self.sizes[:-1], strict=True):
             code = code * size + columns[axis]

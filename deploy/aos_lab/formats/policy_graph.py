@@ -20,7 +20,7 @@ from aos_solver.offline.explicit_model import ExplicitModel, Floats, Integers
 __all__ = ["OVER", "GraphNode", "PolicyGraph", "policy_graph"]
 
 OVER = -1
-"""In place of a node: the mission is over."""
+"""The mark in place of a node where the mission is over."""
 
 _NEGLIGIBLE = 1e-9
 _ROUNDING_DIGITS = 9
@@ -134,7 +134,7 @@ class _Building:
         return int(self._region_of[belief > 0].max())
 
     def outcomes_of(self, number: int) -> _NodeOutcomes:
-        """What a finished node leads to."""
+        """Returns the outcomes of a finished node."""
         node, matrices = self.nodes[number], self._matrices
         following = np.full(len(self.model.observations), len(self.nodes))
         for observation, target in node.next.items():
@@ -153,7 +153,7 @@ class _Building:
 
 
 class _Matrices:
-    """What an action leads to, by observation."""
+    """The outcomes of each action, by observation."""
 
     def __init__(self, model: ExplicitModel) -> None:
         self._model = model
@@ -173,7 +173,7 @@ class _Matrices:
         self._first = np.searchsorted(self.action, np.arange(len(model.actions) + 1))
 
     def part(self, action: int) -> slice:
-        """Where the outcomes of an action stand."""
+        """Returns the place of an action's outcomes."""
         return slice(self._first[action], self._first[action + 1])
 
     def successors(self, belief: Floats, action: int) -> Iterator[tuple[int, Floats]]:
@@ -189,7 +189,8 @@ class _Matrices:
 
 
 class _NodeOutcomes(msgspec.Struct, frozen=True):
-    """What a node's action leads to from the states of its region: the cells of (node, state) that follow."""
+    """The outcomes of a node's action from the states of its region: the cells of (node, state) that
+    follow."""
 
     states: Integers
     rewards: Floats
@@ -199,7 +200,7 @@ class _NodeOutcomes(msgspec.Struct, frozen=True):
 
 
 def _value(building: _Building, nodes: tuple[GraphNode, ...]) -> float:
-    """What following the graph gives, by going over all nodes and states until nothing changes.
+    """Returns the value of following the graph, by going over all nodes and states until nothing changes.
 
     What follows an observation that a node does not expect counts as nothing.
     """

@@ -46,7 +46,8 @@ def _words(text: str) -> Iterator[Word]:
 
 
 def _begins(words: list[Word], place: int) -> bool:
-    """Whether a statement begins here: a keyword that a colon follows, and that is no field itself."""
+    """Returns whether a statement begins here: a keyword that a colon follows, and that is no field
+    itself."""
     if words[place].text not in _KEYWORDS or (place > 0 and words[place - 1].text == ":"):
         return False
     following = [word.text for word in words[place + 1 : place + 3]]

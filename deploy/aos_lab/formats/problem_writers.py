@@ -33,7 +33,7 @@ def write_problem(model: ExplicitModel, path: Path) -> None:
 
 
 class _Names:
-    """What states, actions and observations are called in the file."""
+    """The names of states, actions and observations in the file."""
 
     def __init__(self, model: ExplicitModel) -> None:
         self.states = symbols(model.states)

@@ -15,7 +15,7 @@ _RESERVED = frozenset({
 
 
 def symbols(names: Iterable[str]) -> list[str]:
-    """For each name one of letters, digits and `_` that is like it and unlike all others."""
+    """Returns for each name one of letters, digits and `_` that is like it and unlike all others."""
     found: dict[str, None] = {}
     for name in names:
         symbol = _NO_SYMBOL.sub("_", name).strip("_") or "x"

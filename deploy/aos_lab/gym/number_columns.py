@@ -1,4 +1,4 @@
-"""Where each number that a robot may observe stands in a row of numbers.
+"""The place of each number that a robot may observe in a row of numbers.
 
 Names of all skills share a row: a name has one column, or as many as there is room for where it is an array.
 """
@@ -51,7 +51,8 @@ class NumberColumns:
                 self._width[action, place] = widths[number.name]
 
     def rows(self, actions: NDArray[np.int32], steps: WorldSteps) -> Numbers:
-        """What was observed in each world after an action in each; elements without a column are left out."""
+        """Returns the numbers observed in each world after an action in each; elements without a column
+        are left out."""
         shape = (len(actions), len(self.names))
         numbers = Numbers(np.zeros(shape), np.zeros(shape, np.int8))
         worlds = np.frombuffer(steps.number_worlds, np.int32)

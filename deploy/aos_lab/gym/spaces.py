@@ -1,4 +1,4 @@
-"""Which observations there are.
+"""The observations that there are.
 
 Numbers are what learning programs take, and a model lists the responses of its skills; so an observation
 is a number. Text observations have no list. They are given as their bytes, in an array of fixed length: what

@@ -20,10 +20,10 @@ from aos_solver.mission.hot_plug import build_project
 __all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes"]
 
 ENDINGS = ("", "goal", "failure", "over")
-"""How an episode has ended, by number."""
+"""The endings of an episode, by number."""
 
 TEXT_BYTES = 62
-"""What a text observation has room for; shorter ones end in zeros."""
+"""A text observation has room for this many bytes; shorter ones end in zeros."""
 
 T = TypeVar("T")
 

@@ -24,7 +24,7 @@ from aos_runtime.lifecycle import root_cause
 __all__ = ["HERE", "Played", "play_campaign"]
 
 HERE = "local"
-"""Where missions are played: on this machine."""
+"""The name of this machine as the place where missions are played."""
 
 
 class Played(msgspec.Struct, frozen=True):
@@ -119,7 +119,7 @@ async def _player(setting: Setting, deployment: Deployment, world: Deployment | 
 
 
 def _kept(records: Path, digest: str) -> list[Trial]:
-    """What was recorded with the same documents and settings; a line that was cut short is left out."""
+    """Reads what was recorded with the same documents and settings; a line that was cut short is left out."""
     trials = []
     for line in records.read_bytes().splitlines() if records.is_file() else ():
         try:
@@ -132,7 +132,7 @@ def _kept(records: Path, digest: str) -> list[Trial]:
 
 
 def _digest(setting: Setting, deployment: Deployment, world: Deployment | None) -> str:
-    """Of all that a mission's outcome depends on beside its seed."""
+    """Returns the digest of all that a mission's outcome depends on beside its seed."""
     whole = hashlib.sha256(f"{__version__} {setting.by}".encode())
     whole.update(" > ".join(setting.script).encode())
     whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))

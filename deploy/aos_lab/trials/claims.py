@@ -36,7 +36,7 @@ _MODEL_SHARE, _SYSTEM_SHARE = 0.95, 0.9
 
 
 class Count(msgspec.Struct, frozen=True, kw_only=True):
-    """How many steps of a mission a pattern names."""
+    """The number of a mission's steps that a pattern names."""
 
     step: str
     at_least: Number = 0
@@ -61,7 +61,7 @@ class Around(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class When(msgspec.Struct, frozen=True, kw_only=True):
-    """Which missions a claim is about: what was done in them, with the words of a claim."""
+    """The missions that a claim is about: what was done in them, with the words of a claim."""
 
     starts: tuple[str, ...] = ()
     some: str | None = None
@@ -111,7 +111,7 @@ class Claim(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
-    """What came of a claim: in how many of how many missions it held, and the seeds where it did not."""
+    """The result of a claim: in how many of how many missions it held, and the seeds where it did not."""
 
     says: str
     held: int
@@ -123,12 +123,13 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def word(self) -> str:
-        """What a report says of it; where no mission was one that the claim is about, there was no case."""
+        """The word of a report for it; where no mission was one that the claim is about, there was no
+        case."""
         return "seen" if self.is_seen else "not seen" if self.missions else "no case"
 
 
 def has_check(claim: Claim) -> bool:
-    """Whether a claim says anything that could fail."""
+    """Returns whether a claim says anything that could fail."""
     return any(getattr(claim, name) not in (None, ()) for name in _CHECKS)
 
 
@@ -157,7 +158,7 @@ def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:
 
 
 def matches(pattern: str, step: str) -> bool:
-    """Whether a pattern names a step, which is written as `action > response`."""
+    """Returns whether a pattern names a step, which is written as `action > response`."""
     return any(_one_matches(each.strip(), step) for each in pattern.split(" | "))
 
 

@@ -15,7 +15,7 @@ __all__ = ["Tested", "failed_missions", "verdict_text", "write_junit"]
 
 
 class Tested(msgspec.Struct, frozen=True, kw_only=True):
-    """What came of a test."""
+    """The result of a test."""
 
     verdicts: tuple[Verdict, ...]
     trials: tuple[Trial, ...]

@@ -22,7 +22,7 @@ from aos_solver.mission.simulation import simulate_mission
 __all__ = ["ModelMissions", "ModelPlayer"]
 
 DEFAULT_SIMULATIONS = 100_000
-"""As in the commands, where neither simulations nor a time is given."""
+"""The number is that of the commands, where neither simulations nor a time is given."""
 
 
 class ModelMissions(msgspec.Struct, frozen=True):

@@ -20,13 +20,13 @@ from aos_runtime.distribution import pip_install
 __all__ = ["OWN", "RayPlayer"]
 
 OWN = "ray"
-"""In place of an address: a Ray of our own on this machine, with a worker for each processor."""
+"""The word in place of an address: a Ray of our own on this machine, with a worker for each processor."""
 
 _PACKAGES = ("aos_protocol", "aos_language", "aos_runtime", "aos_solver", "aos_deploy", "aos_lab")
-"""What plays missions of the model."""
+"""The packages that play missions of the model."""
 
 REACH_S = 30.0
-"""For the cluster to answer, and for a machine of it to say what it has."""
+"""The cluster has this time to answer, and a machine of it to say what it has."""
 MISSION_S = 1800.0
 """A mission that takes longer, with the compilation before the first, ends the command."""
 
@@ -178,7 +178,7 @@ def _sources_of(names: tuple[str, ...]) -> tuple[str, str]:
 
 
 _ask_sources = _sources_of
-"""As it is sent, whatever stands in its place here."""
+"""The function as it is sent, whatever stands in its place here."""
 
 
 def _by_value(function: Any) -> Any:
@@ -191,7 +191,8 @@ def _by_value(function: Any) -> Any:
 
 
 async def _answer(reference: Any, timeout_s: float, what: str) -> Any:
-    """What a remote call gives; its AosError, or DeployError AOS809 where there is no answer."""
+    """Returns what a remote call gives; raises its AosError, or DeployError AOS809 where there is no
+    answer."""
     try:
         return await asyncio.wait_for(asyncio.wrap_future(reference.future()), timeout_s)
     except TimeoutError:
@@ -209,7 +210,7 @@ async def _answer(reference: Any, timeout_s: float, what: str) -> Any:
 
 
 def _first_line(error: BaseException) -> str:
-    """What an error says, with the next line where the first one only announces it."""
+    """Returns the first line of an error, with the next line where the first one only announces it."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     if not lines:
         return type(error).__name__

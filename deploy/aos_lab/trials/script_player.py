@@ -97,7 +97,7 @@ class ScriptPlayer:
             await evaluator.close()
 
     async def _response(self, world: Any, action: GroundedAction) -> tuple[str, dict[str, Any]]:
-        """What came back, and the fields that the skill was called with."""
+        """Calls the skill and returns what came back, and the fields that it was called with."""
         evaluator = self._evaluators[action.skill]
         fields = await evaluator.begin(action.parameters)
         world.begin()

@@ -1,4 +1,4 @@
-"""What a mission is run with: a deploy file, and what is different from it."""
+"""The setting of a mission: a deploy file, and what is different from it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from aos_protocol.errors import DeployError
 __all__ = ["Player", "Setting", "deployment_of", "world_deployment_of"]
 
 Player = Literal["model", "system", "system-model"]
-"""Who plays the skills: the documents' model in this process, or a whole system, by the deploy file's
+"""The player of the skills: the documents' model in this process, or a whole system, by the deploy file's
 adapters or by the model."""
 
 

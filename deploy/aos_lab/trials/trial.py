@@ -9,7 +9,7 @@ import msgspec
 __all__ = ["NOTHING_OBSERVED", "Trial"]
 
 NOTHING_OBSERVED = "no observation"
-"""What stands in a step that brought none; no response has a space."""
+"""The text in a step that brought none; no response has a space."""
 
 
 class Trial(msgspec.Struct, frozen=True, kw_only=True):

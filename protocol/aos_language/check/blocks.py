@@ -19,7 +19,7 @@ __all__ = [
 
 
 class Role(msgspec.Struct, frozen=True):
-    """What a block is for: its name in messages, the copies of the state it may read and may write."""
+    """The task of a block: its name in messages, the copies of the state it may read and may write."""
 
     title: str
     reads: tuple[str, ...]

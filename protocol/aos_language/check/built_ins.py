@@ -22,7 +22,8 @@ BUILT_INS = {
 _BY_LOWER = {name.lower(): name for name in BUILT_INS["AOS"]}
 _OWNER_BY_LOWER = {owner.lower(): owner for owner in BUILT_INS}
 _ALIKE = 0.85
-"""How much of a function's name has to be that of a built-in. Any function of C++ may stand there as well."""
+"""A share of a function's name, from 0 to 1: with that much of a built-in's name it is taken for a
+misspelling. Any function of C++ may stand there as well."""
 
 
 def check_built_in(

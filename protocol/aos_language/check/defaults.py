@@ -40,7 +40,8 @@ def _writes(variable: StateVariable) -> list[Mention]:
 
 
 def _element(variable: StateVariable, mention: Mention) -> str:
-    """What is set, as it is written; a change of what is there already is another one for each variable."""
+    """Returns the text that is set; a change of a value that is there already is another one for each
+    variable."""
     assert variable.default_code is not None
     written = variable.default_code.code[mention.extent.start : mention.extent.end]
     is_set = mention.access is Access.WRITE

@@ -99,7 +99,8 @@ def _temporary_enums(blocks: Iterable[tuple[Assignment, ...]]) -> dict[str, int]
 
 
 def _declared_names(pieces: Iterable[Block]) -> frozenset[str]:
-    """What any code of the document declares: a name may be used in a later snippet of its section."""
+    """Returns all names that the document's code declares: a name may be used in a later snippet of its
+    section."""
     return frozenset(each.name for piece in pieces for each in read_block(piece).declarations)
 
 
@@ -117,7 +118,7 @@ def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings
 
 
 class _Around(msgspec.Struct, frozen=True):
-    """What the document's other code declares: enums with how many values they have, and all names."""
+    """The declarations in the document's other code: enums with how many values they have, and all names."""
 
     enum_sizes: dict[str, int]
     declared: frozenset[str]
@@ -381,7 +382,7 @@ class _BlockCheck:
         return self._block.snippet.locate(extent.line, extent.column)
 
     def _part_span(self, extent: Extent, part: str) -> Span:
-        """Where a name stands inside a path."""
+        """Returns the place of a name inside a path."""
         text = self._cpp.code[extent.start : extent.end]
         match = re.search(rf"(?<![\w]){re.escape(part)}(?!\w)", text)
         if match is None:

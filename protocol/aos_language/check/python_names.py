@@ -22,7 +22,7 @@ from aos_protocol.spelling import nearest, quoted
 __all__ = ["PythonNames", "check_names", "column_of", "top_level_names"]
 
 _OF_SKILL = frozenset({"__skill_status", "__skill_error"})
-"""What rules can say of a skill that has failed."""
+"""The names by which rules read how a skill has failed."""
 _INPUT, _PARAMETERS = "__input", "parameters"
 _BUILT_IN_NAMES = frozenset(dir(builtins))
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -30,7 +30,7 @@ _OF_OTHER_LANGUAGES = {"true": "True", "false": "False", "null": "None", "nullpt
 
 
 class PythonNames(msgspec.Struct, frozen=True):
-    """What there is for the code of one mapping.
+    """The names that the code of one mapping can use.
 
     `known` are all names; `local_names` those of local variables, which are meant most often; `parameters`
     those of the skill. `is_open` where an `import *` brings names that nobody knows here.
@@ -85,7 +85,8 @@ def _imported_names(imports: Iterable[Import]) -> frozenset[str] | None:
 
 
 def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
-    """What the low-level document gives to the mappings' modules: types, constants, what their code binds."""
+    """Returns the names from the low-level document in the mappings' modules: types, constants, what their
+    code binds."""
     if document is None:
         return frozenset()
     names = {each.name for each in document.types} | {each.name for each in document.constants}
@@ -98,7 +99,7 @@ def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
 
 
 def _names_of_shared(snippet: Snippet | None) -> frozenset[str]:
-    """What the environment's `shared_mapping_code` gives to the mappings' modules."""
+    """Returns the names that the environment's `shared_mapping_code` gives to the mappings' modules."""
     if snippet is None:
         return frozenset()
     try:

@@ -1,4 +1,4 @@
-"""What a skill document reports against what its abstraction mapping gives."""
+"""The responses that a skill document reports against those that its abstraction mapping gives."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["check_responses"]
 
 _RESPONSES = frozenset({"__moduleResponse", "__moduleResponseStr"})
 _NO_RESPONSE = "DefaultObservation"
-"""What comes back where nothing says it: of a model, and of a mapping without rules."""
+"""This response comes back where nothing says it: of a model, and of a mapping without rules."""
 _KNOWN_TO_CPP = frozenset({"AOS", "AOSUtils", "false", "nullptr", "NULL", "this", "true"})
 
 

@@ -1,4 +1,4 @@
-"""What the names of a project mean: types, enum values, state variables, skills."""
+"""The meanings of a project's names: types, enum values, state variables, skills."""
 
 from __future__ import annotations
 

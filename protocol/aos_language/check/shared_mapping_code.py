@@ -52,7 +52,8 @@ def check_shared_mapping_code(
 
 
 def _keeping(tree: ast.Module, names: frozenset[str]) -> Iterator[tuple[ast.expr | ast.stmt, str]]:
-    """Where a function changes what all activations would share."""
+    """Yields the places where a function changes what all activations would share, and what is wrong with
+    each."""
     for function in ast.walk(tree):
         if not isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
             continue

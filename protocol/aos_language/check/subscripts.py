@@ -1,4 +1,4 @@
-"""What stands in the brackets of an access path."""
+"""The contents of the brackets in an access path."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 
 
 def subscripts_of(mention: Mention, code: str) -> Iterator[Extent | None]:
-    """For each `[...]` of the path in its order: where its one name stands; None where it is no lone name."""
+    """Yields for each `[...]` of the path, in order, the place of its one name; None where it is no lone
+    name."""
     depth = 0
     start = mention.extent.start
     for at in range(mention.extent.start, mention.extent.end):

@@ -1,4 +1,4 @@
-"""How C++ expressions read local variables that may have no value yet, and which they set."""
+"""The order in which C++ expressions read local variables that may have no value yet, and set them."""
 
 from __future__ import annotations
 

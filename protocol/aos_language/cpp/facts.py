@@ -1,4 +1,4 @@
-"""What is found in a C++ snippet, as data; `snippets` fills it."""
+"""The findings of a C++ snippet, as data; `snippets` fills them in."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ READING_FUNCTIONS = frozenset({
 
 
 class Access(StrEnum):
-    """What a mention does. BIND makes a reference, a pointer or an iterator, through which it may change."""
+    """The effects that a mention can have. BIND makes a reference, a pointer or an iterator, through which
+    it may change."""
 
     READ = "read"
     WRITE = "write"

@@ -1,4 +1,4 @@
-"""What flows where in C++ statements: which names a change of a name may depend on.
+"""The flow of values in C++ statements: the names that a change of a name may depend on.
 
 The reading is by name and without order: a flow stands for every time that the statement runs. Where the text
 leaves a doubt, a name counts as `used`: it may have an effect on anything. So a name that no chain of flows
@@ -237,7 +237,7 @@ class _Reading:
         self.flows.append(Flow(name, control | names_in(node)))
 
     def _no_effects(self, node: tree_sitter.Node, control: _Control) -> None:
-        """Where a value is expected, an effect on the side is a doubt."""
+        """Notes an effect on the side as a doubt, where a value is expected."""
         if _has_effects(node, self._reading):
             self.used |= control | names_in(node)
 
@@ -278,7 +278,8 @@ def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
 
 
 def is_draw(node: tree_sitter.Node) -> bool:
-    """Whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or `AOSUtils::SampleDiscrete(w)`."""
+    """Returns whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or
+    `AOSUtils::SampleDiscrete(w)`."""
     function = node.child_by_field_name("function") if node.type == "call_expression" else None
     return function is not None and _DRAW.fullmatch(_text(function)) is not None
 
@@ -298,7 +299,7 @@ def _of_state(node: tree_sitter.Node) -> Name | None:
 
 
 def _root(node: tree_sitter.Node | None) -> Name | None:
-    """What changes when a place changes: `state__.x[i].y` is a part of `x`."""
+    """Returns the name that changes when a place changes: `state__.x[i].y` is a part of `x`."""
     while node is not None:
         if node.type == "identifier":
             return _WHOLE_STATE if _text(node) in STATES else Name(_text(node))
@@ -333,7 +334,8 @@ def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
 
 
 def _has_effects(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
-    """Whether evaluating it may change anything that is named in it; calls of `reading` functions do not."""
+    """Returns whether evaluating it may change anything that is named in it; calls of `reading` functions
+    do not."""
     return any(_is_effect(part, reading) for part in _below(node))
 
 
@@ -344,7 +346,7 @@ def _is_effect(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
 
 
 def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
-    """Whether a call may change its object or an argument."""
+    """Returns whether a call may change its object or an argument."""
     function = call.child_by_field_name("function")
     if function is None or function.type == "primitive_type":
         return False
@@ -358,7 +360,7 @@ def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
 
 
 def _gives_handle(node: tree_sitter.Node) -> bool:
-    """Whether the value of an expression may be an iterator or a pointer."""
+    """Returns whether the value of an expression may be an iterator or a pointer."""
     for part in _below(node):
         field = part.child_by_field_name("field") if part.type == "field_expression" else None
         if field is not None and (_text(field) in HANDLE_METHODS or _text(field).endswith("Objects")):

@@ -24,7 +24,7 @@ SPECIAL_NAMES = frozenset({
     "__moduleResponse", "__moduleResponseStr", "__observed", "__possibleParameters", "__reward",
     "__stopEvaluatingState",
 })  # fmt: skip
-"""What sections of model code read and set."""
+"""Sections of model code read and set these names."""
 
 COMPILER_NAMES = re.compile(r"__[a-zA-Z]+__|__(builtin|func|int|attribute|asm|restrict|typeof)\w*")
 """Names that compilers give a meaning."""

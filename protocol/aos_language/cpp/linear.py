@@ -21,7 +21,7 @@ _DOUBLE = ("double", "auto")
 
 
 def linear_draws(cpp: Cpp, result: str, elsewhere: frozenset[str]) -> tuple[bool, ...]:
-    """For each `SampleNormal` and `SampleUniform` in the order of the text: whether `result` is linear in it.
+    """Returns for each `SampleNormal` and `SampleUniform`, in order, whether `result` is linear in it.
 
     Such a draw goes into `result` alone, by sums, differences, and factors and divisors that are free of it,
     maybe through local variables. `elsewhere` are names that other code knows.
@@ -32,7 +32,8 @@ def linear_draws(cpp: Cpp, result: str, elsewhere: frozenset[str]) -> tuple[bool
 
 
 def adds_only_to(cpp: Cpp, result: str) -> bool:
-    """Whether no statement looks at `result`: each mention of it is the target of `=`, `+=` or `-=`."""
+    """Returns whether no statement looks at `result`: each mention of it is the target of `=`, `+=` or
+    `-=`."""
     if result not in cpp.code:
         return True
     root = _root(cpp)
@@ -105,7 +106,8 @@ class _Linear:
         return operator in ("+", "-")
 
     def _follows_local(self, declarator: tree_sitter.Node) -> bool:
-        """Whether it declares a plain number, once, that never changes and is passed on by each use."""
+        """Returns whether it declares a plain number, once, that never changes and is passed on by each
+        use."""
         name, declaration = declarator.child_by_field_name("declarator"), declarator.parent
         kind = declaration.child_by_field_name("type") if declaration is not None else None
         if name is None or name.type != "identifier" or kind is None or _text(kind) not in _DOUBLE:
@@ -128,7 +130,7 @@ def _root(cpp: Cpp) -> tree_sitter.Node | None:
 
 
 def _below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
-    """In the order of the text."""
+    """Yields the node and all nodes below it in the order of the text."""
     if node is not None:
         yield node
         for child in node.children:

@@ -19,7 +19,8 @@ __all__ = ["DrawingLoop", "Loops", "Scope", "loops_of"]
 
 
 class Scope(msgspec.Struct, frozen=True):
-    """What a snippet finds when it begins, and what it leaves to the next one of its function.
+    """The names that a snippet finds when it begins, and those that it leaves to the next one of its
+    function.
 
     `variables` are the names of variables; `lambdas` are those of lambdas, `drawing` those of them that draw,
     and `captured` is every name that a lambda's text has.
@@ -226,7 +227,7 @@ def _declared(node: tree_sitter.Node, *, of_lambdas: bool = True) -> list[tuple[
 
 
 def _is_lambda(value: tree_sitter.Node | None) -> bool:
-    """Whether it is a lambda that keeps nothing from call to call."""
+    """Returns whether it is a lambda that keeps nothing from call to call."""
     is_lambda = value is not None and value.type == "lambda_expression"
     return is_lambda and not any(_text(part) == "mutable" for part in _below(value))
 
@@ -253,7 +254,7 @@ def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str,
 
 
 def _unset(node: tree_sitter.Node) -> Iterator[int]:
-    """Where a declaration's variables without a first value end."""
+    """Yields the ends of the declaration's variables without a first value."""
     if node.type != "declaration" or any(child.type == "storage_class_specifier" for child in node.children):
         return
     for declarator in node.children_by_field_name("declarator"):
@@ -262,7 +263,7 @@ def _unset(node: tree_sitter.Node) -> Iterator[int]:
 
 
 def _counts(loop: tree_sitter.Node) -> bool:
-    """Whether it is a `for` over a variable that only its last part changes."""
+    """Returns whether it is a `for` over a variable that only its last part changes."""
     update, condition = loop.child_by_field_name("update"), loop.child_by_field_name("condition")
     body = loop.child_by_field_name("body")
     if loop.type != "for_statement" or update is None or condition is None or body is None:

@@ -330,7 +330,7 @@ def _by_start(item: Mention | Call | Declaration | Fault) -> int:
 
 
 def _character_offsets(code: str) -> list[int] | None:
-    """For each byte of the UTF-8 text the character it belongs to; None where they are the same."""
+    """Returns the character that each byte of the UTF-8 text belongs to; None where they are the same."""
     if code.isascii():
         return None
     offsets = [index for index, character in enumerate(code) for _ in character.encode("utf-8", "replace")]

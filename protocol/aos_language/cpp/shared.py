@@ -51,7 +51,7 @@ class SharedFunction(SharedName, frozen=True):
 
 
 class SharedMisuse(msgspec.Struct, frozen=True):
-    """What shared code cannot be, at a place of it."""
+    """A use that shared code cannot have, at a place of it."""
 
     extent: Extent
     message: str
@@ -59,7 +59,7 @@ class SharedMisuse(msgspec.Struct, frozen=True):
 
 
 class SharedCode(msgspec.Struct, frozen=True):
-    """What the text declares, in its order."""
+    """The declarations of the text, in its order."""
 
     cpp: Cpp
     names: tuple[SharedName, ...] = ()
@@ -321,7 +321,7 @@ def _name_node(declarator: tree_sitter.Node) -> tree_sitter.Node | None:
 
 
 def _only_read(parameter: tree_sitter.Node) -> bool:
-    """Whether a function can change nothing of its caller's through a parameter."""
+    """Returns whether a function can change nothing of its caller's through a parameter."""
     kind = _text(parameter).partition("=")[0]
     return _OTHER_TYPES.search(kind) is None or _CONSTANT_REFERENCE.match(kind.strip()) is not None
 

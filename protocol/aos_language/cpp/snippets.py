@@ -1,4 +1,4 @@
-"""What a C++ snippet of a document mentions, writes, calls and declares.
+"""The mentions, writes, calls and declarations in a C++ snippet of a document.
 
 Reading is tolerant: whatever the text is, the answer is a `Cpp`, with faults where it does not parse. A
 snippet with bracket, quote, comment or preprocessor faults could leave its function, so nothing else of it is

@@ -24,7 +24,7 @@ class Statement(msgspec.Struct, frozen=True):
 
 
 class Marks(msgspec.Struct, frozen=True):
-    """What to put in.
+    """The code to put in.
 
     `before` is an expression, evaluated before the statement, and before each test of a loop's condition.
     `after` is a statement, or nothing, for after an expression; `inside` begins the body of every lambda.
@@ -72,7 +72,7 @@ class _Marking:
         self._ends: list[tuple[int, str]] = []
 
     def in_order(self) -> list[tuple[int, str]]:
-        """What to put in at which byte of the tree's text: at one place what ends before what starts."""
+        """Returns the insertions by byte of the tree's text; at one place an end comes before a start."""
         return sorted([*reversed(self._ends), *self._starts], key=lambda insertion: insertion[0])
 
     def mark(self, root: tree_sitter.Node) -> None:

@@ -57,7 +57,7 @@ class Extent(NamedTuple):
 
 
 class FaultKind(StrEnum):
-    """Why a snippet cannot be placed in a function. SYNTAX is a hint, the compiler decides."""
+    """The reasons why a snippet cannot be placed in a function. SYNTAX is a hint, the compiler decides."""
 
     BRACKET = "bracket"
     QUOTE = "quote"
@@ -74,7 +74,7 @@ class Fault(msgspec.Struct, frozen=True):
     extent: Extent
     hint: str = ""
     instead: str = ""
-    """What to write in place of the first character, where that mends it."""
+    """The text that mends it in place of the first character, where there is one."""
 
 
 class Tokens(msgspec.Struct, frozen=True):
@@ -178,7 +178,7 @@ class _Brackets:
 
 
 class _Statements:
-    """Where statements end, and whether a semicolon is there.
+    """The ends of statements, and whether a semicolon is there.
 
     A brace opens a block where a statement may begin and after a closing parenthesis; every other brace is of
     a list, an enum or the like, and what it closes needs a semicolon too.
@@ -203,7 +203,7 @@ class _Statements:
         self._previous, self._end = token, end
 
     def missing_semicolons(self) -> tuple[int, ...]:
-        """To be called after the last token."""
+        """Returns the places where a semicolon is missing; it is called after the last token."""
         if not self._is_block:
             self._require_semicolon()
         return tuple(self._missing)

@@ -277,14 +277,15 @@ _STATEMENTS = {
 
 
 def _is_last_case(node: tree_sitter.Node) -> bool:
-    """Whether an `if` without `else` ends a chain that asks the same value for one constant after another."""
+    """Returns whether an `if` without `else` ends a chain that asks the same value for one constant after
+    another."""
     asked = _asked(node)
     outer = node.parent.parent if node.parent is not None and node.parent.type == "else_clause" else None
     return bool(asked) and outer is not None and outer.type == "if_statement" and _asked(outer) == asked
 
 
 def _asked(node: tree_sitter.Node) -> str:
-    """Of `if (x == A)` the `x`; empty for another condition."""
+    """Returns the `x` of `if (x == A)`; empty for another condition."""
     condition = node.child_by_field_name("condition")
     while condition is not None and condition.type in ("condition_clause", "parenthesized_expression"):
         condition = condition.named_children[0] if condition.named_child_count == 1 else None

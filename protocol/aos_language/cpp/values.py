@@ -1,4 +1,4 @@
-"""Which lone names an expression of C++ can be the value of: not those of its conditions and arguments."""
+"""The lone names that an expression of C++ can be the value of: not those of its conditions and arguments."""
 
 from __future__ import annotations
 

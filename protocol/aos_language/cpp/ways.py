@@ -1,4 +1,4 @@
-"""Which local variables have no value yet, along the ways that lead to a place in C++ statements."""
+"""The local variables that have no value yet, along the ways that lead to a place in C++ statements."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class State(msgspec.Struct):
         return State(dict(self.unset), self.ended)
 
     def set(self, name: str) -> None:
-        """From here on it has a value."""
+        """Notes that the name has a value from here on."""
         self.unset.pop(name, None)
 
 

@@ -67,5 +67,5 @@ def dedented(snippet: Snippet) -> Snippet:
 
 
 def _is_code(line: str) -> bool:
-    """Whether a line of Python says anything; comments may be indented as they like."""
+    """Returns whether a line of Python says anything; comments may be indented as they like."""
     return not line.lstrip(" \t").startswith("#") and not line.isspace() and line != ""

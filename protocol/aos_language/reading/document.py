@@ -1,4 +1,4 @@
-"""What a reader gives: one document with its identity."""
+"""The result of a reader: one document with its identity."""
 
 from __future__ import annotations
 
@@ -54,13 +54,14 @@ class Document(msgspec.Struct, frozen=True):
 
     @property
     def identity(self) -> tuple[DocumentKind, str]:
-        """What a newer document of the project replaces. There is one environment, whatever its name."""
+        """The kind and name that a newer document of the project replaces. There is one environment,
+        whatever its name."""
         is_single = self.kind in (DocumentKind.ENVIRONMENT, DocumentKind.LOW_LEVEL)
         return (self.kind, "" if is_single else self.name)
 
 
 def check_name(name: Text, what: str, findings: Findings) -> bool:
-    """Whether a name can stand in C++ and Python; an error where it cannot.
+    """Returns whether a name can stand in C++ and Python; adds an error where it cannot.
 
     What has such a name is read all the same: code that uses the name is not wrong as well.
     """
@@ -82,7 +83,8 @@ def enum_type(name: Text, values: Iterable[Text], findings: Findings) -> EnumTyp
 
 
 def array_type(type_name: str) -> tuple[str, bool, str]:
-    """Of `T[E]`, `T[]` or `T`: the element's type, whether it is an array, and the enum that indexes it."""
+    """Splits `T[E]`, `T[]` or `T`: the element's type, whether it is an array, and the enum that indexes
+    it."""
     match = _ARRAY.fullmatch(type_name)
     return (match[1], True, match[2]) if match is not None else (type_name, False, "")
 

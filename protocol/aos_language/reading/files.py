@@ -29,13 +29,13 @@ MAX_BUNDLE_BYTES = 8 * 1024 * 1024
 
 
 def is_document_name(name: str) -> bool:
-    """Whether a file of this name is read; hidden files are not."""
+    """Returns whether a file of this name is read; hidden files are not."""
     suffix = PurePath(name).suffix.lower()
     return not PurePath(name).name.startswith(".") and (suffix == ".json" or suffix in GRAMMARS)
 
 
 class ReadFile(msgspec.Struct, frozen=True):
-    """What reading one file gave: its lines where it is text, its document where it is one."""
+    """The result of reading one file: its lines where it is text, its document where it is one."""
 
     document: Document | None
     diagnostics: tuple[Diagnostic, ...]

@@ -50,27 +50,27 @@ class Record:
 
     @property
     def is_blank(self) -> bool:
-        """Whether nothing in it says anything: a form that was left empty."""
+        """True where nothing in it says anything: a form that was left empty."""
         return all(_is_blank(value) for _, value in self._members.values())
 
     def has(self, key: str) -> bool:
-        """Whether the key is there, whatever its value."""
+        """Returns whether the key is there, whatever its value."""
         self._known[key] = None
         return key in self._members
 
     def is_text(self, key: str) -> bool:
-        """Whether the key's value is a string."""
+        """Returns whether the key's value is a string."""
         return isinstance(self._value(key), JsonString)
 
     def is_code(self, key: str) -> bool:
-        """Whether the key's value is text or lines that say more than true or false."""
+        """Returns whether the key's value is text or lines that say more than true or false."""
         value = self._value(key)
         return isinstance(value, JsonArray) or (
             isinstance(value, JsonString) and value.text.strip().lower() not in _BOOLEANS
         )
 
     def key_span(self, key: str) -> Span:
-        """Where the key stands; the object where it does not."""
+        """Returns the place of the key; that of the object where the key is missing."""
         member = self._members.get(key)
         return self.source.span(member[0].start) if member else self.span
 
@@ -131,7 +131,7 @@ class Record:
         return default if found is None else found
 
     def value_span(self, key: str) -> Span:
-        """Where the value of a key stands."""
+        """Returns the place of a key's value; that of the object where the key is missing."""
         member = self._members.get(key)
         if member is None:
             return self.span

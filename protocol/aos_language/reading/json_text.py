@@ -91,7 +91,7 @@ JsonValue = JsonString | JsonNumber | JsonConstant | JsonArray | JsonObject
 
 
 def describe(value: JsonValue) -> str:
-    """What a value is, for messages."""
+    """Returns the kind of a value, for messages."""
     match value:
         case JsonString():
             return "a string"

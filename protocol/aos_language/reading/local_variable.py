@@ -1,4 +1,4 @@
-"""Which kind of local variable a set of attributes makes, the same for every dialect."""
+"""The kind of local variable that a set of attributes makes, the same for every dialect."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["LocalVariableParts", "build_local_variable"]
 
 
 class LocalVariableParts(msgspec.Struct, frozen=True, kw_only=True):
-    """What a document gives for a local variable, as it was found."""
+    """The attributes that a document gives a local variable, as they were found."""
 
     name: Text | None
     span: Span

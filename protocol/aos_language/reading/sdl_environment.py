@@ -160,7 +160,7 @@ def _field(part: Part, findings: Findings) -> Field | None:
 
 
 def _low_level_type(declaration: Declaration) -> tuple[Text, str | None]:
-    """What follows the name of an `anyValue` without `of <low-level type>`, and that type."""
+    """Splits the text after the name of an `anyValue` into the rest and the type of `of <low-level type>`."""
     rest = declaration.rest
     match = _LOW_LEVEL_TYPE.search(rest.text) if declaration.type == "anyValue" else None
     if match is None:

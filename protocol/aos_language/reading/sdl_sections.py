@@ -113,7 +113,8 @@ GRAMMARS: Mapping[str, Grammar] = {
         "constant": Word(parts={"code": _PYTHON}),
     },
 }
-"""What AOS 2.0 writes, and what JSON can say and it cannot: the language page marks which words are ours."""
+"""The words of each kind of file: those of AOS 2.0, and ours for what JSON can say and it cannot; the
+language page marks ours."""
 
 _KINDS = {
     ".ef": "the environment file (.ef)",
@@ -124,7 +125,7 @@ _KINDS = {
 
 
 def places_of_words(suffix: str) -> dict[str, str]:
-    """For the words that this kind of file does not know: in which kind they belong."""
+    """Returns for the words that this kind of file does not know the kind in which they belong."""
     return {
         word: f"in {_KINDS[other]}"
         for other, grammar in GRAMMARS.items()

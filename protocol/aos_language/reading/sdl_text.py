@@ -45,7 +45,7 @@ _CODE_LABELS = frozenset({
 
 
 class Body(Enum):
-    """What may stand below a section's line."""
+    """The contents that may stand below a section's line."""
 
     NONE = "none"
     CPP = "C++"
@@ -78,7 +78,7 @@ class Part(msgspec.Struct):
     is_list: bool = False
 
     def takes(self, line: Text) -> bool:
-        """Whether a line below belongs to it."""
+        """Returns whether a line below belongs to it."""
         if self.body is not Body.NONE or not self.is_list:
             return self.body is not Body.NONE
         given = [text for part in (self.value, *self.lines) if (text := part.text.strip())]
@@ -94,7 +94,7 @@ class Part(msgspec.Struct):
         return dedented(snippet) if self.body is Body.PYTHON else snippet
 
     def expression(self) -> Snippet | None:
-        """As `code`, without the blanks around it."""
+        """Returns `code` without the blanks around it."""
         code = self.code()
         return None if code is None else expression(code)
 
@@ -189,7 +189,7 @@ class _Scanner:
         return self._opens(word, line.after(match.start("word")), at)
 
     def _is_no_code(self, word: str, rest: str) -> bool:
-        """Whether a line in code that begins with a word of the grammar cannot be meant as code.
+        """Returns whether a line in code that begins with a word of the grammar cannot be meant as code.
 
         A name stands alone in Python where it is an expression, which is one line.
         """

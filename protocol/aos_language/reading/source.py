@@ -51,7 +51,7 @@ class Text(msgspec.Struct, frozen=True):
         return Text(self.text.strip(), span)
 
     def after(self, offset: int) -> Text:
-        """What follows the first `offset` characters."""
+        """Returns the text behind the first `offset` characters."""
         return Text(self.text[offset:], Span(self.span.file, self.span.line, self.span.column + offset))
 
     def words(self) -> list[Text]:

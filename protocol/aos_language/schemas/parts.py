@@ -1,4 +1,4 @@
-"""What the schemas of the JSON documents are put together from."""
+"""The parts that the schemas of the JSON documents are put together from."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ IMPORTS: Schema = {"$ref": "#/$defs/imports"}
 
 
 def shared_parts() -> dict[str, Schema]:
-    """What several documents use."""
+    """Returns the definitions that several documents use."""
     loop = object_of(
         "Repeats for each state variable of a compound type.",
         Type=TEXT,

@@ -1,4 +1,4 @@
-"""What is said on the bus, one module for each conversation.
+"""The messages on the bus, one module for each conversation.
 
 Every payload is an `Envelope` whose body is one of these structures. Times are wall-clock nanoseconds for
 people and journals; nothing is decided by them. Unknown fields are ignored, so that minor versions mix.

@@ -1,4 +1,4 @@
-"""What every message is, what is around it, and how a fault is answered."""
+"""The base of every message, the envelope around it, and the answer to a fault."""
 
 from __future__ import annotations
 

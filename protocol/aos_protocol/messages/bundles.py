@@ -29,7 +29,7 @@ class PushBundle(Message, frozen=True):
 
 
 class BundleReport(Message, frozen=True):
-    """What became of a bundle. `revision` is the project's revision now; 0 if it was never accepted.
+    """The result of a bundle. `revision` is the project's revision now; 0 if it was never accepted.
 
     A dropped bundle that is refused for what it lacks `is_waiting`: it is tried again when a project changes.
     """

@@ -1,4 +1,4 @@
-"""Where the mission is, what it believes, and what it decides."""
+"""The mission: its phase, its beliefs, and its decisions."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class MissionQuery(Message, frozen=True):
 
 
 class MissionState(Message, frozen=True):
-    """Where the mission is: a `phase` of waiting, building, planning, acting, holding, ended; how it ended.
+    """The mission: its `phase` of waiting, building, planning, acting, holding, ended; how it ended.
 
     `ending` is one of `goal`, `over`, `failure`, `nothing_worthwhile`, `too_risky`, `step_limit`,
     `skills_failed`, `cancelled`, `fault`, or empty while it runs. The first three are what the belief holds
@@ -114,7 +114,7 @@ class MissionState(Message, frozen=True):
 
 
 class ActionValue(Message, frozen=True):
-    """What one grounded action is worth.
+    """The worth of one grounded action.
 
     `q` is an estimate of the discounted return of the next decisions, as many as the record's `horizon`. The
     first of them is the action, and each later one is planned anew. `stderr` is the standard error of the
@@ -139,7 +139,7 @@ class PredictedObservation(Message, frozen=True):
 
 
 class ConstraintRisk(Message, frozen=True):
-    """How a decision stands to one constraint of the mission: `never` with more than this `probability`.
+    """One constraint of the mission in a decision: `never` with more than this `probability`.
 
     `left` is what the decisions before have left of it, and `risk` what this one takes: the probability,
     under the belief decided on, that the chosen action's step violates the constraint. `risks` are those of

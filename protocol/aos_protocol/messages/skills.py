@@ -55,7 +55,7 @@ class Activate(Message, frozen=True):
 
 
 class Outcome(Message, frozen=True):
-    """How an activation ended: `status` is `observed`, `refused` (nothing was begun), `failed` (the robot
+    """The end of an activation: `status` is `observed`, `refused` (nothing was begun), `failed` (the robot
     reports it), or `timed_out`, `cancelled` or `unknown`, where nobody knows what the skill did.
 
     `response` is the observation, empty unless observed. `numbers` are what was observed beside it, by name:
@@ -155,7 +155,7 @@ class Cancelled(Message, frozen=True):
 
 
 class SkillProgress(Message, frozen=True):
-    """How far a call is: `state` is `accepted`, `executing`, `cancelling`, `succeeded`, `failed`,
+    """The progress of a call: `state` is `accepted`, `executing`, `cancelling`, `succeeded`, `failed`,
     `timed_out` or `cancelled`; `progress` goes from 0 to 1; `text` is for people.
     """
 

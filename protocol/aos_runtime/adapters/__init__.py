@@ -1,4 +1,4 @@
-"""What an adapter is made of: the interface that ours and anybody else's are written against.
+"""The interface that adapters are written against, ours and anybody else's.
 
 An adapter turns calls into motion and the robot's data into topics. It is a class; `python -m
 aos_runtime.adapters` runs one of it in a process of its own.

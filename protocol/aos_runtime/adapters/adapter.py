@@ -65,7 +65,7 @@ class Call:
 
     @property
     def is_cancelled(self) -> bool:
-        """Whether it has to stop: for code in threads, which has to look by itself."""
+        """True where it has to stop: for code in threads, which has to look by itself."""
         return self._is_cancelled.is_set()
 
     def cancel(self) -> None:

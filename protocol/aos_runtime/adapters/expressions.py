@@ -18,7 +18,7 @@ _KNOWN = {name: value for name, value in vars(math).items() if not name.startswi
 
 
 def check_expression(text: str) -> str:
-    """What is wrong with an expression, empty for nothing."""
+    """Returns the mistake in an expression, empty where there is none."""
     try:
         compile(text.strip(), "<deploy file>", "eval")
     except (SyntaxError, ValueError) as error:

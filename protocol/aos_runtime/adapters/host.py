@@ -1,4 +1,4 @@
-"""What carries an adapter: it answers calls and cancellations on the bus, and tells topics and progress.
+"""The host of an adapter: it answers calls and cancellations on the bus, and tells topics and progress.
 
 Here stands what holds for every adapter: one call at a time, at most one motion for each id, a deadline for
 each call and for its cancellation, presence of each path that is served.
@@ -45,11 +45,11 @@ PROGRESS_EVERY_S = 0.05
 """Progress is told this often; of what comes faster, the newest."""
 
 MAX_UNSENT_MESSAGES = 10_000
-"""Of topic messages that come faster than they can be sent, the oldest give way."""
+"""The oldest topic messages give way where more than these wait to be sent."""
 
 _ASK_TIMEOUT_S = 5.0
 _LAST_WORDS_S = 2.0
-"""What a process has for saying why it ends, when something in it cannot be ended."""
+"""A process has this time for saying why it ends, when something in it cannot be ended."""
 
 _log = logging.getLogger("aos.adapter")
 
@@ -97,7 +97,7 @@ class _Running:
 
 
 class Host:
-    """What an adapter has of its surroundings. `options` are its own, from the deploy file in `folder`."""
+    """The surroundings of an adapter. `options` are its own, from the deploy file in `folder`."""
 
     def __init__(self, service: Service[AdapterSettings]) -> None:
         settings = service.settings
@@ -147,7 +147,7 @@ class Host:
         return [*self.bound, *(path for path in targets.values() if self.wants(path))]
 
     def wants(self, path: str) -> bool:
-        """Whether a path that is not bound by name falls to this adapter, by `"*"`."""
+        """Returns whether a path that is not bound by name falls to this adapter, by `"*"`."""
         named = {bound.strip("/") for bound in (*self.bound, *self._settings.elsewhere)}
         return self._settings.serves_others and path.strip("/") not in named
 
@@ -213,7 +213,7 @@ class Host:
     # --- the process ---------------------------------------------------------------------------------
 
     async def run(self) -> None:
-        """Until it is stopped, or cannot go on."""
+        """Runs until it is stopped, or cannot go on."""
         if self._settings.folder not in sys.path:
             sys.path.append(self._settings.folder)  # For classes that stand beside the deploy file.
         self._adapter = load_adapter(self._settings.adapter, self)

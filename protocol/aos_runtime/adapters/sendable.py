@@ -1,4 +1,4 @@
-"""What an adapter gives, made ready for the bus."""
+"""The values that an adapter gives, made ready for the bus."""
 
 from __future__ import annotations
 

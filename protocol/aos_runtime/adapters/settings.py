@@ -1,4 +1,4 @@
-"""What an adapter's process is started with."""
+"""The settings that an adapter's process is started with."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["AdapterSettings", "Binding"]
 
 
 class Binding(msgspec.Struct, frozen=True, kw_only=True):
-    """What a path is bound to.
+    """The binding of a path to the adapter's own terms.
 
     `target` is what the adapter calls it, None for the path itself. With `fields` the call has these fields,
     with `result` the answer has these; each value is an expression over the fields that come in.

@@ -1,4 +1,4 @@
-"""What an adapter that is started by a command is told: by its words and by its environment."""
+"""The settings of an adapter that is started by a command: from its words and its environment."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _end(text: str) -> NoReturn:
 
 
 def _run_dir(settings: AdapterSettings, environment: Mapping[str, str]) -> Path:
-    """Where the ledger of calls is kept: in the run's folder; on another host among temporary files."""
+    """Returns the folder of the ledger of calls: the run's folder, or on another host a temporary one."""
     is_here = settings.endpoint == environment["AOS_ENDPOINT"]
     if is_here and settings.run_dir:
         return Path(settings.run_dir)

@@ -41,11 +41,11 @@ from aos_runtime.subscription import merged
 __all__ = ["Surroundings", "refused", "run_activation"]
 
 CATCH_UP_S = 0.5
-"""How long to wait, after the call, for topic messages that were sent during it."""
+"""An activation waits so long, after the call, for topic messages that were sent during it."""
 
 _REPLY_GRACE_S = 0.2
 _CANCEL_S = 0.25
-"""How long an activation that is late waits for word that its skill has stopped; the next one waits on."""
+"""An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
 
 _BATCH = 256
 _QUEUE_SIZE = 4096
@@ -57,13 +57,14 @@ _STATUS = {
     "AOS606": "unknown",
     **dict.fromkeys(("AOS502", "AOS505", "AOS506", "AOS511", "AOS512", "AOS514"), "refused"),
 }
-"""What an error says about the skill; AOS606 is a defect of the adapter, in the middle of anything."""
+"""The status of the skill by the code of an error; AOS606 is a defect of the adapter, in the middle of
+anything."""
 
 _log = logging.getLogger("aos.middleware")
 
 
 class Surroundings(NamedTuple):
-    """What an activation reaches outside: the bus, the robot's keys, the time.
+    """The outside of an activation: the bus, the robot's keys, the time.
 
     `published` is what had been sent on each topic when the last call ended; each activation updates it.
     `low_level` holds the values that responses have given. `on_stray` is told of replies that are not used.
@@ -82,7 +83,7 @@ class Surroundings(NamedTuple):
 
 
 class _Observation(msgspec.Struct, frozen=True):
-    """What an activation brought: see `Outcome`. `failure` is why the skill failed, where a rule tells it."""
+    """The gain of an activation: see `Outcome`. `failure` is why the skill failed, where a rule tells it."""
 
     response: str = ""
     local_variables: dict[str, str] = {}
@@ -94,7 +95,7 @@ class _Observation(msgspec.Struct, frozen=True):
 async def run_activation(
     request: Activate, evaluator: Evaluator, around: Surroundings, *, is_taken_up: bool = False
 ) -> Outcome:
-    """How the activation ended, within its deadline. Whatever goes wrong is in the outcome.
+    """Runs an activation within its deadline and returns how it ended. Whatever goes wrong is in the outcome.
 
     An activation `is_taken_up` that a middleware had begun which is gone. It joins the call that still runs.
     Where its mapping reads topics, their messages were missed, and the outcome is `unknown`.
@@ -177,7 +178,7 @@ class _Activation:
         return bool(self._topic_of)
 
     async def run(self) -> _Observation:
-        """From the fields of the call to what is observed."""
+        """Calls the skill with its fields and returns what is observed."""
         fields = await self._fields()
         try:
             result = await self._listening_call(fields)
@@ -211,7 +212,8 @@ class _Activation:
             return {}
 
     async def _observed_failure(self, error: AosError) -> _Observation:
-        """What the rules make of a skill that has failed; the skill's error where none of them holds."""
+        """Returns what the rules make of a skill that has failed; raises the skill's error where none of
+        them holds."""
         try:
             observed = await self._evaluator.finish({}, _STATUS.get(error.code, "failed"), error.message)
         except MappingFault as fault:

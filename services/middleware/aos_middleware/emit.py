@@ -57,7 +57,7 @@ class EmittedMapping(msgspec.Struct, frozen=True):
 
     @property
     def file_name(self) -> str:
-        """What the module is called in tracebacks and in the folder of generated modules."""
+        """The module's name in tracebacks and in the folder of generated modules."""
         return f"{self.skill}.py"
 
     def locate(self, line: int, column: int = 1) -> Span:

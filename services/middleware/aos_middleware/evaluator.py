@@ -42,7 +42,7 @@ __all__ = ["EvaluationLimits", "Evaluator", "MappingFault"]
 A = TypeVar("A", Begun, Done, Observed)
 
 _MARGIN_S = 1.0
-"""How much longer than the worker's own deadlines an answer may take before the worker is killed."""
+"""An answer may take this much longer than the worker's own deadlines before the worker is killed."""
 
 _END_S = 1.0
 _TRACEBACK_BYTES = 16 * 1024
@@ -52,7 +52,8 @@ _log = logging.getLogger("aos.middleware")
 
 
 class EvaluationLimits(msgspec.Struct, frozen=True, kw_only=True):
-    """What mapping code may use: seconds to load its module, seconds for each evaluation, memory, imports."""
+    """The limits of mapping code: seconds to load its module, seconds for each evaluation, memory,
+    imports."""
 
     load_s: float = 5.0
     evaluation_s: float = 0.5

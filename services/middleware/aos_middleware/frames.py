@@ -1,4 +1,4 @@
-"""What the service and a mapping worker say to each other, over two pipes.
+"""The language between the service and a mapping worker, over two pipes.
 
 A frame is four bytes of length, most significant first, and a msgpack body. The service asks, the worker
 answers each question with one frame; a question that brings no answer ends with the worker's process.

@@ -1,4 +1,4 @@
-"""Which activations were started and how they ended, so that a repeated request moves nothing twice."""
+"""The activations that were started and how they ended, so that a repeated request moves nothing twice."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class OutcomeLedger:
         return tuple(self._requests.values())
 
     def outcomes(self) -> list[Outcome]:
-        """How the activations ended that did, in the order in which they were started."""
+        """Returns the outcomes of the activations that ended, in the order in which they were started."""
         return [self._outcomes[id] for id in self._requests if id in self._outcomes]
 
     def outcome(self, activation: ActivationId) -> Outcome | None:

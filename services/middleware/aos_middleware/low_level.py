@@ -57,7 +57,7 @@ def _field_defaults(
 
 
 def assigned_variables(assigned: Mapping[str, Any], request: Activate) -> dict[str, Any]:
-    """What a rule gives, by paths that may start with a parameter, as values of state variables."""
+    """Returns what a rule gives, by paths that may start with a parameter, as values of state variables."""
     values: dict[str, Any] = {}
     for path, value in assigned.items():
         first, dot, rest = path.removeprefix("state.").partition(".")
@@ -69,7 +69,7 @@ def assigned_variables(assigned: Mapping[str, Any], request: Activate) -> dict[s
 
 
 class LowLevelValues:
-    """What responses have put behind the state's `anyValue`s, as plain data."""
+    """The values that responses have put behind the state's `anyValue`s, as plain data."""
 
     def __init__(self, outcomes: Iterable[Outcome] = ()) -> None:
         self._assigned: dict[str, Any] = {}

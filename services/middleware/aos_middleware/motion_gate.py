@@ -15,10 +15,10 @@ from aos_runtime.bus import Bus
 __all__ = ["GONE_S", "MotionGate"]
 
 CONFIRM_S = 3.0
-"""How long to wait for word that an earlier skill has stopped."""
+"""A motion waits this long for word that an earlier skill has stopped."""
 
 GONE_S = 1.0
-"""How long the token of a process that does not answer may still be there."""
+"""The token of a process that does not answer may still be there for this long."""
 
 _log = logging.getLogger("aos.middleware")
 

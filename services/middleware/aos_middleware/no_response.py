@@ -1,4 +1,4 @@
-"""Why an activation that ended well brought no response: AOS402, with what the result said."""
+"""The reason why an activation that ended well brought no response: AOS402, with what the result said."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from aos_protocol.spelling import did_you_mean, quoted
 __all__ = ["no_response"]
 
 _FIELD = "response"
-"""What a derived mapping takes from a result."""
+"""A derived mapping takes this field from a result."""
 
 
 def no_response(

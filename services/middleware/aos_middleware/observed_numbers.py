@@ -12,7 +12,7 @@ __all__ = ["observed_numbers"]
 
 
 def observed_numbers(names: Iterable[str], local_variables: Mapping[str, str]) -> dict[str, Any]:
-    """By name: a number, or a list of numbers with None for those that are missing.
+    """Returns by name a number, or a list of numbers with None for those that are missing.
 
     A local variable that is none of these, as text in `local_variables`, was not observed.
     """

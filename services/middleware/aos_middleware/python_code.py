@@ -199,7 +199,7 @@ def _parse(
 
 
 def _is_plain(text: str, value: ast.expr) -> bool:
-    """Whether an expression reads the same as a condition or a dict's value without parentheses."""
+    """Returns whether an expression reads the same as a condition or a dict's value without parentheses."""
     if isinstance(value, ast.Tuple | ast.NamedExpr | ast.Starred | ast.GeneratorExp):
         return False
     if "#" in text.rpartition("\n")[2]:
@@ -230,7 +230,7 @@ def _always_returns(statements: list[ast.stmt]) -> bool:
 
 
 class _Names:
-    """What the bare names of a snippet are used for."""
+    """The bare names of a snippet, and what they are used for."""
 
     def __init__(self, tree: ast.AST) -> None:
         read: set[str] = set()

@@ -29,7 +29,7 @@ __all__ = ["Function", "ImportPart", "Sections", "Table"]
 
 _PRIMITIVES = frozenset({"bool", "int", "float", "double", "string", "str"})
 _OF_SKILL = ("__skill_status", "__skill_error")
-"""What rules can say of a skill that has failed."""
+"""The names by which rules read how a skill has failed."""
 
 
 class Function(msgspec.Struct, frozen=True):
@@ -144,7 +144,8 @@ class Sections:
         )
 
     def tables(self, low_level_names: Iterable[str]) -> list[Table]:
-        """Which function belongs to which topic and variable, and the low-level constants by name."""
+        """Returns the tables of which function belongs to which topic and variable, and of the low-level
+        constants."""
         topics: dict[str, list[LocalVariable]] = {}
         response: list[str] = []
         for variable in self._variables.values():
@@ -219,7 +220,8 @@ class Sections:
     # --- the module's names --------------------------------------------------------------------------
 
     def shared_code(self) -> list[str]:
-        """What all mappings share, where this one uses any of it. Call it behind all other snippets."""
+        """Returns the code that all mappings share, where this one uses any of it. Call it behind all
+        other snippets."""
         code = read_body(self._shared) if self._shared is not None else None
         if isinstance(code, Diagnostic):
             self.diagnostics.append(code)
@@ -261,7 +263,8 @@ class Sections:
         return constants
 
     def _meets_constants(self) -> bool:
-        """Whether a parameter can give this mapping a low-level value, or a snippet names one or its type."""
+        """Returns whether a parameter can give this mapping a low-level value, or a snippet names one or
+        its type."""
         assert self._low_level is not None
         names = {name for name, _ in self._low_level_names()}
         return any(variable.source is LocalSource.PARAMETER for variable in self._variables.values()) or any(

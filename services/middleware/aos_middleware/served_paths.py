@@ -1,4 +1,4 @@
-"""Which paths can be called: who says by liveliness tokens that it answers them."""
+"""The paths that can be called: liveliness tokens say who answers them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ServedPaths:
         self._announced: Counter[str] = Counter()
 
     async def follow(self) -> None:
-        """Until the bus closes."""
+        """Follows the tokens until the bus closes."""
         async with self._bus.presence(self._keys.all_serve) as changes:
             async for key, is_alive in changes:
                 serving = self._keys.serving_of(key)
@@ -44,15 +44,15 @@ class ServedPaths:
                     self._on_change()
 
     def servers(self, path: str) -> list[Serving]:
-        """Who answers calls of a path now."""
+        """Returns the adapters that answer calls of a path now."""
         return self._servers.get("/" + path.strip("/"), [])
 
     def announced(self, path: str) -> int:
-        """How often somebody has announced to serve a path."""
+        """Returns how often somebody has announced to serve a path."""
         return self._announced["/" + path.strip("/")]
 
     def fault(self, path: str) -> SkillError | None:
-        """Why a path cannot be called now: AOS505 if nobody serves it, AOS511 if two do."""
+        """Returns why a path cannot be called now: AOS505 if nobody serves it, AOS511 if two do."""
         servers = self.servers(path)
         if not servers:
             return no_adapter(path)
@@ -66,7 +66,7 @@ class ServedPaths:
         return None
 
     async def has_left(self, path: str, within_s: float) -> bool:
-        """Whether nobody serves a path, now or within a short time."""
+        """Waits until nobody serves a path, at most for a short time; returns whether that is so."""
         try:
             async with asyncio.timeout(within_s):
                 while self.servers(path):

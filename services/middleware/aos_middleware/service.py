@@ -51,7 +51,7 @@ async def serve(service: Service[Settings]) -> None:
 
 
 class _Middleware:
-    """What the service answers, and what it remembers between answers."""
+    """The answers of the service, and what it remembers between them."""
 
     def __init__(self, service: Service[Settings]) -> None:
         settings = service.settings

@@ -1,4 +1,4 @@
-"""What the middleware service is started with."""
+"""The settings that the middleware service is started with."""
 
 from __future__ import annotations
 
@@ -26,6 +26,6 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     elsewhere: tuple[str, ...] = ()
 
     def is_played(self, path: str) -> bool:
-        """Whether the skill at a path is played by its document, which needs no fields."""
+        """Returns whether the skill at a path is played by its document, which needs no fields."""
         path = "/" + path.strip("/")
         return path in self.played or ("*" in self.played and path not in self.elsewhere)

@@ -1,4 +1,4 @@
-"""What mapping code works on: robot data as objects with attributes, and its way back to plain data.
+"""The data that mapping code works on: robot data as objects with attributes, and its way back to plain data.
 
 The bus carries plain data (numbers, texts, bytes, lists, dicts). Documents are written for message classes
 of a robot framework: `__input.pose.x`, `Point(x=1.0)`. `Message` gives the first, `stand_in` the second where

@@ -118,7 +118,7 @@ class LoadedMapping:
         return response
 
     def _assign(self, path: str, value: Any) -> None:
-        """What a rule calls for each low-level value it gives."""
+        """Keeps a low-level value that a rule gives; the rule calls it for each."""
         self._assigned[path] = plain_from(value)
 
     def _update(self, functions: Mapping[str, Function], message: Any) -> None:
@@ -166,7 +166,8 @@ def raised(
     unset: tuple[str, ...] = (),
     local_variables: dict[str, str] | None = None,
 ) -> Raised:
-    """What an exception says, and where in the module it was: at the innermost of the module's frames."""
+    """Returns what an exception says, and where in the module it was: at the innermost of the module's
+    frames."""
     text = f"{type(error).__name__}: {_said(error)}"[:_MAX_ERROR_CHARACTERS].rstrip(": ")
     line, column = _place(error.__traceback__, file_name, lines)
     return Raised(text, line, column, unset, local_variables or {})
@@ -211,7 +212,8 @@ def _builtins(allowed_imports: tuple[str, ...] | None) -> dict[str, Any]:
 
 
 class _Printed(io.TextIOBase):
-    """What mapping code prints: to the error output at once, up to a limit, and never an error."""
+    """The output that mapping code prints: it goes to the error output at once, up to a limit, and never
+    raises."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor

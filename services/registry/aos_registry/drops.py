@@ -18,7 +18,7 @@ from aos_registry.watch import watch_for_bundles
 __all__ = ["DroppedBundles"]
 
 LACKING = ("AOS105", "AOS110", "AOS113", "AOS114", "AOS115")
-"""What other documents can mend: something is missing, or a name that nothing defines."""
+"""Other documents can mend these errors: something is missing, or a name that nothing defines."""
 
 _log = logging.getLogger("aos.registry")
 
@@ -45,7 +45,7 @@ class DroppedBundles:
         self._again: set[Path] = set()
 
     async def follow(self) -> None:
-        """Until it is cancelled."""
+        """Follows the folder until it is cancelled."""
         await watch_for_bundles(self._folder, self._take_path, self._changed, quiet_s=self._quiet_s)
 
     def project_changed(self) -> None:
@@ -71,7 +71,7 @@ class DroppedBundles:
             self._tell(report)
 
     async def _report(self, path: Path) -> BundleReport | None:
-        """What becomes of a folder or an archive; None of an empty folder."""
+        """Takes a folder or an archive in and returns what becomes of it; None for an empty folder."""
         try:
             files, remarks = read_bundle_files(path)
             if has_errors(remarks):

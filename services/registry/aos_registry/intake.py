@@ -1,4 +1,4 @@
-"""What becomes of a push: read, merged, checked, stored. Nothing is stored unless all of it is accepted."""
+"""The intake of a push: read, merged, checked, stored. Nothing is stored unless all of it is accepted."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ class Intake:
         return refused
 
     async def push(self, files: Mapping[str, bytes], source: str) -> tuple[BundleReport, bool]:
-        """What became of the files, and whether there is a new revision. AosError if it cannot be stored."""
+        """Takes files in; returns what became of them, and whether there is a new revision. AosError if it
+        cannot be stored."""
         known: KnownFiles = {}
         project = pushed_project(files, known)
         current = self._catalogue.current(project)
@@ -73,7 +74,8 @@ class Intake:
         return report, True
 
     async def remove(self, project: str, skill: str) -> tuple[BundleReport, bool]:
-        """What became of giving up a skill, or with none named the project; whether there is a new revision.
+        """Gives up a skill, or with none named the project; returns what became of it, and whether there is a
+        new revision.
 
         As for a push, what is left has to pass the checks, else nothing changes.
         """
@@ -138,7 +140,7 @@ class Intake:
 
 
 def _too_large_for_the_bus(project: Project) -> Diagnostic | None:
-    """Why a project could be stored and then not be told to anybody."""
+    """Returns why a project could be stored and then not be told to anybody."""
     try:
         encode(ProjectRevision(0, "", project), sender="registry", stamp_ns=0)
     except BusError as error:

@@ -46,7 +46,7 @@ async def serve(service: Service[Settings]) -> None:
 
 
 class _Registry:
-    """What the service answers."""
+    """The answers of the registry service."""
 
     def __init__(self, service: Service[Settings], catalogue: Catalogue) -> None:
         self._service = service
@@ -135,7 +135,7 @@ class _Registry:
         self._dropped.project_changed()
 
     async def _check_model(self, project: Project) -> tuple[Diagnostic, ...]:
-        """What the solver says to a project; nothing when there is no solver yet.
+        """Asks the solver what it says to a project; returns nothing when there is no solver yet.
 
         A solver that took the question and ended has not accepted the project.
         """

@@ -1,4 +1,4 @@
-"""What the registry service is started with."""
+"""The settings that the registry service is started with."""
 
 from __future__ import annotations
 

@@ -205,7 +205,7 @@ def _takes_host(kind: Any) -> bool:
 
 
 def _takes_call(function: Callable[..., Any]) -> bool:
-    """Whether the function has a place for the call; where Python cannot tell, it is supposed to."""
+    """Returns whether the function has a place for the call; where Python cannot tell, it is supposed to."""
     try:
         parameters = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):

@@ -43,7 +43,7 @@ except ImportError as error:  # pragma: no cover - the extra is not installed
 __all__ = ["HEADER", "Endpoint", "Participant", "Reader", "Writer"]
 
 HEADER = struct.Struct("<Qq")
-"""What Cyclone's requests and replies begin with: who asks, and as its how-manieth question."""
+"""The beginning of Cyclone's requests and replies: who asks, and the number of the question."""
 
 _ENCAPSULATION = b"\x00\x01\x00\x00"
 _MAX_BLOCKING_S = 1

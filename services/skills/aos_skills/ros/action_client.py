@@ -22,7 +22,7 @@ STATUS = {
 }
 
 CANCEL_S = 1.8
-"""How long a node may take to end a goal after it was asked to: less than an adapter has for it."""
+"""A node may take this long to end a goal after it was asked to: less than an adapter has for it."""
 
 
 class ServiceNode(RosNode, Protocol):
@@ -45,7 +45,7 @@ class ServiceNode(RosNode, Protocol):
 
 
 class Feedback:
-    """Who takes the feedback of which goal: one subscription for each action, however many goals run."""
+    """The takers of feedback by goal: one subscription for each action, however many goals run."""
 
     def __init__(self) -> None:
         self._takers: dict[str, dict[bytes, Callable[[Fields], None]]] = {}
@@ -135,7 +135,7 @@ async def _ended(
     cancelled: asyncio.Event | None,
     timeout_s: float,
 ) -> str:
-    """Why waiting has ended: "" with the result, else "cancelled", "late" or "lost"."""
+    """Waits and returns why waiting has ended: "" with the result, else "cancelled", "late" or "lost"."""
 
     cancelling = asyncio.ensure_future((cancelled or asyncio.Event()).wait())
     leaving = asyncio.ensure_future(node.service_gone(f"{action}/_action/get_result"))
@@ -176,7 +176,7 @@ async def _cancel(node: ServiceNode, action: str, goal_id: Fields, result: async
 
 
 def _ignore(_: Fields) -> None:
-    """For feedback that nobody wants."""
+    """Takes feedback that nobody wants."""
 
 
 def _lost(action: str) -> SkillError:

@@ -31,7 +31,8 @@ _log = logging.getLogger("aos.ros")
 
 
 class Way(NamedTuple):
-    """What of the robot a path is bound to: a service or an action ("" if the robot says which), its type."""
+    """The part of the robot that a path is bound to: a service or an action ("" if the robot says which),
+    its type."""
 
     kind: str
     name: str
@@ -39,7 +40,7 @@ class Way(NamedTuple):
 
 
 def way_to(path: str, target: Any) -> Way:
-    """What the deploy file means by a target; DeployError AOS801 if nothing."""
+    """Returns what the deploy file means by a target; DeployError AOS801 if nothing."""
     if target is None:
         return Way("", path)
     if isinstance(target, str):

@@ -13,7 +13,7 @@ __all__ = ["KINDS", "connect"]
 KINDS = ("ros2", "dds", "ros1")
 
 DEFAULT_ROUTER = "tcp/127.0.0.1:7447"
-"""Where `rmw_zenohd` listens by itself."""
+"""`rmw_zenohd` listens here by itself."""
 
 
 async def connect(kind: str, name: str, options: Mapping[str, Any], folder: Path) -> RosNode:

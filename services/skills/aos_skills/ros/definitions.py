@@ -95,7 +95,7 @@ def _interface_files(folder: Path) -> Iterator[Path]:
 
 
 def file_of(name: InterfaceName) -> str:
-    """Where a definition is looked for: `std_srvs/srv/Trigger.srv`."""
+    """Returns the path at which a definition is looked for: `std_srvs/srv/Trigger.srv`."""
     return f"{name.package}/{name.kind}/{name.name}.{name.kind}"
 
 

@@ -1,4 +1,5 @@
-"""What a project's mappings say about its robot: the paths that they call, the topics that they listen to."""
+"""The words of a project's mappings about its robot: the paths that they call, the topics that they listen
+to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a ROS node is to everything above it, whichever way it reaches the others."""
+"""A ROS node as everything above it sees it, whichever way it reaches the others."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = [
 ]
 
 DISCOVERY_S = 5.0
-"""How long a server or publisher may take to appear."""
+"""A server or publisher may take this long to appear."""
 
 Fields = dict[str, Any]
 
@@ -43,7 +43,7 @@ class TopicFound(NamedTuple):
 
 
 class ActionEnd(NamedTuple):
-    """How a goal ended: `succeeded`, `canceled` or `aborted`, and the result's fields."""
+    """The end of a goal: `succeeded`, `canceled` or `aborted`, and the result's fields."""
 
     status: str
     result: Fields
@@ -60,7 +60,7 @@ class RosNode(Protocol):
     """Names are full, `/robot1/chatter`; types too, `std_msgs/msg/String`; values are dicts of fields."""
 
     def publisher(self, topic: str, type_name: str, qos: Qos = DEFAULT_QOS) -> Callable[[Fields], None]:
-        """What publishes a message on a topic."""
+        """Returns a function that publishes a message on a topic."""
         ...
 
     def subscribe(
@@ -73,7 +73,7 @@ class RosNode(Protocol):
         ...
 
     async def topic(self, topic: str, timeout_s: float) -> TopicFound | None:
-        """What is published on a topic; None if nobody does within the time."""
+        """Finds out what is published on a topic; None if nobody does within the time."""
         ...
 
     async def call(
@@ -123,7 +123,7 @@ class RosNode(Protocol):
         ...
 
     def kind_of(self, name: str) -> str:
-        """What some node serves under a name now: "service", "action", or "" for nothing."""
+        """Returns what some node serves under a name now: "service", "action", or "" for nothing."""
         ...
 
     async def check(self, name: str, type_name: str) -> None:
@@ -151,6 +151,6 @@ _OF_EVERY_NODE = (
 
 
 def named_skills(services: Iterable[str]) -> list[str]:
-    """Of the names of services those that may be skills, actions by their own names."""
+    """Picks from the names of services those that may be skills, actions by their own names."""
     whole = {name.removesuffix(_GOAL) for name in services if "/_action/" not in name or name.endswith(_GOAL)}
     return sorted(name for name in whole if not name.endswith(_OF_EVERY_NODE))

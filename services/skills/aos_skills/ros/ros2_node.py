@@ -1,4 +1,4 @@
-"""What all ROS 2 nodes do alike: actions stand on services and topics, whatever carries these."""
+"""The common part of all ROS 2 nodes: actions stand on services and topics, whatever carries these."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Ros2Node(ABC):
 
     @abstractmethod
     def serves(self, service: str) -> bool:
-        """Whether some node serves it now."""
+        """Returns whether some node serves it now."""
 
     @abstractmethod
     def services(self) -> list[str]:

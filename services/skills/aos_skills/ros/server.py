@@ -113,7 +113,8 @@ class _Server:
         _log.info("%s is served as %s", path, type_name)
 
     def _failure(self, type_name: str, error: AosError) -> Fields:
-        """How a service says that it failed: ROS 1 has errors for it, ROS 2 only fields of the response."""
+        """Tells the caller that a service failed: ROS 1 has errors for it, ROS 2 only fields of the
+        response."""
         types = getattr(self._node, "types", None)
         names = {field.name for field in types.fields(f"{type_name}_Response")} if types else set()
         if "success" not in names:

@@ -259,7 +259,7 @@ def _ros1(type_name: str) -> str:
 
 
 def _ignore(_: Fields) -> None:
-    """For messages that nobody wants any more."""
+    """Takes messages that nobody wants any more."""
 
 
 async def _set(event: asyncio.Event) -> None:

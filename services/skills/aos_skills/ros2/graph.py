@@ -1,4 +1,4 @@
-"""Which ROS 2 nodes are there, and what they serve and publish: the liveliness tokens of one domain."""
+"""The ROS 2 nodes that are there, and what they serve and publish: the liveliness tokens of one domain."""
 
 from __future__ import annotations
 

@@ -196,7 +196,7 @@ class Node(Ros2Node):
 
 
 class _Client:
-    """What tells one service client's requests from all others."""
+    """The mark that tells one service client's requests from all others."""
 
     def __init__(self, gid: bytes) -> None:
         self._gid = gid

@@ -1,4 +1,4 @@
-"""How ROS 2 is written on Zenoh by rmw_zenoh: keys, liveliness tokens, quality of service, attachments.
+"""The form of ROS 2 on Zenoh by rmw_zenoh: keys, liveliness tokens, quality of service, attachments.
 
 The form is the one that its design document describes since version 0.2.4 (2025): key expressions end with
 the type's name and hash, tokens stand under `@ros2_lv`, attachments have no labels.
@@ -28,7 +28,7 @@ __all__ = [
 
 
 class Kind(StrEnum):
-    """What a token stands for."""
+    """The kinds of things that a token stands for."""
 
     NODE = "NN"
     PUBLISHER = "MP"
@@ -38,14 +38,14 @@ class Kind(StrEnum):
 
 
 def qos_text(qos: Qos) -> str:
-    """As it stands in a token; an empty part means the default."""
+    """Writes it as it stands in a token; an empty part means the default."""
     reliability = "" if qos.is_reliable else "2"
     durability = "1" if qos.is_transient_local else ""
     return f"{reliability}:{durability}:,{qos.depth}:,:,:,,"
 
 
 def qos_of(text: str) -> Qos:
-    """From a token; what cannot be read is the default."""
+    """Reads it from a token; what cannot be read is the default."""
     parts = [*text.split(":"), "", "", ""]
     depth = parts[2].partition(",")[2]
     return Qos(int(depth) if depth.isdigit() else DEFAULT_QOS.depth, parts[0] != "2", parts[1] == "1")
@@ -86,12 +86,12 @@ class Endpoint(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Where the data of the topic or service go."""
+        """The key under which the data of the topic or service go."""
         return data_key(self.domain, self.name, self.type_name, self.type_hash)
 
 
 def endpoint_of(token: str) -> Endpoint | None:
-    """What a token stands for; None for one that is not in this form."""
+    """Returns what a token stands for; None for one that is not in this form."""
     parts = token.split("/")
     if len(parts) not in (9, 13) or parts[0] != "@ros2_lv" or parts[5] not in list(Kind):
         return None
@@ -140,7 +140,7 @@ def _plain(mangled: str) -> str:
 
 
 class Attachment(NamedTuple):
-    """What goes beside each payload: who sent it, when, as its how-manieth."""
+    """The bytes beside each payload: who sent it, when, and its number."""
 
     number: int
     sent_ns: int

@@ -1,1 +1,1 @@
-"""What every robot and every world is made of: time, bodies, arm, gripper, base, camera, faults."""
+"""The parts of every robot and every world: time, bodies, arm, gripper, base, camera, faults."""

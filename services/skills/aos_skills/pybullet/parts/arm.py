@@ -52,7 +52,7 @@ class Arm:
 
     @property
     def angles(self) -> list[float]:
-        """Of the seven joints, in radians."""
+        """The angles of the seven joints, in radians."""
         return [self._client.getJointState(self._body, joint)[0] for joint in self._joints]
 
     def tip_place(self) -> Vector:

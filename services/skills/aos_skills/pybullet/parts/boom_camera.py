@@ -21,9 +21,9 @@ FIELD_OF_VIEW_DEG = 25.0
 SIZE = (240, 180)
 NEAR_M, FAR_M = 0.1, 30.0
 TOP_M = 0.002
-"""What is this much below the highest of what is seen belongs to its upper face."""
+"""Points this much below the highest point that is seen belong to its upper face."""
 HIGHEST = 0.9
-"""As a quantile: single pixels at an edge may be of anything."""
+"""The highest point as a quantile: single pixels at an edge may be of anything."""
 
 
 def top_seen(

@@ -20,7 +20,7 @@ FRAME_SHOWN_MS = 300
 FIELD_OF_VIEW_DEG = 50
 SUN = (3.0, -4.0, 7.0)
 BORDER_PX = 2
-"""Of white between a picture and its close-up."""
+"""The width of white between a picture and its close-up."""
 
 
 def photograph(
@@ -34,7 +34,7 @@ def photograph(
     field_of_view_deg: float = FIELD_OF_VIEW_DEG,
     shadow: bool = True,
 ) -> Image.Image:
-    """What a camera at `eye` sees, in color; `size` is width and height in pixels."""
+    """Returns the picture of a camera at `eye`, in color; `size` is width and height in pixels."""
     client = scene.client
     width, height = size
     _, _, pixels, _, _ = client.getCameraImage(

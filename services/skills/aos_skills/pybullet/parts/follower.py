@@ -25,7 +25,7 @@ STUCK_WITHIN_M = 0.02
 
 
 class Following(Enum):
-    """How following a way ended."""
+    """The ways in which following a way ends."""
 
     ARRIVED = auto()
     BLOCKED = auto()

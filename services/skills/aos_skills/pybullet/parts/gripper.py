@@ -12,7 +12,7 @@ FINGER_JOINTS = ("panda_finger_joint1", "panda_finger_joint2")
 MAX_GAP_M = 0.08
 GRIP_FORCE_N = 25.0
 FEELS_GAP_M, FEELS_FORCE_N = 0.0003, 1.0
-"""What is thinner, or presses less, is taken for nothing."""
+"""A thing that is thinner, or presses less, is taken for nothing."""
 
 
 class Gripper:
@@ -35,7 +35,7 @@ class Gripper:
         return float(sum(self._client.getJointState(self._body, joint)[0] for joint in self._fingers))
 
     def forces_n(self) -> tuple[float, float]:
-        """What each finger presses on things that are not the other finger."""
+        """Returns the forces with which each finger presses on things that are not the other finger."""
         forces = []
         for finger in self._fingers:
             contacts = self._client.getContactPoints(bodyA=self._body, linkIndexA=finger)
@@ -44,11 +44,11 @@ class Gripper:
 
     @property
     def feels_something(self) -> bool:
-        """Whether the fingers, by their own sensors, have something between them."""
+        """True while the fingers, by their own sensors, have something between them."""
         return self.gap_m > FEELS_GAP_M and min(self.forces_n()) > FEELS_FORCE_N
 
     def holds(self, body: int) -> bool:
-        """Whether both fingers touch a body."""
+        """Returns whether both fingers touch a body."""
         touched = (
             self._client.getContactPoints(bodyA=self._body, linkIndexA=finger, bodyB=body)
             for finger in self._fingers

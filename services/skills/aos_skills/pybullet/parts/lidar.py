@@ -24,7 +24,7 @@ class Lidar:
         self._body = body
         self._link = link
         self.angles: npt.NDArray[np.float64] = np.arange(RAYS) * 2 * math.pi / RAYS
-        """Of the rays, in radians from straight ahead to the left."""
+        """The angles of the rays, in radians from straight ahead to the left."""
 
     def turn(self) -> npt.NDArray[np.float64]:
         """The ranges of one turn, in metres, one a ray; MAX_RANGE_M where a ray meets nothing."""

@@ -24,7 +24,7 @@ Cell = tuple[int, int]
 
 
 class FloorMap:
-    """What is known of the floor within `bounds`, for a round robot of `radius_m` whose middle stays inside.
+    """The known floor within `bounds`, for a round robot of `radius_m` whose middle stays inside.
 
     Points that were seen and are on no map (`add`) forbid as much as mapped obstacles do.
     """
@@ -39,10 +39,10 @@ class FloorMap:
         self._cells = np.stack([columns, rows], axis=-1) * CELL_M + np.array(self._corner)
         self._mapped = self.distance(self._cells)
         self._clearance = self._mapped.copy()
-        """Of each cell's middle from the nearest obstacle, in metres."""
+        """The distance of each cell's middle from the nearest obstacle, in metres."""
 
     def distance(self, points: Floats) -> Floats:
-        """How far points (x and y in the last axis) are from the nearest mapped obstacle."""
+        """Returns the distances of points (x and y in the last axis) from the nearest mapped obstacle."""
         nearest = np.full(points.shape[:-1], np.inf)
         for x, y, half_x, half_y in self._obstacles:
             beside = np.abs(points - np.array([x, y])) - np.array([half_x, half_y])
@@ -55,11 +55,11 @@ class FloorMap:
             self._clearance = np.minimum(self._clearance, np.hypot(*np.moveaxis(self._cells - point, -1, 0)))
 
     def forget(self) -> None:
-        """Back to what is mapped."""
+        """Forgets all points that are not mapped."""
         self._clearance = self._mapped.copy()
 
     def is_free(self, points: Floats) -> bool:
-        """Whether the robot's middle may be at all of the points."""
+        """Returns whether the robot's middle may be at all of the points."""
         cells = np.rint((points - np.array(self._corner)) / CELL_M).astype(int)
         is_inside = (cells >= 0).all() and (cells < np.array(self._shape)).all()
         return bool(is_inside and (self._clearance[cells[:, 0], cells[:, 1]] >= self._radius_m).all())

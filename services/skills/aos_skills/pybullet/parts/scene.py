@@ -50,7 +50,7 @@ class Scene:
         self.client.disconnect()
 
     def place(self, body: int) -> Vector:
-        """Where a body's centre is, in metres."""
+        """Returns the place of a body's centre, in metres."""
         x, y, z = self.client.getBasePositionAndOrientation(body)[0]
         return x, y, z
 

@@ -1,4 +1,4 @@
-"""What a world is to the adapter: skills by path, sensors by topic, the truth, and pictures.
+"""The world as the adapter sees it: skills by path, sensors by topic, the truth, and pictures.
 
 A world is a folder under `worlds` whose `__init__` has a `KIND`. Nothing outside the folder knows its words.
 """
@@ -19,7 +19,7 @@ from aos_skills.pybullet.parts.scene import Scene
 __all__ = ["Fields", "World", "WorldKind"]
 
 Fields = dict[str, Any]
-"""Of a request, an answer or a message, by name."""
+"""The fields of a request, an answer or a message, by name."""
 
 AnyFile = TypeVar("AnyFile", bound=msgspec.Struct)
 AnyWorld = TypeVar("AnyWorld", bound="World")
@@ -46,7 +46,7 @@ class World(ABC):
 
     @abstractmethod
     def sensors(self) -> dict[str, Fields]:
-        """What the robot's sensors give now, by topic."""
+        """Returns what the robot's sensors give now, by topic."""
 
     @abstractmethod
     def truth(self) -> Fields:

@@ -1,4 +1,4 @@
-"""Who serves and publishes what, as the master knows it, and whether they still run."""
+"""The servers and publishers that the master knows, and whether they still run."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Names:
         return {"services": services, "actions": actions, "topics": topics}
 
     def _is_alive(self, node: str, known: dict[str, bool]) -> bool:
-        """Whether the node's own server can be reached."""
+        """Returns whether the node's own server can be reached."""
         if node == self._own_node:
             return True
         if node not in known:

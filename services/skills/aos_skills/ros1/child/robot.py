@@ -1,4 +1,5 @@
-"""What AOS asks of a robot that runs ROS 1, done with rospy: services, actions and topics, both ways."""
+"""The requests of AOS to a robot that runs ROS 1, done with rospy: services, actions and topics, both
+ways."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ PARTS = {
     "ActionFeedback": HEADER + "actionlib_msgs/GoalStatus status\n{0}Feedback feedback\n",
     "Action": "{0}ActionGoal action_goal\n{0}ActionResult action_result\n{0}ActionFeedback action_feedback\n",
 }
-"""What ROS 1 derives from an action, by the suffix of its name."""
+"""The messages that ROS 1 derives from an action, by the suffix of its name."""
 
 
 class Unknown(Exception):
@@ -34,7 +34,7 @@ class Misfit(Exception):
 
 
 class ActionClasses:
-    """What actionlib wants of an action: an object of a class with these three messages."""
+    """The form of an action that actionlib wants: an object of a class with these three messages."""
 
     def __init__(self, types: Types, name: str) -> None:
         try:

@@ -42,9 +42,9 @@ _SMALL_INERTIA = (
 _UNIT_INERTIA = (
     '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
 )
-"""What Bullet takes for a link without any, with a page of warnings."""
+"""Bullet takes these values for a link without any, with a page of warnings."""
 _CHASSIS_HEIGHT_M = 0.14493
-"""Of Husky's base_link above the floor."""
+"""The height of Husky's base_link above the floor."""
 
 
 def mobile_arm_urdf(data: Path, mount_m: tuple[float, float, float]) -> str:

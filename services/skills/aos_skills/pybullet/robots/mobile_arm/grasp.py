@@ -7,7 +7,7 @@ from aos_skills.pybullet.robots.mobile_arm.robot import MobileArm
 __all__ = ["SHOULDER_AHEAD_M", "grasp_from_above"]
 
 SHOULDER_AHEAD_M = 0.25
-"""Of the arm's foot from the middle of the base."""
+"""The distance of the arm's foot from the middle of the base."""
 SLOWLY_M_S = 0.15
 
 

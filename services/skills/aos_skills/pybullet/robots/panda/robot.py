@@ -13,7 +13,7 @@ __all__ = ["PEN_BELOW_GRASP_M", "PandaWithPen"]
 PEN_RADIUS_M = 0.005
 PEN_LENGTH_M = 0.12
 PEN_BELOW_GRASP_M = 0.08
-"""Of the pen's tip from the point between the fingers."""
+"""The distance of the pen's tip from the point between the fingers."""
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 _BLUE = (0.1, 0.15, 0.5, 1)
 

@@ -20,7 +20,7 @@ WHEEL_RADIUS_M = 0.033
 SEPARATION_M = 0.160
 LOCALISE_EVERY_S = 0.2
 TRUST = 0.2
-"""How much of the way to a new localisation the estimate moves."""
+"""The share of the way to a new localisation that the estimate moves."""
 LIDAR_BEHIND_M = 0.032
 SCAN_EVERY_S = 0.2
 
@@ -62,7 +62,7 @@ class TurtleBot3:
 
     @property
     def true_place(self) -> Vector:
-        """Of the middle between the wheels; the robot itself knows `place`."""
+        """The place of the middle between the wheels; the robot itself knows `place`."""
         (x, y, _), turned = self._scene.client.getBasePositionAndOrientation(self.body)
         # Bullet gives the centre of mass, which lies behind the axle.
         yaw = self._scene.client.getEulerFromQuaternion(turned)[2]
@@ -70,14 +70,14 @@ class TurtleBot3:
 
     @property
     def place(self) -> Vector:
-        """Where the robot believes it is: x, y in metres, yaw in radians."""
+        """The place where the robot believes it is: x, y in metres, yaw in radians."""
         return self.drive.odometry
 
     def stop(self) -> None:
         self.drive.stop()
 
     def ranges_m(self) -> npt.NDArray[np.float64]:
-        """Of the newest turn of the lidar, which turns five times a second."""
+        """Returns the ranges of the lidar's newest turn; it turns five times a second."""
         if self._scene.time_s >= self._next_scan_s:
             self._next_scan_s = self._scene.time_s + SCAN_EVERY_S
             self._scanned_from = self.place

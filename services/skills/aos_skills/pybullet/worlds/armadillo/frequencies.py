@@ -1,4 +1,5 @@
-"""How often a pick ends how: `python -m aos_skills.pybullet.worlds.armadillo.frequencies WORLD.yaml 60`."""
+"""The frequencies of a pick's outcomes: `python -m aos_skills.pybullet.worlds.armadillo.frequencies
+WORLD.yaml 60`."""
 
 from __future__ import annotations
 

@@ -22,9 +22,9 @@ REACH_M = 0.8
 LOWEST_GRASP_M = 0.008
 """Lower, the finger tips stand on the table and do not close."""
 GRASP_ABOVE_CENTRE_M = 0.006
-"""What is grasped above its centre hangs, and does not turn over."""
+"""A thing that is grasped this much above its centre hangs, and does not turn over."""
 GRASPABLE_RADII_M = (0.02, 0.038)
-"""What looks larger does not fit between the fingers; what looks smaller is no can."""
+"""A thing that looks larger does not fit between the fingers; one that looks smaller is no can."""
 MISPLACED_BY_M = 0.08
 LIFT_M = 0.22
 
@@ -67,7 +67,8 @@ def can_in_reach(world: Armadillo) -> str | None:
 
 
 def _perceived(world: Armadillo, name: str) -> tuple[float, float, float] | None:
-    """Where to grasp, as far as the robot can see: x, y, and the height above the table, in metres.
+    """Returns the place to grasp, as far as the robot can see: x, y, and the height above the table, in
+    metres.
 
     None where nothing in the picture looks like a can.
     """

@@ -38,19 +38,19 @@ class Room:
         self.person = self._person()
 
     def can_place(self, name: str) -> Vector:
-        """Where a can's centre is, in metres."""
+        """Returns the place of a can's centre, in metres."""
         return self._scene.place(self.cans[name])
 
     def is_standing(self, name: str) -> bool:
-        """Whether a can stands upright, wherever that is."""
+        """Returns whether a can stands upright, wherever that is."""
         return self._scene.uprightness(self.cans[name]) > UPRIGHT
 
     def is_to_pick(self, name: str) -> bool:
-        """Whether a can stands on a table; a fallen one is not recognised."""
+        """Returns whether a can stands on a table; a fallen one is not recognised."""
         return self.can_place(name)[2] > TABLE_TOP_M - 0.01 and self.is_standing(name)
 
     def is_on_tray(self, name: str) -> bool:
-        """Whether the person has that can."""
+        """Returns whether the person has that can."""
         x, y, z = self.can_place(name)
         person = self._file.person
         tray_x = person.x - TRAY_FROM_PERSON_M

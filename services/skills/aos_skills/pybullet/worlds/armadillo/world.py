@@ -19,10 +19,10 @@ EYE_M = (4.6, -5.6, 4.0)
 FOLDED_ELBOW_RAD = -2.3
 """The elbow's angle is below this when the arm is tucked."""
 BESIDE_M = 1.5
-"""Of a table's or the person's middle from the robot's, where it stands in front of one."""
+"""The distance of a table's or the person's middle from the robot's, where it stands in front of one."""
 LOOKS_AT_M = (1.7, 0.0, 0.3)
 CLOSE_EYE_M = (1.1, -0.9, 0.7)
-"""Of the close-up, from the hand."""
+"""The eye of the close-up, from the hand."""
 
 
 class Armadillo(World):
@@ -38,7 +38,7 @@ class Armadillo(World):
         self.faults = Faults(seed)
         self.camera = Camera(self.scene, EYE_M, LOOKS_AT_M, self._close_up)
         self.is_silent = False
-        """Whether the finger sensors report nothing during this call."""
+        """True while the finger sensors report nothing during this call."""
         self.has_injured = False
         self.scene.watchers.append(self._watch_person)
 
@@ -87,7 +87,7 @@ class Armadillo(World):
         }
 
     def _place_of(self, name: str) -> str:
-        """Of a can; nothing where it was served."""
+        """Returns the place of a can; empty where it was served."""
         if self.room.is_on_tray(name):
             return ""
         if self.robot.gripper.holds(self.room.cans[name]):
@@ -95,7 +95,7 @@ class Armadillo(World):
         return f"{name.capitalize()}Table" if self.room.is_to_pick(name) else "Unknown"
 
     def _robot_at(self) -> str:
-        """Where the robot stands; nothing where that is none of the documents' places."""
+        """Returns where the robot stands; empty where that is none of the documents' places."""
         x, y, _ = self.robot.base.place
         if math.dist((x, y), (self.file.person.x, self.file.person.y)) < BESIDE_M:
             return "Corridor"

@@ -1,4 +1,4 @@
-"""What the robot sees of the table in front of it: something red, and where that is."""
+"""The robot's sight of the table in front of it: something red, and where that is."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
 __all__ = ["AHEAD_M", "BIN_TOP_M", "TABLE_TOP_M", "CleanLab", "filled_stations"]
 
 AHEAD_M = 0.8
-"""Of a cup, or of a bin's middle, from the middle of the robot that stands in front of it."""
+"""The distance of a cup, or of a bin's middle, from the middle of the robot that stands in front of it."""
 TABLE_TOP_M = 0.5
 TABLE_BEHIND_CUP_M = 0.17
 TABLE_HALF_M = (0.3, 0.22)
@@ -42,13 +42,14 @@ def ahead(place: Place, distance_m: float) -> tuple[float, float]:
 
 
 def filled_stations(file: CleanLabFile, seed: int) -> list[str]:
-    """Where the cups are at first: different stations of each group."""
+    """Draws the stations where the cups are at first: different ones of each group."""
     chance = random.Random(f"cups {seed}")
     return [name for group in file.groups for name in chance.sample(group.stations, group.cups)]
 
 
 class CleanLab(World):
-    """What is seen is a picture, what is held is contact; glare, ghosts and reflections are drawn."""
+    """A lab with cups: what is seen is a picture, what is held is contact; glare, ghosts and reflections
+    are drawn."""
 
     def __init__(self, file: CleanLabFile, seed: int) -> None:
         self.file = file

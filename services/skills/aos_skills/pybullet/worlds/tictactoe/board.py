@@ -15,7 +15,7 @@ __all__ = ["CELL_M", "TOP_M", "Board", "cell_centre", "circle"]
 CENTRE_M = (0.5, 0.0)
 CELL_M = 0.08
 TOP_M = 0.02
-"""Of the board above the robot's foot."""
+"""The height of the board above the robot's foot."""
 SIDE_HALF_M = 0.15
 LINE_HALF_M = 0.0025
 INK_HALF_M = 0.003
@@ -27,7 +27,7 @@ BLUE, RED = (0.08, 0.12, 0.55, 1), (0.65, 0.08, 0.08, 1)
 
 
 def cell_centre(cell: int) -> tuple[float, float]:
-    """Of cell 0 to 8, row by row as the camera sees them: rows run away from the robot."""
+    """Returns the centre of cell 0 to 8, row by row as the camera sees them: rows run away from the robot."""
     row, column = divmod(cell, 3)
     return CENTRE_M[0] + (row - 1) * CELL_M, CENTRE_M[1] + (column - 1) * CELL_M
 

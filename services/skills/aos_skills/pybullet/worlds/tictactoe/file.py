@@ -23,7 +23,7 @@ class FaultModel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TicTacToeFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Who plays against the robot, by which `rules`, and what is on the board at first.
+    """The player against the robot, the `rules`, and what is on the board at first.
 
     A person types at a terminal that is connected to `port` of this machine: see `play`. `begins` says who
     draws first. `moves_made` gives numbers of random moves before that, the person's first, and how likely

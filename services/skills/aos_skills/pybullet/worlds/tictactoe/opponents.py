@@ -1,4 +1,4 @@
-"""Who plays against the robot: a random player, a perfect one, or a person at a terminal."""
+"""The players against the robot: a random one, a perfect one, or a person at a terminal."""
 
 from __future__ import annotations
 

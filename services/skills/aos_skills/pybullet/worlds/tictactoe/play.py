@@ -43,7 +43,7 @@ def connected(port: int) -> socket.socket | None:
 
 
 def show(world: socket.socket) -> None:
-    """What the world says, until it hangs up: also in the middle of a line that was typed."""
+    """Shows what the world says, until it hangs up: also in the middle of a line that was typed."""
     decoder = codecs.getincrementaldecoder("utf-8")("replace")
     while True:
         try:
@@ -57,7 +57,7 @@ def show(world: socket.socket) -> None:
 
 
 def send_lines(world: socket.socket) -> None:
-    """What is typed, line by line."""
+    """Sends what is typed, line by line."""
     for line in sys.stdin:
         try:
             world.sendall(line.encode())

@@ -13,14 +13,14 @@ __all__ = ["board_in"]
 Picture = npt.NDArray[np.uint8]
 
 SIDE_PX = 450
-"""Of the board within its rim, seen from straight above."""
+"""The side of the board within its rim, seen from straight above."""
 BOARD_M, GRID_M = 0.29, 0.24  # Within the rim, and of the nine cells.
 CELL_PX = round(SIDE_PX * GRID_M / BOARD_M / 3)
 MARGIN_PX = round(SIDE_PX * (1 - GRID_M / BOARD_M) / 2)
 LINE_PX = 14
-"""What is cut off on each side of a cell, for its lines."""
+"""A strip this wide is cut off on each side of a cell, for its lines."""
 MIN_AREA = 0.03
-"""Of a board, as a share of the picture."""
+"""The least area of a board, as a share of the picture."""
 MIN_INK = 0.02
 """Share of a cell's pixels; less is noise."""
 MIN_INSIDE = 0.15
@@ -46,7 +46,7 @@ def board_in(picture: npt.NDArray[Any]) -> str | None:
 
 
 def _corners(grey: Picture) -> npt.NDArray[np.float32] | None:
-    """Of the white board's outer edge: top left, top right, bottom right, bottom left."""
+    """Finds the white board's outer edge: top left, top right, bottom right, bottom left."""
     _, bright = cv2.threshold(grey, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
     contours, _ = cv2.findContours(bright, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     for contour in sorted(contours, key=cv2.contourArea, reverse=True):

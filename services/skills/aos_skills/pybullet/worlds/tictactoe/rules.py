@@ -29,7 +29,7 @@ def marked(board: str, cell: int, mark: str) -> str:
 
 
 def winner(board: str, rules: Rules = "row") -> str | None:
-    """Who has won; None while nobody has."""
+    """Returns who has won; None while nobody has."""
     if rules == "corners":
         lead = _points(board, "O") - _points(board, "X") if "?" not in board else 0
         return "O" if lead > 0 else "X" if lead < 0 else None
@@ -49,7 +49,7 @@ def best_moves(board: str, mark: str, rules: Rules = "row") -> list[int]:
 
 @cache
 def _worth(board: str, mark: str, rules: Rules) -> int:
-    """What perfect play brings to who has the turn: 1, 0 or -1."""
+    """Returns what perfect play brings to who has the turn: 1, 0 or -1."""
     if is_over(board, rules):
         return {mark: 1, _other(mark): -1, None: 0}[winner(board, rules)]
     cells = empty_cells(board)

@@ -26,7 +26,7 @@ CAMERA_M = (1.05, 0.0, 0.55)
 PICTURE_SIZE = (480, 360)
 FIELD_OF_VIEW_DEG = 42
 BOARD_SEEN: tuple[Vector, Vector] = ((0.72, 0.0, 0.38), (*CENTRE_M, 0.0))
-"""For the record's pictures; the robot looks from elsewhere."""
+"""The eye and the aim of the record's pictures; the robot looks from elsewhere."""
 PERSON_DRAWS_S = 2.0
 MIN_INK = 20
 """Contacts of the pen in simulation steps, below which there is no circle."""
@@ -80,7 +80,7 @@ class TicTacToe(World):
 
     @property
     def is_over(self) -> bool:
-        """Whether the game has ended: then nobody draws any more."""
+        """True when the game has ended: then nobody draws any more."""
         return is_over(self.marks, self.file.rules)
 
     def write(self, way: list[Vector]) -> bool:
@@ -144,7 +144,7 @@ class TicTacToe(World):
             self.marks = marked(self.marks, cell, mark)
 
     def _leave_ink(self) -> None:
-        """Where the pen touches the board."""
+        """Leaves ink where the pen touches the board."""
         if not self._is_writing:
             return
         contacts = self.scene.client.getContactPoints(bodyA=self.robot.pen, bodyB=self.board.body)

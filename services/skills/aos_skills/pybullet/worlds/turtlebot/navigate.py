@@ -16,7 +16,7 @@ __all__ = ["navigate"]
 
 MAX_PLANS = 12
 UNMAPPED_M = 0.12
-"""What the lidar sees further than this from everything on the map is something new."""
+"""A point of the lidar further than this from everything on the map is something new."""
 LEAVE_M = 0.1
 """A way may begin too near to something, up to here: the robot stands there already, and has to leave."""
 

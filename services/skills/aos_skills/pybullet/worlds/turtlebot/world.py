@@ -22,7 +22,7 @@ __all__ = ["Turtlebot"]
 WALL_HALF_M = 0.03
 HEIGHT_HALF_M = 0.12
 ROBOT_RADIUS_M = 0.14
-"""Of the Burger with its wheels, and a little more: estimates of places are never exact."""
+"""The radius of the Burger with its wheels, and a little more: estimates of places are never exact."""
 VISITED_WITHIN_M = 0.1
 _FLOOR, _WALL, _BLOCK = (0.80, 0.80, 0.76, 1), (0.55, 0.58, 0.62, 1), (0.25, 0.45, 0.35, 1)
 _CRATE, _SPOT = (0.75, 0.45, 0.15, 1), (0.85, 0.15, 0.15, 1)
