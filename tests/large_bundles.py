@@ -11,8 +11,8 @@ import sys
 import time
 from collections.abc import Mapping
 
+from mappings import mapping_text
 from models import built_text, engine_of
-from scripted_models import mapping_text
 
 from aos_deploy.program import cache_dir
 from aos_language.load import load_files
@@ -36,10 +36,6 @@ available_parameters_code:
 for (int at = 0; at < 3; at++) __possibleParameters.push_back(std::make_tuple(at));
 dynamic_model:
 """
-_PASSED_ON = (
-    "srv: act\n",
-    "srv: act\nparameter: at\ncode:\nat\nlocal_variable: at\naction_parameter: at\n",
-)
 
 
 def many_variables(count: int) -> dict[str, str]:
@@ -68,7 +64,7 @@ def _bundle(environment: list[str], dynamic_model: list[str]) -> dict[str, str]:
     return {
         "large.ef": _ENVIRONMENT + "\n".join(environment) + "\n",
         "act.sd": _SKILL + "\n".join(dynamic_model) + "\n",
-        "act.am": mapping_text("one", "two", project="large").replace(*_PASSED_ON),
+        "act.am": mapping_text("one", "two", project="large", parameters=["at"]),
     }
 
 

@@ -28,7 +28,6 @@ __all__ = [
     "bundle_project",
     "json_text",
     "lowered",
-    "mapping_text",
     "scripted",
     "text_project",
 ]
@@ -117,21 +116,6 @@ def json_text(document: Mapping[str, Any], kind: str, name: str, project: str = 
     """A v1.x JSON document with its header."""
     header = {"Project": project, "Name": name, "Type": kind, "Version": 1}
     return json.dumps({"PlpMain": header, **document}, indent=2)
-
-
-def mapping_text(*responses: str, variable: str = "", project: str = "test") -> str:
-    """An abstraction mapping with these responses, or with the text of a local variable."""
-    rules = [f"response: {response}\nresponse_rule: answer == '{response}'" for response in responses]
-    local = f"local_variable: {variable or 'answer'}\ntype: string\n"
-    local += f"from_ros_service_response: true\ncode:\n{variable or 'answer'} = __input.text\n"
-    activation = "module_activation: ros_service\npath: /act\nsrv: act\n"
-    ending = f"response_local_variable: {variable}\n" if variable else ""
-    return "\n".join([f"project: {project}", *rules, activation, local, ending])
-
-
-def mapping_of_model(code: str) -> str:
-    """The mapping of a model with this code: with `done` if it gives a response, else without rules."""
-    return mapping_text(*(["done"] if "__moduleResponse" in code else []))
 
 
 def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:

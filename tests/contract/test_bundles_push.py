@@ -11,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 import pytest_asyncio
+from mappings import mapping_text
 from starting import until_present
 from typer.testing import CliRunner, Result
 
@@ -106,9 +107,7 @@ async def test_a_skill_document_alone_is_a_skill_until_its_mapping_comes(
     (skill / "ask.sd").write_text("project: armadillo\ndynamic_model:\n__moduleResponse = told;\n")
     assert "added ask" in (await aos("bundle", "push", str(skill))).output
     assert "activation: skill /ask()" in (await aos("bundle", "show")).output
-    mapping = (
-        "project: armadillo\nresponse: told\nresponse_rule: True\nmodule_activation: skill\npath: /say\n"
-    )
+    mapping = mapping_text("told: True", project="armadillo", skill="say")
     (skill / "ask.am").write_text(mapping)
     assert "changed ask" in (await aos("bundle", "push", str(skill))).output
     assert "activation: skill /say()" in (await aos("bundle", "show")).output

@@ -5,14 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
-
-MAPPING = """project: ward
-response: done
-response_rule: True
-module_activation: skill
-path: /{skill}
-"""
 
 EXIT = {
     "ward.ef": """project: ward
@@ -36,7 +30,7 @@ dynamic_model:
 __reward = -AOS.SampleUniform(-1, 1);
 __moduleResponse = done;
 """,
-    **{f"{skill}.am": MAPPING.format(skill=skill) for skill in ("leave", "wait")},
+    **{f"{skill}.am": mapping_text("done: True", project="ward", skill=skill) for skill in ("leave", "wait")},
 }
 
 

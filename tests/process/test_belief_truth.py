@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import random
 import signal
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 from processes import descendants, until_ended
 
@@ -15,34 +17,13 @@ from aos_solver.child.engine import Engine
 
 STATES, ACTIONS, RESPONSES = 5, 2, 3
 
-READING = """project: {project}
 
-response: yes
-response_rule: is_on
-response: no
-response_rule: True
-
-module_activation: skill
-path: /read
-{parameter}
-local_variable: is_on
-type: bool
-from_ros_service_response: true
-code:
-is_on = __input.is_on
-"""
-PARAMETER = """parameter: number
-code:
-chosen
-
-local_variable: chosen
-action_parameter: number
-"""
-
-
-def reading(project: str, *, has_parameter: bool = False) -> str:
+def reading(project: str, skill: str = "read", parameters: Sequence[str] = ()) -> str:
     """The mapping of a skill that answers yes or no."""
-    return READING.format(project=project, parameter=PARAMETER if has_parameter else "")
+    reports = {"is_on": "bool"}
+    return mapping_text(
+        "yes: is_on", "no: True", project=project, skill=skill, parameters=parameters, reports=reports
+    )
 
 
 def weights(dice: random.Random, count: int) -> list[float]:
@@ -71,7 +52,6 @@ class RandomModel:
             "chain.ef": "project: chain\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: int at\n\n"
             f"initial_belief:\n{start}\n"
         }
-        rules = "\n".join(f"response: r{r}\nresponse_rule: seen == {r}" for r in range(RESPONSES))
         for action in range(ACTIONS):
             moves = ", ".join(braces(row) for row in self.moves[action])
             sights = ", ".join(braces(row) for row in self.sights[action])
@@ -83,10 +63,11 @@ class RandomModel:
                 "const int responses[] = {" + ", ".join(f"r{r}" for r in range(RESPONSES)) + "};\n"
                 "__moduleResponse = responses[AOS.SampleDiscrete(sights[state__.at])];\n"
             )
-            files[f"act{action}.am"] = (
-                f"project: chain\n\n{rules}\n\nmodule_activation: skill\npath: /act{action}\n\n"
-                "local_variable: seen\ntype: int\nfrom_ros_service_response: true\n"
-                "code:\nseen = __input.seen\n"
+            files[f"act{action}.am"] = mapping_text(
+                *(f"r{r}: seen == {r}" for r in range(RESPONSES)),
+                project="chain",
+                skill=f"act{action}",
+                reports={"seen": "int"},
             )
         return files
 
@@ -169,7 +150,7 @@ LAMPS = 18
 MANY_STATES = {
     "lamps.ef": row_of_bools("lamps", LAMPS, "0.02 + 0.02 * i"),
     "read.sd": looking_at_one("lamps", LAMPS, "AOS.Bernoulli(state.lamps[number] ? 0.9 : 0.2)"),
-    "read.am": reading("lamps", has_parameter=True),
+    "read.am": reading("lamps", parameters=["number"]),
 }
 """2^18 states, more than a belief holds; each lamp is independent of the others."""
 
@@ -227,7 +208,7 @@ CARDS = 40
 DEPLETING = {
     "cards.ef": row_of_bools("cards", CARDS, "0.5"),
     "turn.sd": looking_at_one("cards", CARDS, "state.cards[number]"),
-    "turn.am": reading("cards", has_parameter=True),
+    "turn.am": reading("cards", parameters=["number"]),
 }
 """2^40 states, of which each activation rules out half: 5,000 particles last for 12 of 40."""
 

@@ -8,6 +8,7 @@ from asyncio.subprocess import PIPE
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text
 from processes import HANG_S
 
@@ -20,8 +21,7 @@ LAMP = {
     "lamp.ef": "project: lamp\nhorizon: 3\nstate_variable: bool is_on\nreward_code:\n"
     "if (state.is_on) __reward = 1;\n",
     "press.sd": "project: lamp\ndynamic_model:\nstate__.is_on = !state.is_on;\n__moduleResponse = clicked;\n",
-    "press.am": "project: lamp\nresponse: clicked\nresponse_rule: True\nmodule_activation: skill\n"
-    "path: /press\n",
+    "press.am": mapping_text("clicked: True", project="lamp", skill="press"),
 }
 
 

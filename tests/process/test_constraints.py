@@ -10,8 +10,9 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from mappings import mapping_text
 from models import engine_of
-from scripted_models import bundle_project, mapping_text, text_project
+from scripted_models import bundle_project, text_project
 from test_mission_loop import Surroundings, observed
 
 from aos_deploy.constraints import constrained, constraint_of_option

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
+from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
 
 from aos_solver.child.search import Search
@@ -41,14 +42,7 @@ dynamic_model:
 __moduleResponse = done;
 """,
 } | {
-    f"{skill}.am": f"""project: counter
-
-response: done
-response_rule: True
-
-module_activation: skill
-path: /{skill}
-"""
+    f"{skill}.am": mapping_text("done: True", project="counter", skill=skill)
     for skill in ("bet", "wait", "stop")
 }
 """A level that is drawn anew by waiting: to bet loses 6 on average, to wait 1, to stop nothing."""

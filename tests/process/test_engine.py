@@ -7,6 +7,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
 from processes import descendants, until_ended
 
@@ -15,15 +16,6 @@ from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
-
-OPENING = """project: tiger
-
-response: opened
-response_rule: True
-
-module_activation: skill
-path: {path}
-"""
 
 TIGER = {
     "tiger.ef": """project: tiger
@@ -55,24 +47,15 @@ __reward = state.is_left ? 10 : -100;
 state__.is_left = AOS.Bernoulli(0.5);
 __moduleResponse = opened;
 """,
-    "listen.am": """project: tiger
-
-response: hears_left
-response_rule: heard == 'left'
-response: hears_right
-response_rule: True
-
-module_activation: skill
-path: /listen
-
-local_variable: heard
-type: string
-from_ros_service_response: true
-code:
-heard = __input.side
-""",
-    "open_left.am": OPENING.format(path="/left"),
-    "open_right.am": OPENING.format(path="/right"),
+    "listen.am": mapping_text(
+        "hears_left: heard == 'left'",
+        "hears_right: True",
+        project="tiger",
+        skill="listen",
+        reports={"heard": "string"},
+    ),
+    "open_left.am": mapping_text("opened: True", project="tiger", skill="left"),
+    "open_right.am": mapping_text("opened: True", project="tiger", skill="right"),
 }
 
 EXACT_AT_8 = {

@@ -8,6 +8,7 @@ from asyncio.subprocess import PIPE
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 from processes import HANG_S
 
@@ -30,12 +31,7 @@ dynamic_model:
 state__.is_on = !state.is_on;
 __moduleResponse = clicked;
 """,
-    "press.am": """project: lamp
-response: clicked
-response_rule: True
-module_activation: skill
-path: /press
-""",
+    "press.am": mapping_text("clicked: True", project="lamp", skill="press"),
 }
 
 

@@ -5,24 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 
-MAPPING = """project: {project}
 
-response: high
-response_rule: level == 'high'
-response: low
-response_rule: True
+def reading(project: str, skill: str = "read") -> str:
+    """The mapping of a skill that tells high from low."""
+    return mapping_text(
+        "high: level == 'high'", "low: True", project=project, skill=skill, reports={"level": "string"}
+    )
 
-module_activation: skill
-path: /read
-
-local_variable: level
-type: string
-from_ros_service_response: true
-code:
-level = __input.level
-"""
 
 GAUGE = {
     "gauge.ef": """project: gauge
@@ -41,7 +33,7 @@ __reward = -1;
 if (state__.level + AOS.SampleNormal(0, 1) > 0) __moduleResponse = high;
 else __moduleResponse = low;
 """,
-    "read.am": MAPPING.format(project="gauge"),
+    "read.am": reading("gauge"),
 }
 """A level that is never seen, only its sign under noise of the same size."""
 
@@ -62,7 +54,7 @@ __reward = -1;
 if (state__.on > 12) __moduleResponse = high;
 else __moduleResponse = low;
 """,
-    "read.am": MAPPING.format(project="switches"),
+    "read.am": reading("switches"),
 }
 """2^24 combinations of draws, of which only the number of ones is kept."""
 
@@ -80,7 +72,7 @@ __heuristicValue = 10;
 dynamic_model:
 __moduleResponse = high;
 """,
-    "leap.am": MAPPING.format(project="gauge").replace("/read", "/leap"),
+    "leap.am": reading("gauge", "leap"),
 }
 """The only skill that play-outs prefer cannot be run."""
 
@@ -137,7 +129,7 @@ state__.level = AOS.SampleNormal(0, 1);
 __reward = {leap};
 __moduleResponse = high;
 """,
-    "leap.am": MAPPING.format(project="gauge").replace("/read", "/leap"),
+    "leap.am": reading("gauge", "leap"),
 }
 """Play-outs only ever read, which costs 2 on average; no state is worth more than another."""
 

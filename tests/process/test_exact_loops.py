@@ -8,6 +8,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 from typer.testing import CliRunner
 
@@ -15,22 +16,7 @@ from aos_deploy.cli import aos_app
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.engine import Engine
 
-MAPPING = """project: loops
-
-response: yes
-response_rule: is_on
-response: no
-response_rule: True
-
-module_activation: skill
-path: /turn
-
-local_variable: is_on
-type: bool
-from_ros_service_response: true
-code:
-is_on = __input.is_on
-"""
+MAPPING = mapping_text("yes: is_on", "no: True", project="loops", skill="turn", reports={"is_on": "bool"})
 ENVIRONMENT = """project: loops
 horizon: 2
 discount: 0.5

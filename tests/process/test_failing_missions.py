@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 from scripted_missions import Clock, Surroundings, jammed, observed, run_mission, timed_out
-from scripted_models import mapping_text
 
 from aos_protocol.messages import Activate, EndingOdds, Fault, Outcome
 from aos_solver.building.build import BuiltModel

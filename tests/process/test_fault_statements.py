@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 from processes import HANG_S
 
@@ -75,12 +76,7 @@ __moduleResponse = ok;
 if (fault == eResponse)
     __moduleResponse = 9;  // eResponse
 """
-ANSWERING = """project: ward
-response: ok
-response_rule: True
-module_activation: skill
-path: /slip
-"""
+ANSWERING = mapping_text("ok: True", project="ward", skill="slip")
 FAULTS = {
     "eNull": ("AOS210", "signal 11"),
     "eRange": ("AOS215", "element 7 of a vector of 3"),

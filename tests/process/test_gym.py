@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from processes import HANG_S
 
 pytest.importorskip("gymnasium", reason="needs gymnasium: pip install 'aos-autonomy[gym]'")
@@ -33,30 +34,14 @@ if (AOS.Bernoulli(0.5)) state__.degrees++;
 __moduleResponse = state__.degrees > 1 ? warm : cold;
 __reward = -1;
 """,
-    "heat.am": """project: kettle
-response: cold
-response_rule: False
-response: warm
-response_rule: True
-module_activation: skill
-path: /heat
-""",
+    "heat.am": mapping_text("cold: False", "warm: True", project="kettle", skill="heat"),
 }
 READING = {
     "read.sd": """project: kettle
 dynamic_model:
 __moduleResponseStr = state.degrees > 1 ? "warm" : "cold";
 """,
-    "read.am": """project: kettle
-module_activation: skill
-path: /read
-local_variable: text
-type: string
-from_ros_service_response: true
-code:
-text = __input.text
-response_local_variable: text
-""",
+    "read.am": mapping_text(project="kettle", skill="read", response_from="text"),
 }
 SENSING = {
     "sense.sd": """project: kettle
@@ -65,22 +50,9 @@ __moduleResponse = sensed;
 __observed.weight = AOS.SampleNormal(7, 0.5);
 for (int i = 1; i < 3; i++) __observed.echoes.push_back(AOS.SampleUniform(i, i + 1));
 """,
-    "sense.am": """project: kettle
-response: sensed
-response_rule: True
-module_activation: skill
-path: /sense
-local_variable: weight
-type: float
-from_ros_service_response: true
-code:
-weight = __input.weight
-local_variable: echoes
-type: float[]
-from_ros_service_response: true
-code:
-echoes = __input.echoes
-""",
+    "sense.am": mapping_text(
+        "sensed: True", project="kettle", skill="sense", reports={"weight": "float", "echoes": "float[]"}
+    ),
 }
 
 

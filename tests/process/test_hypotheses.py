@@ -7,8 +7,8 @@ import signal
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
-from scripted_models import mapping_text
 
 from aos_protocol.messages import BeliefSummary
 from aos_solver.child.engine import Engine

@@ -8,6 +8,7 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 from processes import descendants, until_ended
 
@@ -47,22 +48,9 @@ if (state.unit == 3) __moduleResponse = AOS.Bernoulli(state.lamps[0] ? 0.9 : 0.2
 state_given_observation:
 state___.cells[1] = number;
 """
-READ_MAPPING = """project: lamps
-
-response: yes
-response_rule: number > 0
-response: no
-response_rule: True
-
-module_activation: skill
-path: /read
-
-local_variable: number
-type: int
-from_ros_service_response: true
-code:
-number = __input.number
-"""
+READ_MAPPING = mapping_text(
+    "yes: number > 0", "no: True", project="lamps", skill="read", reports={"number": "int"}
+)
 FILES = {"lamps.ef": ENVIRONMENT, "read.sd": READ, "read.am": READ_MAPPING}
 """2^17 states, more than a belief holds, of 59 numbers each; the unit is a constant."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from mappings import mapping_text
 from models import built_text, engine_of
 
 BOXES = {
@@ -29,28 +30,14 @@ __reward = state.full[box] ? 1 : 0;
 __moduleResponse = state.full[box] ? found : nothing;
 state__.full[box] = false;
 """,
-    "open.am": """project: boxes
-
-response: found
-response_rule: code == 'found'
-response: nothing
-response_rule: True
-
-module_activation: skill
-path: /open
-parameter: box
-code:
-box
-
-local_variable: box
-action_parameter: box
-
-local_variable: code
-type: string
-from_ros_service_response: true
-code:
-code = __input.code
-""",
+    "open.am": mapping_text(
+        "found: code == 'found'",
+        "nothing: True",
+        project="boxes",
+        skill="open",
+        parameters=("box",),
+        reports={"code": "string"},
+    ),
 }
 """Each of 24 boxes may hold one coin: sixteen million states."""
 
@@ -168,22 +155,9 @@ __reward = state.full[state.at] ? 10 : -10;
 __moduleResponse = state.full[state.at] ? found : nothing;
 state__.full[state.at] = false;
 """,
-    "take.am": """project: shelves
-
-response: found
-response_rule: code == 'found'
-response: nothing
-response_rule: True
-
-module_activation: skill
-path: /take
-
-local_variable: code
-type: string
-from_ros_service_response: true
-code:
-code = __input.code
-""",
+    "take.am": mapping_text(
+        "found: code == 'found'", "nothing: True", project="shelves", skill="take", reports={"code": "string"}
+    ),
 }
 """A robot before 16 shelves: a million states. Looks at all shelves lead to the same states."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 
 from aos_protocol.errors import ModelError
@@ -24,22 +25,7 @@ LOOPS = {
 }
 """Code, and the probability that it does not go round."""
 
-MAPPING = """project: loops
-
-response: yes
-response_rule: is_on
-response: no
-response_rule: True
-
-module_activation: skill
-path: /turn
-
-local_variable: is_on
-type: bool
-from_ros_service_response: true
-code:
-is_on = __input.is_on
-"""
+MAPPING = mapping_text("yes: is_on", "no: True", project="loops", skill="turn", reports={"is_on": "bool"})
 ENVIRONMENT = """project: loops
 horizon: 5
 discount: 0.95

@@ -12,15 +12,10 @@ from typing import Any
 import pytest
 import pytest_asyncio
 from mapping_documents import emitted
+from mapping_runs import HEAD
 from processes import descendants, until_ended
 
 from aos_middleware.evaluator import EvaluationLimits, Evaluator, MappingFault
-
-HEAD = """\
-project: garden
-module_activation: skill
-path: /look
-"""
 
 RESULT = (
     HEAD

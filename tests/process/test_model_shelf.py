@@ -7,6 +7,8 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+from mappings import mapping_text
+
 from aos_language.load import load_files
 from aos_protocol.errors import ModelError
 from aos_protocol.messages import BeliefSummary, ProjectRevision
@@ -29,14 +31,7 @@ dynamic_model:
 __moduleResponse = state.is_on ? light : dark;
 __reward = -COST;
 """,
-    "look.am": """project: lamp
-response: light
-response_rule: True
-response: dark
-response_rule: True
-module_activation: skill
-path: /look
-""",
+    "look.am": mapping_text("light: True", "dark: True", project="lamp", skill="look"),
 }
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 from numpy.typing import NDArray
 
@@ -39,15 +40,9 @@ PRIOR = (0.5, 0.3, 0.2)
 
 def mapping(*locals_: str, responses: tuple[str, ...] = ("read",)) -> str:
     """A mapping with these responses and local variables, each as `type name`."""
-    rules = [f"response: {name}\nresponse_rule: code == '{name}'" for name in responses]
-    variables = []
-    for kind, name in (local.split() for local in ("string code", *locals_)):
-        variables.append(
-            f"local_variable: {name}\ntype: {kind}\nfrom_ros_service_response: true\n"
-            f"code:\n{name} = __input.{name}\n"
-        )
-    activation = "module_activation: skill\npath: /look\n"
-    return "\n".join(["project: gauge", *rules, activation, *variables])
+    rules = [f"{name}: code == '{name}'" for name in responses]
+    kinds = dict(reversed(local.split()) for local in ("string code", *locals_))
+    return mapping_text(*rules, project="gauge", skill="look", reports=kinds)
 
 
 def documents(dynamic_model: str, am: str, belief: str = THREE_LEVELS) -> dict[str, str]:

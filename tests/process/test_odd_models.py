@@ -5,25 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 
 from aos_protocol.errors import DocumentError
-
-MAPPING = """project: odd
-
-{responses}
-
-module_activation: skill
-path: /act
-
-local_variable: text
-type: string
-from_ros_service_response: true
-code:
-text = __input.text
-"""
-
-DONE = "response: done\nresponse_rule: True"
 
 CROWDED = {
     "odd.ef": "project: odd\nhorizon: 5\ndiscount: 0.9\n\n"
@@ -42,7 +27,7 @@ state__.cells[cell] = 0;
 state__.count_99 += 1;
 __moduleResponse = done;
 """,
-    "dig.am": MAPPING.format(responses=DONE),
+    "dig.am": mapping_text("done: True", project="odd"),
 }
 """1,000 actions, 100 variables, an array of 1,000 cells."""
 
@@ -66,7 +51,7 @@ while (AOS.Bernoulli(0.5)) state__.tosses++;
 __reward = state__.tosses;
 __moduleResponseStr = state.is_hot ? "it is hot" : "it is cold";
 """,
-    "toss.am": MAPPING.format(responses="").replace("\n\n\n", "\n") + "response_local_variable: text\n",
+    "toss.am": mapping_text(project="odd", response_from="text"),
 }
 """One action, texts as observations, and a loop that only chance ends."""
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
+from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
 
 from aos_solver.building.build import BuiltModel
@@ -34,22 +35,9 @@ state__.place = AOS.SampleDiscrete(odds);
 __moduleResponse = AOS.Bernoulli(state.alarms[row - state.place + state__.place]) ? alarm : quiet;
 """
 
-MAPPING = """project: chance
-
-response: alarm
-response_rule: heard == 'alarm'
-response: quiet
-response_rule: True
-
-module_activation: skill
-path: /act
-
-local_variable: heard
-type: string
-from_ros_service_response: true
-code:
-heard = __input.sound
-"""
+MAPPING = mapping_text(
+    "alarm: heard == 'alarm'", "quiet: True", project="chance", skill="act", reports={"heard": "string"}
+)
 
 
 class Chance:

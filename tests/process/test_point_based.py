@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
 
 from aos_solver.building.build import BuiltModel
@@ -33,14 +34,7 @@ dynamic_model:
 __reward = state.is_winner ? 2 : -1;
 __moduleResponse = done;
 """,
-    "check.am": """project: ticket
-
-response: done
-response_rule: True
-
-module_activation: skill
-path: /check
-""",
+    "check.am": mapping_text("done: True", project="ticket", skill="check"),
 }
 
 FIELD = {
@@ -72,14 +66,7 @@ else state__.north = (state.north + 1) % 150;
 __reward = state.east * 0.01 - state.north * 0.005;
 __moduleResponse = done;
 """,
-    "walk.am": """project: field
-
-response: done
-response_rule: True
-
-module_activation: skill
-path: /walk
-""",
+    "walk.am": mapping_text("done: True", project="field", skill="walk"),
 }
 """22,500 places that all matter."""
 

@@ -5,22 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 
 from aos_solver.child.engine import Planner
-
-MAPPING = """project: vault
-module_activation: skill
-path: /{skill}
-
-local_variable: text
-type: string
-from_ros_service_response: true
-code:
-text = __input.text
-
-response_local_variable: text
-"""
 
 CELLS = 60
 
@@ -61,7 +49,10 @@ if (state.cell == {CELLS}) {{
 }}
 __moduleResponseStr = "done";
 """,
-    **{f"{skill}.am": MAPPING.format(skill=skill) for skill in ("look", "walk", "open")},
+    **{
+        f"{skill}.am": mapping_text(project="vault", skill=skill, response_from="text")
+        for skill in ("look", "walk", "open")
+    },
 }
 
 WORTH = {"7 full": 100 * 0.99**CELLS, "8 empty": 0.0, "9 full": 100 * 0.99**CELLS}

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
-from scripted_models import mapping_text
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app

@@ -11,6 +11,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
+from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
 from processes import HANG_S
 
@@ -226,9 +227,7 @@ def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:
 
 
 async def test_continuous_draws_and_endless_counters_cannot_be_solved_before(cache_dir: Path) -> None:
-    mapping = (
-        "project: gauge\n\nresponse: high\nresponse_rule: True\n\nmodule_activation: skill\npath: /read\n"
-    )
+    mapping = mapping_text("high: True", project="gauge", skill="read")
     skill = "project: gauge\n\ndynamic_model:\n{step}\n__reward = state__.level;\n__moduleResponse = high;\n"
     environment = "project: gauge\nhorizon: 5\ndiscount: 0.95\n\nstate_variable: {kind} level\n"
     for kind, step, reason in (

@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator, Mapping
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_bundle, built_text, engine_of
 
 from aos_protocol.messages import BeliefSummary
@@ -77,73 +78,27 @@ if (tiles[2]) state___.visits = tiles.size();
 state___.is_mapped = state__.is_mapped || AOS.Bernoulli(0.5);
 """
 
-DRIVE_MAPPING = """project: rover
-
-response: arrived
-response_rule: True
-
-module_activation: skill
-path: /drive
-
-local_variable: slipped
-type: bool
-from_ros_service_response: true
-code:
-slipped = __input.slipped
-
-local_variable: place
-type: string
-from_ros_service_response: true
-code:
-place = __input.place
-
-local_variable: distances
-type: double[]
-from_ros_service_response: true
-code:
-distances = __input.distances
-
-local_variable: charge
-type: float
-from_ros_service_response: true
-code:
-charge = __input.charge
-
-local_variable: heights
-type: int[]
-from_ros_service_response: true
-code:
-heights = __input.heights
-
-local_variable: tiles
-type: vector<bool>
-from_ros_service_response: true
-code:
-tiles = __input.tiles
-
-local_variable: note
-from_ros_service_response: true
-code:
-note = __input.note
-"""
+DRIVE_MAPPING = (
+    mapping_text(
+        "arrived: True",
+        project="rover",
+        skill="drive",
+        reports={
+            "slipped": "bool",
+            "place": "string",
+            "distances": "double[]",
+            "charge": "float",
+            "heights": "int[]",
+            "tiles": "vector<bool>",
+        },
+    )
+    + "\nlocal_variable: note\nfrom_ros_service_response: true\ncode:\nnote = __input.note\n"
+)
 
 LOOK = "project: rover\n\ndynamic_model:\n__moduleResponse = state.is_mapped ? known : unknown;\n"
-LOOK_MAPPING = """project: rover
-
-response: known
-response_rule: found
-response: unknown
-response_rule: True
-
-module_activation: skill
-path: /look
-
-local_variable: found
-type: bool
-from_ros_service_response: true
-code:
-found = __input.found
-"""
+LOOK_MAPPING = mapping_text(
+    "known: found", "unknown: True", project="rover", skill="look", reports={"found": "bool"}
+)
 
 ROVER = {
     "rover.ef": ENVIRONMENT,

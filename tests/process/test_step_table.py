@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
 
 ODDS = (0.02, 0.5, 0.18, 0.3)
@@ -50,22 +51,9 @@ if (throws) {{
 }}
 __moduleResponse = AOS.Bernoulli(0.9) == (state__.face < 2) ? low : high;
 """,
-        "play.am": """project: die
-
-response: low
-response_rule: face < 2
-response: high
-response_rule: True
-
-module_activation: skill
-path: /play
-
-local_variable: face
-type: int
-from_ros_service_response: true
-code:
-face = __input.face
-""",
+        "play.am": mapping_text(
+            "low: face < 2", "high: True", project="die", skill="play", reports={"face": "int"}
+        ),
     }
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
-from text_mappings import text_mapping
 
 BOXES = """project: boxes
 horizon: 20
@@ -45,7 +45,9 @@ state__.full[box] = false;
 if (carefully) __reward -= 0.5;
 else if (AOS.Bernoulli(0.0001)) __reward -= 100000;
 """,
-    "open.am": text_mapping("boxes", "open", "box", "carefully"),
+    "open.am": mapping_text(
+        project="boxes", skill="open", parameters=["box", "carefully"], response_from="code"
+    ),
 }
 """Care costs 0.5. Without it a box costs 10 on average: once in 10,000 times 100,000."""
 
@@ -61,21 +63,21 @@ dynamic_model:
 __moduleResponseStr = state.full[box] ? "bomb" : "nothing";
 if (state.full[box]) state__.end = 2;
 """,
-    "open.am": text_mapping("boxes", "open", "box"),
+    "open.am": mapping_text(project="boxes", skill="open", parameters=["box"], response_from="code"),
     "wait.sd": """project: boxes
 
 dynamic_model:
 __reward = -0.1;
 __moduleResponseStr = "nothing";
 """,
-    "wait.am": text_mapping("boxes", "wait"),
+    "wait.am": mapping_text(project="boxes", skill="wait", response_from="code"),
     "leave.sd": """project: boxes
 
 dynamic_model:
 state__.end = 1;
 __moduleResponseStr = "left";
 """,
-    "leave.am": text_mapping("boxes", "leave"),
+    "leave.am": mapping_text(project="boxes", skill="leave", response_from="code"),
 }
 """Boxes hold nothing but bombs, so that it is best to leave. Who waits pays 0.1 for each step."""
 
@@ -112,7 +114,9 @@ for (int i = 0; i < 30; i++) {
 for (double& each : odds) each /= sum;
 __moduleResponseStr = "alarm " + std::to_string(AOSUtils::SampleDiscrete(odds));
 """,
-    "restart.am": text_mapping("alarms", "restart", "machine"),
+    "restart.am": mapping_text(
+        project="alarms", skill="restart", parameters=["machine"], response_from="code"
+    ),
 }
 """Machines in a ring fail beside one that is down. Each step has an alarm, as a rule of one that is down."""
 

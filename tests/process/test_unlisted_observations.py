@@ -6,8 +6,8 @@ import math
 from pathlib import Path
 
 import pytest
+from mappings import mapping_text
 from models import built_text, engine_of
-from text_mappings import text_mapping
 
 CORRIDOR = {
     "corridor.ef": """project: corridor
@@ -32,7 +32,7 @@ __reward = -1;
 __moduleResponseStr = "";
 for (int i = 0; i < 12; i++) __moduleResponseStr += char('a' + int(AOS.SampleUniform(0, 20)));
 """,
-    "walk.am": text_mapping("corridor", "walk"),
+    "walk.am": mapping_text(project="corridor", skill="walk", response_from="code"),
 }
 
 
@@ -90,25 +90,16 @@ for (int i = 0; i < 3; i++) {
     __moduleResponseStr += to_string(int(floor(4 * heard))) + ";";
 }
 """,
-    "listen.am": text_mapping("doors", "listen"),
+    "listen.am": mapping_text(project="doors", skill="listen", response_from="code"),
     "wait.sd": "project: doors\ndynamic_model:\n__reward = 0;\n",
-    "wait.am": "project: doors\nmodule_activation: skill\npath: /wait\n",
+    "wait.am": mapping_text(project="doors", skill="wait"),
     "open.sd": """project: doors
 parameter: Side side
 dynamic_model:
 __reward = (side == Left) == state.is_left ? 10 : -100;
 state__.is_left = AOS.Bernoulli(0.5);
 """,
-    "open.am": """project: doors
-module_activation: skill
-path: /open
-parameter: side
-code:
-chosen
-
-local_variable: chosen
-action_parameter: side
-""",
+    "open.am": mapping_text(project="doors", skill="open", parameters=("side",)),
 }
 
 

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mappings import mapping_of_model, mapping_text
 from processes import HANG_S, until_ended
-from scripted_models import bundle_project, json_text, lowered, mapping_of_model, mapping_text, text_project
+from scripted_models import bundle_project, json_text, lowered, text_project
 
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as build_module

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from scripted_models import ScriptedModel, mapping_text, scripted, text_project
+from mappings import mapping_text
+from scripted_models import ScriptedModel, scripted, text_project
 
 PARAMETERLESS = "project: test\ndynamic_model:\n"
 

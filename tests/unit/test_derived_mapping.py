@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from mapping_runs import fields, loaded, observed
+from mappings import mapping_text
 
 from aos_deploy.adapter_templates import adapter_files
 from aos_editor.symbols import read_bundle
@@ -136,7 +137,7 @@ def test_a_result_that_brings_no_response_is_told_with_its_reason() -> None:
 
 
 def test_a_mapping_that_has_no_skill_is_told_with_the_name_that_was_meant() -> None:
-    mapping = "project: barn\nmodule_activation: skill\npath: /look\n"
+    mapping = mapping_text(project="barn", skill="look")
     bundle = loaded_files(lok_am=mapping)
     errors = [(each.code, each.span.file, each.hint) for each in bundle.diagnostics if each.is_error]
     assert errors == [

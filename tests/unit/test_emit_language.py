@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from scripted_models import ScriptedModel, json_text, mapping_text, scripted, text_project
+from mappings import mapping_text
+from scripted_models import ScriptedModel, json_text, scripted, text_project
 
 
 def skill_text(name: str, code: str | list[dict[str, Any]], **sections: Any) -> str:

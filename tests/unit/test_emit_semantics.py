@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from scripted_models import ScriptedModel, json_text, mapping_text, scripted, text_project
+from mappings import mapping_text
+from scripted_models import ScriptedModel, json_text, scripted, text_project
 
 SWITCH = {
     "home.ef": """project: test

@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
-from scripted_models import bundle_project, lowered, mapping_text, text_project
+from mappings import mapping_text
+from scripted_models import bundle_project, lowered, text_project
 
 from aos_solver.emission.emit import EmittedModel
 from aos_solver.emission.lower import lower

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from scripted_models import ScriptedModel, mapping_text, scripted, text_project
+from mappings import mapping_text
+from scripted_models import ScriptedModel, scripted, text_project
 
 from aos_deploy.exit_codes import exit_code_of_mission
 from aos_language.convert import Dialect, convert, without_origins

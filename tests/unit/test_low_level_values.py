@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from mapping_documents import emitted, project_in
+from mappings import mapping_text
 from scripted_models import text_project
 
 from aos_middleware.frames import Begin, Begun, Finish, Load, Observed, Raised
@@ -43,12 +44,7 @@ code:
 ___gate.x = 4.0
 """,
     "walk.sd": "project: garden\nparameter: Spot to\ndynamic_model:\n__moduleResponse = arrived;\n",
-    "walk.am": """project: garden
-response: arrived
-response_rule: True
-module_activation: skill
-path: /walk
-""",
+    "walk.am": mapping_text("arrived: True", project="garden", skill="walk"),
 }
 HEAD = """\
 project: garden

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import msgspec
 import pytest
-from scripted_models import json_text, mapping_of_model, mapping_text, text_project
+from mappings import mapping_of_model, mapping_text
+from scripted_models import json_text, text_project
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 import pytest
-from scripted_models import mapping_of_model, text_project
+from mappings import mapping_of_model
+from scripted_models import text_project
 
 from aos_solver.emission.lower_averages import averaged_draws
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from scripted_models import mapping_of_model, text_project
+from mappings import mapping_of_model
+from scripted_models import text_project
 
 from aos_solver.emission.lower_copies import Copies, copies_of
 

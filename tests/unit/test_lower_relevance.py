@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
-from scripted_models import bundle_project, mapping_of_model, text_project
+from mappings import mapping_of_model
+from scripted_models import bundle_project, text_project
 
 from aos_protocol.documents import Project
 from aos_solver.emission.lower_relevance import (

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mapping_documents import emitted, mapping_of, project_in, skill_of
+from mapping_runs import HEAD
 from msgspec.structs import replace
 
 from aos_language.findings import Findings
@@ -27,12 +28,6 @@ from aos_protocol.documents import (
     Snippet,
 )
 from aos_protocol.errors import DocumentError
-
-HEAD = """\
-project: garden
-module_activation: skill
-path: /look
-"""
 
 
 def mistakes(text: str) -> list[tuple[str, str]]:

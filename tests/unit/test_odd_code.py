@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from scripted_models import mapping_text, scripted, text_project
+from mappings import mapping_text
+from scripted_models import scripted, text_project
 
 BENCH = {
     "bench.ef": """project: test

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from scripted_models import bundle_project, json_text, lowered, mapping_text, text_project
+from mappings import mapping_text
+from scripted_models import bundle_project, json_text, lowered, text_project
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.observed import misuses_of, reported_numbers, reports_in
