@@ -40,4 +40,4 @@ newcomer:  ## run README's two commands in a fresh clone, an empty home and with
 	tests/newcomer.sh
 
 clean:  ## remove what set-up, tests and runs have left
-	rm -rf $(VENV) build runs *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) build runs .compiled *.egg-info .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -16,18 +16,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+from exam.programs import built_program
+
 from aos_deploy.program import cache_dir
-from aos_solver.building.build import SOURCES
-from aos_solver.building.build_cache import BuildCache, digest_of
-from aos_solver.building.compiler import find_compiler
 
 __all__ = ["truth_program"]
 
-_FOLDER = Path(__file__).parent / "cpp" / "point_based"
-_SOURCE = _FOLDER / "point_based_truth.cpp"
-_SOLVER = SOURCES / "point_based.cpp"
-_OPTIONS = ("-O2", f"-I{SOURCES}")
-_EXECUTABLE = "truth"
+_SOURCE = Path(__file__).parent / "cpp" / "point_based" / "point_based_truth.cpp"
 
 
 def main() -> None:
@@ -44,25 +39,7 @@ def main() -> None:
 
 def truth_program(cache: Path) -> Path:
     """The program that generates and checks, from the cache or compiled now."""
-    return asyncio.run(_compiled(BuildCache(cache))) / _EXECUTABLE
-
-
-async def _compiled(cache: BuildCache) -> Path:
-    compiler = await find_compiler()
-    sources = [*sorted(_FOLDER.iterdir()), _SOLVER, *sorted((SOURCES / "point_based").iterdir())]
-    texts = [path.read_text() for path in sources]
-
-    async def make(staging: Path) -> None:
-        parts = [_SOURCE, _SOLVER]
-        for part in parts:
-            _run(compiler.compilation(str(part), f"{part.stem}.o", *_OPTIONS), staging)
-        _run(compiler.linking([f"{part.stem}.o" for part in parts], _EXECUTABLE), staging)
-
-    return await cache.fill(f"bounds-truth-{digest_of([compiler.version, *_OPTIONS, *texts])}", make)
-
-
-def _run(command: list[str], staging: Path) -> None:
-    subprocess.run(command, cwd=staging, check=True, timeout=240)
+    return asyncio.run(built_program(cache, _SOURCE))
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from exam.programs import run, what_decides
 
 from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
@@ -133,23 +134,19 @@ def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
 
 async def _compiled(emitted: EmittedModel, cache: BuildCache) -> Path:
     compiler = await find_compiler()
-    driver = (_DRIVER / _HEADER).read_text()
-    precompiled = await cache.fill(f"script-{digest_of([driver])}", partial(_precompile, compiler))
+    decides = [*_OPTIONS, (_DRIVER / _HEADER).read_text(), *what_decides(compiler)]
+    precompiled = await cache.fill(f"script-{digest_of(decides)}", partial(_precompile, compiler))
 
     async def make(staging: Path) -> None:
         # Only what is included first is taken as precompiled.
         (staging / "scripted.cpp").write_text(f'#include "{_HEADER}"\n{_TABLE.sub(_MAIN, emitted.cpp)}')
         options = [*_OPTIONS, *compiler.precompiled(_HEADER, str(precompiled))]
-        _run(compiler.compilation("scripted.cpp", "scripted.o", str(_DRIVER), *options), staging)
-        _run(compiler.linking(["scripted.o"], _EXECUTABLE), staging)
+        run(compiler.compilation("scripted.cpp", "scripted.o", str(_DRIVER), *options), staging)
+        run(compiler.linking(["scripted.o"], _EXECUTABLE), staging)
 
-    return await cache.fill(f"scripted-{digest_of([emitted.cpp, driver])}", make)
+    return await cache.fill(f"scripted-{digest_of([emitted.cpp, *decides])}", make)
 
 
 async def _precompile(compiler: Compiler, staging: Path) -> None:
     """Reads the driver, and with it what models include, once for all of them."""
-    _run(compiler.precompilation(_HEADER, str(_DRIVER), ".", *_OPTIONS), staging)
-
-
-def _run(command: list[str], staging: Path) -> None:
-    subprocess.run(command, cwd=staging, check=True, timeout=240)
+    run(compiler.precompilation(_HEADER, str(_DRIVER), ".", *_OPTIONS), staging)

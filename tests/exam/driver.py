@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import os
 import subprocess
@@ -11,11 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from aos_solver.building.build import SOURCES
-from aos_solver.building.build_cache import BuildCache, digest_of
-from aos_solver.building.compiler import Compiler, find_compiler
-
 from .problem import Problem
+from .programs import built_program
 
 __all__ = ["Driver", "built_driver"]
 
@@ -23,28 +19,8 @@ _CPP = Path(__file__).parent / "cpp"
 
 
 async def built_driver(cache_dir: Path) -> Path:
-    """The executable, from the cache or compiled now, which takes about a minute."""
-    compiler = await find_compiler()
-    sources = [*sorted(_CPP.glob("*")), *sorted(SOURCES.rglob("*.[ch]pp"))]
-    name = f"exam-{digest_of([compiler.version, *(path.read_text() for path in sources)])}"
-
-    async def make(staging: Path) -> None:
-        exam = compiler.compilation(str(_CPP / "exam.cpp"), "exam.o", str(_CPP), f"-I{SOURCES}")
-        numbers = compiler.compilation(str(SOURCES / "point_based.cpp"), "point_based.o", str(SOURCES), "-O3")
-        await asyncio.gather(*(asyncio.to_thread(_run, command, staging) for command in (exam, numbers)))
-        _run(_linking(compiler), staging)
-
-    return await BuildCache(cache_dir).fill(name, make) / "exam"
-
-
-def _linking(compiler: Compiler) -> list[str]:
-    return compiler.linking(["exam.o", "point_based.o"], "exam")
-
-
-def _run(command: list[str], staging: Path) -> None:
-    done = subprocess.run(command, cwd=staging, capture_output=True, text=True, timeout=600)
-    if done.returncode != 0:
-        raise SystemExit(f"exam: the driver does not compile:\n{done.stderr}")
+    """The executable, from the cache or compiled now, which takes half a minute."""
+    return await built_program(cache_dir, _CPP / "exam.cpp")
 
 
 class Driver:

@@ -6,7 +6,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace belief_tests {
 
 using units::Problem;
 using units::TableModel;
@@ -169,4 +169,4 @@ TEST("The error bound holds how far a belief with too many states is from the ex
   EXPECT(1 - overlap <= belief.error_bound() + 1e-9);
 }
 
-}  // namespace
+}  // namespace belief_tests

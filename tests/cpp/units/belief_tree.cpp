@@ -15,7 +15,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace belief_tree_tests {
 
 using units::Problem;
 using units::TableModel;
@@ -221,4 +221,4 @@ TEST("Responses that hardly ever come twice are refused") {
   EXPECT_EQUAL(tree.obstacle, "hardly a response comes twice");
 }
 
-}  // namespace
+}  // namespace belief_tree_tests

@@ -8,7 +8,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace budgets_tests {
 
 using aos::PlannerKind;
 using units::TableModel;
@@ -110,4 +110,4 @@ TEST("A search by POMCP that ends all at once still comes to an end") {
   EXPECT_EQUAL(planner.search(PlannerKind::pomcp, belief, {.simulations = 50}, horizon, random), 50u);
 }
 
-}  // namespace
+}  // namespace budgets_tests

@@ -55,6 +55,7 @@ std::string both(const char* text, const One& one, const Other& other) {
   static void UNITS_NAMED(test_, __LINE__)()
 
 #define EXPECT(condition) units::note((condition), __FILE__, __LINE__, #condition)
+#define EXPECT_THAT(condition, text) units::note((condition), __FILE__, __LINE__, (text))
 #define EXPECT_EQUAL(one, other) \
   units::note((one) == (other), __FILE__, __LINE__, units::both(#one " is not " #other, (one), (other)))
 #define EXPECT_NEAR(one, other, distance)                                   \

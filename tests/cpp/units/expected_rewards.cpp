@@ -5,7 +5,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace expected_rewards_tests {
 
 using units::Problem;
 using units::TableModel;
@@ -43,4 +43,4 @@ TEST("A certain value is reliable after few visits, and an uncertain one is not"
   EXPECT(!aos::is_certain({.q = -0.1, .n = 3, .standard_error = 0}, most));
 }
 
-}  // namespace
+}  // namespace expected_rewards_tests

@@ -4,7 +4,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace learned_values_tests {
 
 using units::TableModel;
 using Belief = aos::Belief<TableModel>;
@@ -26,4 +26,4 @@ TEST("Values are learned behind an exit that is open everywhere") {
   EXPECT_NEAR(worths[3], 0, 0.5);
 }
 
-}  // namespace
+}  // namespace learned_values_tests

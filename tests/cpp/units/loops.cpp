@@ -13,7 +13,7 @@
 #include "aos/base/observed_numbers.hpp"
 #include "check.hpp"
 
-namespace {
+namespace loops_tests {
 
 using aos::DirectedDraws;
 using aos::DrawingLoop;
@@ -307,4 +307,4 @@ TEST("A walk over a grid of 2500 cells until it meets a corner is eliminated") {
   for (int corner = 0; corner < 4; ++corner) EXPECT_NEAR(found.odds.at(corner), 0.25, 1e-11);
 }
 
-}  // namespace
+}  // namespace loops_tests

@@ -1,4 +1,6 @@
 // Runs every test and tells of each, as a line of JSON, what it expected in vain.
+//
+// All tests are one translation unit: the headers are templates, which would be compiled for each file anew.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -7,6 +9,24 @@
 #include "aos/base/json.hpp"
 #include "aos/model/support.hpp"
 #include "check.hpp"
+
+#include "belief.cpp"
+#include "belief_tree.cpp"
+#include "budgets.cpp"
+#include "enumeration.cpp"
+#include "expected_rewards.cpp"
+#include "learned_values.cpp"
+#include "loops.cpp"
+#include "number_cells.cpp"
+#include "number_index.cpp"
+#include "particles.cpp"
+#include "point_based.cpp"
+#include "progress.cpp"
+#include "rollout.cpp"
+#include "search_tree.cpp"
+#include "state_space.cpp"
+#include "text_order.cpp"
+#include "wide_values.cpp"
 
 int main() {
   bool has_failed = false;

@@ -7,7 +7,7 @@
 #include "check.hpp"
 #include "point_based/online.hpp"
 
-namespace {
+namespace number_cells_tests {
 
 namespace point_based = aos::point_based;
 using aos::NumberCells;
@@ -193,4 +193,4 @@ TEST("What is earned over cells is below what numbers are worth, near it with ma
   EXPECT(before >= 0.95 * best);
 }
 
-}  // namespace
+}  // namespace number_cells_tests

@@ -10,7 +10,7 @@
 #include "point_based/regions.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace point_based_tests {
 
 using units::Problem;
 using units::TableModel;
@@ -136,4 +136,4 @@ TEST("Draws by columns have the weights that the columns were made of") {
   }
 }
 
-}  // namespace
+}  // namespace point_based_tests

@@ -10,7 +10,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace progress_tests {
 
 using units::TableModel;
 
@@ -45,4 +45,4 @@ TEST("A decision tells how far its lists and first bounds are") {
   EXPECT(told.empty());
 }
 
-}  // namespace
+}  // namespace progress_tests

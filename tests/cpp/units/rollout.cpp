@@ -4,7 +4,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace rollout_tests {
 
 using units::TableModel;
 
@@ -30,4 +30,4 @@ TEST("Rollouts at random get past an exit that is open everywhere and earns noth
   EXPECT(mean_return(units::corridor_with_exits(20, 1), 40) > 0.5);
 }
 
-}  // namespace
+}  // namespace rollout_tests

@@ -3,7 +3,7 @@
 
 #include "check.hpp"
 
-namespace {
+namespace search_tree_tests {
 
 constexpr std::size_t megabyte = std::size_t{1} << 20;
 
@@ -100,4 +100,4 @@ TEST("A cleared tree has its root only, without what was known of it") {
   EXPECT_EQUAL(tree.find_child(action_of(tree, 0, 0), 3), aos::no_node);
 }
 
-}  // namespace
+}  // namespace search_tree_tests

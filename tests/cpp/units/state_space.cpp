@@ -8,7 +8,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace state_space_tests {
 
 using units::Problem;
 using units::TableModel;
@@ -222,4 +222,4 @@ TEST("Exact values that exceed the budget are refused, and no wrong ones given")
   EXPECT(is_refused);
 }
 
-}  // namespace
+}  // namespace state_space_tests

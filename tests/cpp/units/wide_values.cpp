@@ -8,7 +8,7 @@
 #include "check.hpp"
 #include "worlds.hpp"
 
-namespace {
+namespace wide_values_tests {
 
 using units::Problem;
 using units::TableModel;
@@ -136,4 +136,4 @@ TEST("States keep their numbers when more variables turn out to differ") {
   EXPECT(!numbers.are_same(numbers[1], state_of(2, 6)));
 }
 
-}  // namespace
+}  // namespace wide_values_tests

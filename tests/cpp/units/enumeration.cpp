@@ -1,0 +1,104 @@
+// Draws and the walk over all of them: enumerator.hpp, normal.hpp, random.hpp.
+#include "aos/base/enumerator.hpp"
+
+#include <cmath>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "aos/base/normal.hpp"
+#include "aos/model/support.hpp"
+#include "check.hpp"
+
+namespace enumeration_tests {
+
+using namespace aos;
+
+struct Walked {
+  double walked = 0;
+  double left_out = 1;
+  bool has_ended = true;
+};
+
+template <class Code>
+Walked walked(Code&& code) {
+  Walked result;
+  Enumerator draws;
+  try {
+    result.left_out = draws.for_nearly_each_path(code, [&](Enumerator& path) {
+      result.walked += path.probability();
+    });
+  } catch (const NotEnumerable&) {
+    result.has_ended = false;
+  }
+  return result;
+}
+
+TEST("The paths of loops that draw sum to 1, whether the way out comes first or last") {
+  const auto check = [](const char* name, Walked result) {
+    const bool is_all = std::abs(result.walked + result.left_out - 1) < 1e-11 && result.left_out <= max_left_out;
+    EXPECT_THAT(result.has_ended && is_all, std::string{name} + ": the paths do not sum to 1");
+  };
+  check("exit first", walked([](auto& draws) {
+          while (draws.Bernoulli(0.5)) {
+          }
+        }));
+  check("exit last", walked([](auto& draws) {
+          while (!draws.Bernoulli(0.5)) {
+          }
+        }));
+  check("a rare exit first", walked([](auto& draws) {
+          while (draws.Bernoulli(0.1) ? false : true) {
+          }
+        }));
+  check("a rare exit last", walked([](auto& draws) {
+          while (draws.Bernoulli(0.9) ? true : false) {
+          }
+        }));
+  check("one after another", walked([](auto& draws) {
+          for (int loop = 0; loop < 3; ++loop) {
+            while (true) {
+              if (!draws.Bernoulli(0.3)) break;
+            }
+          }
+        }));
+  check("nested", walked([](auto& draws) {
+          while (true) {
+            while (draws.Bernoulli(0.05)) {
+            }
+            if (draws.Bernoulli(0.95)) break;
+          }
+        }));
+  const Walked flips = walked([](auto& draws) {
+    for (int i = 0; i < 12; ++i) draws.Bernoulli(0.5);
+  });
+  EXPECT_THAT(flips.has_ended && flips.left_out == 0, "4096 paths are all walked");
+}
+
+TEST("Endless loops and crowds of paths are given up") {
+  const Walked endless = walked([](auto& draws) {
+    while (draws.SampleDiscrete(std::initializer_list<double>{0.5, 0.5}) < 2) {
+    }
+  });
+  EXPECT_THAT(!endless.has_ended, "an endless loop is given up");
+  const Walked crowd = walked([](auto& draws) {
+    for (int i = 0; i < 40; ++i) draws.Bernoulli(0.5);
+  });
+  EXPECT_THAT(!crowd.has_ended, "2^40 paths are given up");
+}
+
+TEST("One of 5000 weights is drawn where it is nearly all") {
+  Sampler random{1};
+  std::vector<double> weights(5000, 1e-9);
+  weights[4321] = 1;
+  EXPECT_THAT(random.SampleDiscrete(-1, weights) == 4321, "5000 weights");
+}
+
+TEST("Normal quantiles are those of the normal distribution") {
+  for (const double probability : {1e-12, 1e-5, 0.01, 0.3, 0.5, 0.8, 0.999, 1 - 1e-9}) {
+    const double back = 0.5 * std::erfc(-normal_quantile(probability) / std::sqrt(2.0));
+    EXPECT_THAT(std::abs(back - probability) < 1e-12 + 1e-9 * probability, "the quantile of " + std::to_string(probability));
+  }
+}
+
+}  // namespace enumeration_tests

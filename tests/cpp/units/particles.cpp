@@ -1,0 +1,166 @@
+// Samples that are weighed by what was observed: guided_step.hpp, particle_filter.hpp.
+#include "aos/belief/particle_filter.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aos/belief/guided_step.hpp"
+#include "aos/model/support.hpp"
+#include "check.hpp"
+
+namespace particles_tests {
+
+using namespace aos;
+
+// Eight noisy distances, each a letter of the response.
+struct Beams {
+  struct State {
+    int distances[8];
+    bool operator==(const State&) const = default;
+  };
+  template <class Random>
+  static Step step(State& state, int, Random& random) {
+    EffectWithText effect;
+    const ShownText shown{effect};
+    effect.text = "";
+    for (const int distance : state.distances) effect.text += letter(distance - std::abs(random.SampleNormal(0, 2.5)));
+    return {0, text_observation(effect.text)};
+  }
+  static char letter(double noisy) { return static_cast<char>('a' + std::max(0, static_cast<int>(std::floor(noisy)))); }
+
+  static double probability(int distance, char seen) {
+    const int likelihood = seen - 'a';
+    const auto within = [](double deviations) { return std::erf(deviations / std::sqrt(2.0)); };
+    const double upper = likelihood == 0 ? 1 : within((distance - likelihood) / 2.5);
+    return upper - within(std::max(distance - likelihood - 1, 0) / 2.5);
+  }
+};
+
+// The same, but the text is assigned anew in the end, so that its beginnings mislead.
+struct LateBeams : Beams {
+  template <class Random>
+  static Step step(State& state, int, Random& random) {
+    EffectWithText effect;
+    const ShownText shown{effect};
+    effect.text = "x";
+    const bool is_on = random.Bernoulli(0.5);
+    const bool is_seen = random.Bernoulli(is_on ? 0.9 : 0.2);
+    effect.text = is_seen ? "yes" : "no";
+    state.distances[0] = is_on;
+    return {0, text_observation(effect.text)};
+  }
+};
+
+template <class Model>
+double mean_weight(const typename Model::State& state, Observation seen, int trials, double& relative_deviation) {
+  Sampler random{7};
+  GuidedStep<Model> guided{0, seen, nullptr, random};
+  double sum = 0;
+  double squares = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    const double weight = guided.from(state, [](const auto&, double, const auto&) {});
+    sum += weight;
+    squares += weight * weight;
+  }
+  const double mean = sum / trials;
+  relative_deviation = std::sqrt(std::max(squares / trials - mean * mean, 0.0)) / mean;
+  return mean;
+}
+
+TEST("Texts of eight continuous draws are weighed without bias") {
+  Sampler random{3};
+  for (int model = 0; model < 8; ++model) {
+    Beams::State state;
+    for (int& distance : state.distances) distance = 1 + random.below(8);
+    const Observation seen = Beams::step(state, 0, random).observation;
+    double exact = 1;
+    for (int beam = 0; beam < 8; ++beam) exact *= Beams::probability(state.distances[beam], observation_text(seen)[beam]);
+    double deviation = 0;
+    const double mean = mean_weight<Beams>(state, seen, 200, deviation);
+    EXPECT_THAT(std::abs(mean / exact - 1) < 0.03, "the weight of " + std::string{observation_text(seen)});
+    EXPECT_THAT(deviation < 0.3, "the deviation of the weight of " + std::string{observation_text(seen)});
+  }
+}
+
+TEST("A text that is assigned anew is weighed without bias") {
+  double deviation = 0;
+  const double mean = mean_weight<LateBeams>({}, text_observation("yes"), 20'000, deviation);
+  EXPECT_THAT(std::abs(mean - 0.55) < 0.02, "a text assigned anew has weight " + std::to_string(mean));
+}
+
+// Forty cards, dealt in the beginning, of which each step turns one; noise tells all particles apart.
+struct Cards {
+  static constexpr int count = 40;
+  struct State {
+    std::uint64_t cards = 0;
+    double noise = 0;
+    int turned = 0;
+    bool operator==(const State&) const = default;
+  };
+  template <class Random>
+  static void initial(State& state, Random& random) {
+    state = {};
+    for (int card = 0; card < count; ++card) state.cards |= std::uint64_t{random.Bernoulli(0.5)} << card;
+  }
+  static std::uint64_t hash(const State& state) {
+    return (state.cards ^ std::bit_cast<std::uint64_t>(state.noise)) * 0x9e3779b97f4a7c15u;
+  }
+  template <class Random>
+  static Step step(State& state, int, Random& random) {
+    state.noise = random.SampleUniform(0, 1);
+    return {0, static_cast<Observation>(state.cards >> state.turned++ & 1)};
+  }
+};
+
+TEST("What particles have not observed yet stays open") {
+  Sampler random{5};
+  ParticleFilter<Cards> filter{random};
+  Cloud<Cards> cloud = filter.initial();
+  double distance = 0;
+  for (int card = 0; card < Cards::count; ++card) {
+    const HistoryStep step{.action = 0, .observation = card % 3 == 0, .is_observed = true};
+    auto [after, probability] = filter.after(std::move(cloud), step, ignored_numbers);
+    distance += std::abs(probability - 0.5) / Cards::count;
+    EXPECT_THAT(std::abs(probability - 0.5) < 0.49, "card " + std::to_string(card) + ": " + std::to_string(probability));
+    EXPECT_THAT(after.effective() >= 50, "card " + std::to_string(card) + ": few effective");
+    for (const auto& particle : after.particles) {
+      for (int turned = 0; turned <= card; ++turned) {
+        EXPECT_THAT((particle.state.cards >> turned & 1) == (turned % 3 == 0), "a card that was turned is another one");
+      }
+    }
+    cloud = std::move(after);
+  }
+  EXPECT_THAT(distance < 0.06, "the next card is open, on average, but for " + std::to_string(distance));
+}
+
+// Of 35 cards 30 are turned. Then five more are turned at once, all of them face up. One state is left then, so that no
+// move can make up for samples that were lost.
+struct Hand : Cards {
+  template <class Random>
+  static void initial(State& state, Random& random) {
+    Cards::initial(state, random);
+    state.cards &= (std::uint64_t{1} << 35) - 1;
+  }
+  template <class Random>
+  static Step step(State& state, int, Random&) {
+    if (state.turned < 30) return {0, static_cast<Observation>(state.cards >> state.turned++ & 1)};
+    return {0, state.cards >> 30 == 31 ? 1 : 0};
+  }
+};
+
+TEST("A rare observation after a long history leaves many samples") {
+  Sampler random{5};
+  ParticleFilter<Hand> filter{random};
+  Cloud<Hand> cloud = filter.initial();
+  for (int step = 0; step <= 30; ++step) {
+    const HistoryStep seen{.action = 0, .observation = 1, .is_observed = true};
+    cloud = filter.after(std::move(cloud), seen, ignored_numbers).cloud;
+  }
+  EXPECT_THAT(cloud.particles.size() == 1, "one state is left");
+  EXPECT_THAT(cloud.effective() >= 100, "a rare observation leaves " + std::to_string(cloud.effective()) + " samples");
+}
+
+}  // namespace particles_tests

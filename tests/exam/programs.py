@@ -1,0 +1,57 @@
+"""Programs in C++ that the tests have of their own, on the engine's headers: compiled once, and kept."""
+
+from __future__ import annotations
+
+import asyncio
+import subprocess
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from aos_solver.building.build import SOURCES, build_engine
+from aos_solver.building.build_cache import BuildCache, digest_of
+from aos_solver.building.compiler import Compiler, find_compiler
+
+__all__ = ["built_program", "run", "what_decides"]
+
+_PATIENCE_S = 1200.0
+"""Another process that compiles the same is waited for."""
+
+
+async def built_program(cache_dir: Path, source: Path, *options: str, includes: Iterable[Path] = ()) -> Path:
+    """The executable of a source file, from the cache or compiled now.
+
+    It may include the engine's headers, its own folder and those of `includes`. The engine's point-based
+    search is linked to it.
+    """
+    compiler = await find_compiler()
+    folders = [source.parent, *includes]
+    more = [*options, *(f"-I{folder}" for folder in folders)]
+    engine = await build_engine(cache_dir, compiler=compiler)
+
+    async def make(staging: Path) -> None:
+        compilation = compiler.compilation(str(source), "part.o", str(SOURCES), *more)
+        await asyncio.to_thread(run, compilation, staging)
+        run(compiler.linking(["part.o", str(engine / "point_based.o")], source.stem), staging)
+
+    name = f"{source.stem}-{digest_of([source.name, *more, *what_decides(compiler, *folders)])}"
+    return await BuildCache(cache_dir).fill(name, make, patience_s=_PATIENCE_S) / source.stem
+
+
+def what_decides(compiler: Compiler, *folders: Path) -> list[str]:
+    """What decides about the result of a compilation besides its options, for a cache's key."""
+    texts = (text for folder in (SOURCES, *folders) for text in _texts(folder))
+    return [compiler.version, *compiler.compilation("", "", ""), *texts]
+
+
+@cache
+def _texts(folder: Path) -> list[str]:
+    """The C++ below a folder, which nobody changes while tests run."""
+    return [path.read_text() for path in sorted(folder.rglob("*.[ch]pp"))]
+
+
+def run(command: list[str], folder: Path) -> None:
+    """Runs a compiler's command; its messages are the error."""
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_PATIENCE_S)
+    if done.returncode != 0:
+        raise RuntimeError(f"it does not compile: {' '.join(command)}\n{done.stderr}")
