@@ -19,9 +19,10 @@ def mapping_text(
 
     A response is `NAME: RULE`, or a name, which stands for the response where the service answers this name
     as `answer`. Parameters are fields of the call. Reports are fields of the result that are observed: a
-    name and its type. With `response_from` the response is the text of that field of the result.
+    name and its type; the answer alone where none are named. With `response_from` the response is the text
+    of that field of the result.
     """
-    observed = dict(reports or {})
+    observed = {} if reports is None and response_from else dict(reports or {"answer": "string"})
     if any(":" not in response for response in responses):
         observed.setdefault("answer", "string")
     if response_from:
