@@ -1,4 +1,4 @@
-"""Which requests of a mission count: those of its newest solver, and each id for one motion only.
+"""The requests of a mission that count: those of its newest solver, and each id for one motion only.
 
 A solver that was replaced may still have messages on their way, and somebody else may use ids or epochs
 that are not his. Middleware and adapters each have a fence.

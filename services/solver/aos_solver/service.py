@@ -53,7 +53,7 @@ log = logging.getLogger(__name__)
 ASK_TIMEOUT_S = 5.0
 MAPPING_DEADLINE_S = 20.0
 ACTIVATION_MARGIN_S = 5.0
-"""How much longer than the activation itself its answer may take."""
+"""An answer may take this much longer than the activation itself."""
 
 
 async def serve(service: Service[Settings]) -> None:
@@ -241,7 +241,7 @@ class _Solver:
             log.warning("the mission starts without the mappings of revision %d: %s", revision, error)
 
     async def _follow_mappings(self) -> None:
-        """Which skills can be run, as the middleware tells it."""
+        """Follows which skills can be run, as the middleware tells it."""
         async with self._bus.listen(self._keys.mapping_state, MappingState) as states:
             async for _, state in states:
                 self._take_mapping_state(state)

@@ -1,4 +1,4 @@
-"""What the solver service is started with."""
+"""The settings that the solver service is started with."""
 
 from __future__ import annotations
 

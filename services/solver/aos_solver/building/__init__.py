@@ -1,1 +1,1 @@
-"""From the text of a model to an executable: compilers, their messages, the cache of builds."""
+"""The way from the text of a model to an executable: compilers, their messages, the cache of builds."""

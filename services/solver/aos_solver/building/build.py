@@ -1,4 +1,4 @@
-"""From the emitted C++ to an executable, through a cache.
+"""The way from the emitted C++ to an executable, through a cache.
 
 A model is compiled by itself and linked to the engine. The engine is compiled once for all models whose
 states have up to so many bytes: it is four times as much code, and models change while a robot waits. The
@@ -39,10 +39,10 @@ ANY_SIZE = 0
 MAX_STATE_BYTES = 1 << 20
 
 _SUPPORT = "aos/model/model_support.hpp"
-"""What every emitted model includes first."""
+"""Every emitted model includes this file first."""
 
 BuildKind = Literal["quick", "thorough", "unoptimized"]
-"""How a model is compiled; unoptimized code keeps its order."""
+"""The ways to compile a model; unoptimized code keeps its order."""
 
 _OPTIONS: dict[BuildKind, tuple[str, ...]] = {
     "quick": ("-O1", "-DAOS_QUICK"),
@@ -182,7 +182,7 @@ async def build_engine(
 
 
 def _patience_s(compiler: Compiler, deadline_s: float) -> float:
-    """How long another process is waited for that makes the same model: as long as it may take."""
+    """Returns how long another process is waited for that makes the same model: as long as it may take."""
     return _ENGINE_DEADLINES * compiler.deadline_s + 2 * deadline_s
 
 
@@ -317,7 +317,7 @@ class _Build(msgspec.Struct, frozen=True):
 
 
 def _engine_seconds(entry: Path | None) -> float:
-    """How long this machine took to compile the engine; 0 where nobody has looked."""
+    """Returns how long this machine took to compile the engine; 0 where nobody has looked."""
     try:
         return float((entry / _SECONDS).read_text()) if entry is not None else 0.0
     except (OSError, ValueError):

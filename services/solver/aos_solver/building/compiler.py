@@ -1,4 +1,4 @@
-"""Which C++ compiler this machine has, and how it is called.
+"""The C++ compiler of this machine, and how it is called.
 
 The first of these that is new enough counts: what $CXX names, g++, clang++, and the `ziglang` wheel, which
 brings clang and a C++ library with it for machines without a compiler.
@@ -97,7 +97,7 @@ class Compiler(msgspec.Struct, frozen=True):
 
     @property
     def deadline_s(self) -> float:
-        """How long one command may take; zig builds its C++ library when it links for the first time."""
+        """The time that one command may take; zig builds its C++ library when it links for the first time."""
         return ZIG_DEADLINE_S if self.family == "zig" else DEADLINE_S
 
 

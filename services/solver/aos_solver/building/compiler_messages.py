@@ -1,4 +1,4 @@
-"""From what the compiler says to diagnostics at the documents' places."""
+"""The way from what the compiler says to diagnostics at the documents' places."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _PLACE = re.compile(
     r"(?P<kind>fatal error|error|warning|note|required)\b:?\s*(?P<text>.*)"
 )
 _ANOTHER_ENUM = re.compile(r"deleted .*(?:Named<.*operator\[\]|operator `\[\]`)")
-"""What g++ and clang say of the one deleted operator that documents can meet, see named_array.hpp."""
+"""g++ and clang say this of the one deleted operator that documents can meet, see named_array.hpp."""
 _NOT_DECLARED = re.compile(r"`([A-Za-z_]\w*)` was not declared|use of undeclared identifier `([A-Za-z_]\w*)`")
 _FAULTS = ("error", "fatal error")
 
@@ -47,7 +47,7 @@ def without_line_directives(cpp: str) -> str:
 
 
 def read_messages(output: str, source_name: str, emitted: EmittedModel) -> CompilerReport:
-    """What g++ and clang write as text, for the emitted file compiled as `source_name`."""
+    """Reads the text that g++ and clang write, for the emitted file compiled as `source_name`."""
     diagnostics: list[Diagnostic] = []
     outside: list[str] = []
     for message in _messages(output):

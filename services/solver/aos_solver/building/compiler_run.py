@@ -12,10 +12,10 @@ from aos_solver.building.compiler import Compiler
 __all__ = ["LIMIT_HINT", "internal_error", "ran_out", "run_compiler"]
 
 LIMIT_HINT = "Look for recursive templates or huge tables in the model code"
-"""What to do about a compiler that runs out of time or memory over a model."""
+"""The advice about a compiler that runs out of time or memory over a model."""
 
 _OUR_LIMIT_HINT = "The machine is too busy or too small for it; try again when less runs"
-"""What to do about a compiler that runs out of time over our own sources."""
+"""The advice about a compiler that runs out of time over our own sources."""
 
 _OUT_OF = (
     "memory exhausted",
@@ -40,7 +40,7 @@ async def run_compiler(
     niceness: int = 0,
     cpu_s: int | None = None,
 ) -> tuple[str, int]:
-    """What the command says in `directory`, and its status.
+    """Runs the command in `directory`; returns what it says, and its status.
 
     ModelError AOS202 with the `hint`, which names `what` is compiled, if it takes longer than `deadline_s`.
     `cpu_s` limits each of its processes in seconds of processor time; see `ran_out`.
@@ -72,7 +72,7 @@ async def run_compiler(
 
 
 def ran_out(output: str, status: int) -> bool:
-    """Whether a compiler ended by a limit to its time, its memory or its files."""
+    """Returns whether a compiler ended by a limit to its time, its memory or its files."""
     return status < 0 or status > 128 or any(words in output for words in _OUT_OF)
 
 

@@ -1,4 +1,4 @@
-"""What an engine child answers, as typed data."""
+"""The answers of an engine child, as typed data."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ _ROUNDING = 1e-9
 
 
 class Progress(msgspec.Struct, frozen=True):
-    """How far the engine is with `what` before it can answer: `done` of `all`, which is 0 if unknown."""
+    """The engine's progress with `what` before it can answer: `done` of `all`, which is 0 if unknown."""
 
     what: str
     done: int
@@ -96,13 +96,13 @@ class Progress(msgspec.Struct, frozen=True):
 
     @property
     def text(self) -> str:
-        """For people: `listing states: 12,000 of 34,000`."""
+        """The progress for people: `listing states: 12,000 of 34,000`."""
         of_all = f" of {self.all:,}" if self.all else ""
         return f"{self.what}: {self.done:,}{of_all}"
 
 
 class EngineFault(msgspec.Struct, frozen=True):
-    """What model code did wrong; `piece` is the number of the piece that ran, 0 where none did."""
+    """A fault of model code; `piece` is the number of the piece that ran, 0 where none did."""
 
     code: str
     text: str
@@ -169,7 +169,7 @@ class ExactValues(msgspec.Struct, frozen=True):
 
 
 class ReachedAction(msgspec.Struct, frozen=True):
-    """Whether some state that can be reached meets the action's precondition."""
+    """An action, and whether some state that can be reached meets its precondition."""
 
     name: str
     skill: str
@@ -177,7 +177,8 @@ class ReachedAction(msgspec.Struct, frozen=True):
 
 
 class Reach(msgspec.Struct, frozen=True):
-    """What the actions can lead to. `limit` says why there may be more, and is empty where there is no more.
+    """The states and goals that the actions can lead to. `limit` says why there may be more, and is empty
+    where there is no more.
 
     The search ends early when a goal and all preconditions are met. `depth` counts actions from the start.
     """
@@ -190,14 +191,15 @@ class Reach(msgspec.Struct, frozen=True):
 
 
 class GoalReach(msgspec.Struct, frozen=True):
-    """Whether actions lead to a goal from a belief's running states; random walks leave it unproven."""
+    """The answer whether actions lead to a goal from a belief's running states; random walks leave it
+    unproven."""
 
     is_reachable: bool
     is_proven: bool
 
 
 class Listed(msgspec.Struct, frozen=True):
-    """How many states are listed with all that their actions lead to, and how many are known."""
+    """The number of states listed with all that their actions lead to, and of those that are known."""
 
     listed: int
     known: int
@@ -211,13 +213,13 @@ class WrittenListing(msgspec.Struct, frozen=True):
 
 
 class Prediction(msgspec.Struct, frozen=True):
-    """What may be observed after an action, the likeliest first."""
+    """The responses that may be observed after an action, the likeliest first."""
 
     predicted: tuple[PredictedObservation, ...]
 
 
 class Risks(msgspec.Struct, frozen=True):
-    """For each action the probability that it violates each of the mission's constraints at once.
+    """The probabilities by action that it violates each of the mission's constraints at once.
 
     `is_sampled` says that steps could not be enumerated, so that some are estimates.
     """
@@ -246,7 +248,7 @@ class ExportedBelief(msgspec.Struct, frozen=True):
 
     @property
     def command(self) -> str:
-        """What an engine is told that takes it over."""
+        """The command by which an engine takes it over."""
         return self.command_with()
 
     def command_with(self, **fields: object) -> str:
@@ -271,7 +273,7 @@ class ExportedBeliefs(msgspec.Struct, frozen=True):
 
     @property
     def commands(self) -> list[str]:
-        """What an engine is told that takes them over, the last of it changes what it believes."""
+        """The commands by which an engine takes them over; the last one changes what it believes."""
         count = len(self.beliefs)
         return [
             belief.command_with(
@@ -282,7 +284,7 @@ class ExportedBeliefs(msgspec.Struct, frozen=True):
 
 
 class BeliefCount(msgspec.Struct, frozen=True):
-    """How many beliefs there are to export, and the words that go with them."""
+    """The number of beliefs to export, and of the words that go with them."""
 
     beliefs: int
     words: str
@@ -350,7 +352,7 @@ class WorldSteps(msgspec.Struct, frozen=True):
 
 
 class SampleCount(msgspec.Struct, frozen=True):
-    """How many samples of (next state, observation, reward) were drawn, in which time."""
+    """The number of samples (next state, observation, reward) that were drawn, and the time they took."""
 
     samples: int
     seconds: float

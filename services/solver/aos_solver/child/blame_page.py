@@ -1,4 +1,4 @@
-"""Which piece of document code a child runs: memory that it writes, and that is read when it is gone."""
+"""The piece of document code that a child runs: memory that it writes, and that is read when it is gone."""
 
 from __future__ import annotations
 

@@ -64,7 +64,8 @@ __all__ = ["Engine", "ImpossiblePolicy", "Planner", "Stepping"]
 Planner = Literal["pomcp", "despot", "sarsop", "auto"]
 
 Stepping = Literal["code", "table"]
-"""How steps are made: by the documents' code, or by a table of all steps, which POMCP has of small models."""
+"""The ways to make steps: by the documents' code, or by a table of all steps, which POMCP has of small
+models."""
 
 log = logging.getLogger(__name__)
 
@@ -75,7 +76,8 @@ _PARAMETER = re.compile(r"(\w+)=(\w+)")
 
 ANSWER_DEADLINE_S = 30.0
 PLANNING_DEADLINE_S = 120.0
-"""Of a search, beyond its budget in time. The first decision computes values before it searches."""
+"""The deadline of a search, beyond its budget in time. The first decision computes values before it
+searches."""
 LISTING_DEADLINE_S = 600.0
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000
@@ -99,7 +101,8 @@ class Engine:
         self._world: list[str] = []
         self._asking = asyncio.Lock()
         self.on_progress: Callable[[Progress], None] | None = None
-        """Told how far the work on an answer is, some times a second where it takes long."""
+        """The function that hears how far the work on an answer is, some times a second where it takes
+        long."""
         self.description: EngineDescription
 
     @classmethod
@@ -159,7 +162,7 @@ class Engine:
         return await self._ask("summary", BeliefSummary)
 
     async def reset_belief(self) -> BeliefSummary:
-        """Back to the initial belief."""
+        """Goes back to the initial belief."""
         return await self._change_belief("reset_belief", BeliefSummary)
 
     async def plan(
@@ -207,7 +210,7 @@ class Engine:
         await self._ask(command_line("ponder", action=index, seed=seed, **budget), _Done)
 
     async def count_processor_time(self, counts: bool) -> None:
-        """Whether this child's budgets in seconds are of processor time, for measurements."""
+        """Sets whether this child's budgets in seconds are of processor time, for measurements."""
         await self._ask(command_line("count_processor_time", counts=counts), _Done)
 
     async def tell_progress(self, every_s: float) -> None:
@@ -222,7 +225,8 @@ class Engine:
         return await self._ask(command, ExactValues, deadline_s=EXACT_TIME_S + ANSWER_DEADLINE_S)
 
     async def reach(self, seconds: float, max_seconds: float) -> Reach:
-        """Which states the actions can lead to from the current belief, looked at for so much processor time.
+        """Looks for so much processor time at the states that the actions can lead to from the current
+        belief.
 
         OverdueError where the last of many steps goes beyond `max_seconds`, here and in `rate`.
         """
@@ -231,7 +235,7 @@ class Engine:
     async def may_reach_goal(
         self, *, without: Sequence[str] = (), cautious: bool = False, seconds: float = 1.0, seed: int = 0
     ) -> GoalReach:
-        """Whether actions lead to a goal without these skills; looked at for so much processor time."""
+        """Looks for so much processor time whether actions lead to a goal without these skills."""
         command = command_line(
             "may_reach_goal",
             without=",".join(without) or None,
@@ -255,11 +259,12 @@ class Engine:
         return await self._ask(command, WrittenListing, deadline_s=LISTING_DEADLINE_S)
 
     async def risks(self, seed: int) -> Risks:
-        """What each action risks of the mission's constraints; the seed is for what has to be sampled."""
+        """Returns what each action risks of the mission's constraints; the seed is for what has to be
+        sampled."""
         return await self._ask(command_line("risks", seed=seed), Risks)
 
     async def predict(self, index: int, *, cautious: bool = False) -> Prediction:
-        """What may be observed after an action."""
+        """Returns the responses that may be observed after an action."""
         return await self._ask(command_line("predict", action=index, cautious=cautious or None), Prediction)
 
     async def update(
@@ -321,7 +326,7 @@ class Engine:
         return msgspec.structs.replace(update, remark=remark)
 
     async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> AosError:
-        """Why local variables did not correct the belief that was there after so many changes.
+        """Returns why local variables did not correct the belief that was there after so many changes.
 
         The statement is looked for once: the mission waits for it, and meets the fault at every outcome.
         """
@@ -362,7 +367,7 @@ class Engine:
         return ExportedBeliefs(count.words, tuple(beliefs))
 
     async def draw_belief(self) -> BeliefSummary:
-        """Back to the initial belief, as particles even where it could be enumerated."""
+        """Goes back to the initial belief, as particles even where it could be enumerated."""
         return await self._change_belief("draw_belief", BeliefSummary)
 
     async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
@@ -474,7 +479,8 @@ class Engine:
             raise
 
     def _restoration(self, changes: int) -> list[str]:
-        """What brings a new child to the belief after so many changes, the last or the one before it."""
+        """Returns the commands that bring a new child to the belief after so many changes, the last or the
+        one before it."""
         is_kept = changes > 0 and self._beliefs is not None
         return [command_line("restore_belief", change=changes)] if is_kept else []
 

@@ -32,9 +32,9 @@ A = TypeVar("A")
 START_DEADLINE_S = 20.0
 EXIT_DEADLINE_S = 2.0
 HANG_STATUS = 71
-"""How a child ends whose document code ran too long; known to watchdog.hpp."""
+"""A child whose document code ran too long ends with this status; known to watchdog.hpp."""
 HANG_PERIODS = 12
-"""How many tenths of a second of processor time a call of document code may take."""
+"""A call of document code may take this many tenths of a second of processor time."""
 
 ADDRESS_SPACE_BYTES = 8 * 1024**3
 ANSWER_LIMIT_BYTES = 32 * 1024**2
@@ -58,7 +58,7 @@ _PROGRESS_LINE = b'{"progress":'
 
 
 class EngineStart(msgspec.Struct, frozen=True):
-    """What a child is started with. It keeps its beliefs in the file of that path, or nowhere."""
+    """The start of a child. It keeps its beliefs in the file of that path, or nowhere."""
 
     seed: int
     policy: ImpossiblePolicy
@@ -211,7 +211,7 @@ class EngineChild:
         return self.fault(kind.code, f"{message} ({how})", piece)
 
     async def _status(self) -> int | None:
-        """How a child that has closed its output ended; None if it lingers."""
+        """Returns the status of a child that has closed its output; None if it lingers."""
         try:
             async with asyncio.timeout(EXIT_DEADLINE_S):
                 return await self._child.wait()

@@ -25,7 +25,7 @@ _TYPES: Mapping[str, tuple[Any, Any]] = {
     "double": (float, list[float]),
     "string": (str, list[str]),
 }
-"""By element: the type of one value, and that of an array."""
+"""The types by element: that of one value, and that of an array."""
 
 
 class UnusableLocals(ValueError):

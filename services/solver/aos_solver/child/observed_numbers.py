@@ -30,7 +30,7 @@ def _single_numbers(
 def numbers_by_name(
     observed: Sequence[Observed], numbers: Iterable[tuple[int, int, float]]
 ) -> dict[str, float | list[float | None]]:
-    """What an engine child has told."""
+    """Returns the numbers that an engine child has told, by name."""
     named: dict[str, float | list[float | None]] = {}
     for name, index, value in numbers:
         number = observed[name]

@@ -1,4 +1,5 @@
-"""What model code prints goes on to our error output, up to a limit: no loop of a document fills a disk."""
+"""The output that model code prints goes on to our error output, up to a limit: no loop of a document
+fills a disk."""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from typing import BinaryIO
 __all__ = ["PRINT_LIMIT_BYTES", "pass_on"]
 
 PRINT_LIMIT_BYTES = 1_000_000
-"""What an engine child may print in its life."""
+"""An engine child may print this many bytes in its life."""
 
 _CHUNK_BYTES = 65536
 

@@ -1,4 +1,5 @@
-"""Which statement failed: what failed is run again by a build of the model that tells of every statement.
+"""The search for the statement that failed: a build of the model that tells of every statement runs again
+what failed.
 
 A running model tells only the piece of document code that runs. After a fault the model is built once more,
 traced and without optimisation, and asked the same from the same belief. If that goes well, random actions
@@ -98,7 +99,7 @@ class _Replay:
         self._samples: deque[int] = deque(maxlen=_LAST_SAMPLES)
 
     async def statement(self, commands: Sequence[str]) -> _Found | None:
-        """Where the same fault comes again."""
+        """Returns the statement at which the same fault comes again."""
         found = await self._fault_of([_with_one_thread(command) for command in commands])
         if found is not None and found.message.startswith(self._fault.diagnostics[0].message):
             return found
@@ -157,5 +158,6 @@ class _Replay:
 
 
 def _with_one_thread(command: str) -> str:
-    """Of several threads it would not be known which one failed, nor would they meet the fault again."""
+    """Returns the command for one thread: of several it would not be known which failed, nor would they
+    meet the fault again."""
     return re.sub(r"\tthreads=\d+", "\tthreads=1", command)

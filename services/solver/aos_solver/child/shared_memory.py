@@ -23,11 +23,11 @@ class SharedMemory:
 
     @property
     def path(self) -> str:
-        """Where a child can open it, through us."""
+        """The path at which a child can open it, through us."""
         return f"/proc/{os.getpid()}/fd/{self._file}"
 
     def read(self, size_bytes: int) -> bytes:
-        """What is in it from its beginning."""
+        """Returns what is in it from its beginning."""
         return os.pread(self._file, size_bytes, 0)
 
     def close(self) -> None:

@@ -1,1 +1,2 @@
-"""From a documented project to the text of its model: lowering, rewriting of document code, emission."""
+"""The way from a documented project to the text of its model: lowering, rewriting of document code,
+emission."""

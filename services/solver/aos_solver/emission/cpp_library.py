@@ -1,4 +1,4 @@
-"""What document code may take from the C++ library: headers by name, and what it must leave alone."""
+"""The parts of the C++ library that document code may take: headers by name, and what it must leave alone."""
 
 from __future__ import annotations
 
@@ -62,6 +62,6 @@ def headers_for(names: frozenset[str]) -> tuple[str, ...]:
 
 
 def unrepeatable_names(called: frozenset[str], code: str) -> list[str]:
-    """What in `code` (without comments and texts) gives another result when it runs again."""
+    """Returns what in `code` (without comments and texts) gives another result when it runs again."""
     found = sorted(called & _UNREPEATABLE)
     return [*found, *(match[0] for match in _CHANGING_STATIC.finditer(code))]

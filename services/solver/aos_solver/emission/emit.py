@@ -1,4 +1,4 @@
-"""From the lowered model to one C++ file that a person can read, and the way back from its lines.
+"""The way from the lowered model to one C++ file that a person can read, and back from its lines.
 
 The templates lay out; document code is put in afterwards, so that no text of a document is ever taken for a
 template or for a mark. The same program gives the same bytes.
@@ -278,7 +278,7 @@ def _watched_skills(program: Program) -> list[Skill]:
 
 
 def _saved_variables(program: Program) -> tuple[Variable, ...]:
-    """What a saved state holds, whatever the particle of this very model holds."""
+    """Returns the variables of a saved state, whatever the particle of this very model holds."""
     return tuple(v for v in program.variables if not (v.is_constant and v.is_parameter_value))
 
 

@@ -1,4 +1,4 @@
-"""From a project's typed documents to the model that is emitted.
+"""The way from a project's typed documents to the model that is emitted.
 
 A pure function of the project. Mistakes of the documents come back as diagnostics, all at once.
 """
@@ -282,7 +282,8 @@ def _uses_text_response(assignments: tuple[Assignment, ...]) -> bool:
 
 
 def _digest(project: Project) -> str:
-    """Of all that the model depends on; not of the code in the abstraction mappings."""
+    """Returns the digest of all that the model depends on; the code in the abstraction mappings is none of
+    it."""
     parts = [
         project.name,
         msgspec.structs.replace(project.environment, shared_mapping_code=None),

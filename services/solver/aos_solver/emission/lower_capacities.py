@@ -1,4 +1,4 @@
-"""How many elements the vectors of a state can have: read off what the documents assign to them."""
+"""The lengths that the vectors of a state can have: read off what the documents assign to them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from aos_language.cpp.snippets import Access, Call, Cpp, Mention, strip_comments
 __all__ = ["Capacities"]
 
 GROWING_CAPACITY = 64
-"""What a vector gets that grows by code, if nothing in the code tells more."""
+"""A vector that grows by code gets this capacity, if nothing in the code tells more."""
 
 REPORTED_CAPACITY = 1024
-"""What a vector gets that the robot's data fill, if the documents give it no length at the start."""
+"""A vector that the robot's data fill gets this capacity, if the documents give it no length at the start."""
 
 _MAX_CAPACITY = 16384
 _GROWING = frozenset({"emplace", "emplace_back", "insert", "push_back"})

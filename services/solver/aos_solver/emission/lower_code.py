@@ -38,7 +38,7 @@ __all__ = ["Phase", "Pieces", "SectionLowering", "sections_of"]
 
 
 class Phase(msgspec.Struct, frozen=True):
-    """What a kind of section may do: the copies that loops run over, and the copies it may change."""
+    """The rights of a kind of section: the copies that loops run over, and the copies it may change."""
 
     title: str
     next_copy: str = ""
@@ -49,7 +49,7 @@ class Phase(msgspec.Struct, frozen=True):
 _CONTAINER = re.compile(r"(?:const\s+)?(?:std\s*::\s*)?(?:vector|array)\s*<.*>\s*&?$", re.DOTALL)
 
 _LoopsByCode = Mapping[int, LoopsOfPiece]
-"""By the identity of the snippet, since two snippets of a section may be equal."""
+"""The loops by the identity of the snippet, since two snippets of a section may be equal."""
 
 BELIEF = Phase("the initial belief", changes=frozenset({"state"}))
 EXTRINSIC = Phase("extrinsic changes", "state_", frozenset({"state_"}))
@@ -180,7 +180,7 @@ class SectionLowering:
         self._findings = findings
         self._containers = _local_containers([shared.cpp])
         self.outside = Rewriting(object_types, known, values, self._containers, shared.drawing)
-        """What names mean in code that stands alone."""
+        """The meanings of names in code that stands alone."""
 
     def section(self, phase: Phase, assignments: tuple[Assignment, ...]) -> Section | None:
         """The section's function; None if there is nothing in it."""

@@ -1,4 +1,4 @@
-"""Which copies of the state a step makes.
+"""The copies of the state that a step makes.
 
 Where no code reads an older copy of a variable after it has changed a newer one, the two are one object.
 Where the text leaves a doubt, the copy is made: a copy costs time, and a missing copy would change the model.
@@ -25,7 +25,7 @@ _REPEATED = re.compile(r"\b(?:for|while|do|goto)\b")
 
 
 class Copies(msgspec.Struct, frozen=True):
-    """Whether a step of a skill keeps `state` and `state_` apart from what comes after them."""
+    """The answer whether a step of a skill keeps `state` and `state_` apart from what comes after them."""
 
     keeps_state: bool
     keeps_state_: bool
@@ -52,7 +52,7 @@ class _Uses(msgspec.Struct, frozen=True):
 
 
 def copies_of(model: SkillModel, environment: Environment) -> Copies:
-    """What a step of this skill needs; models with one state have no copies."""
+    """Returns the copies that a step of this skill needs; models with one state have no copies."""
     dynamic = model.dynamic_model
     shared = shared_code_of(environment).changing
     extrinsic = environment.extrinsic_changes
@@ -71,7 +71,7 @@ def copies_of(model: SkillModel, environment: Environment) -> Copies:
 def _reads_changed(
     section: tuple[Assignment, ...], older: tuple[str, ...], newer: str, shared: frozenset[str]
 ) -> bool:
-    """Whether the section may read an older copy of a variable after it has changed the newer one.
+    """Returns whether the section may read an older copy of a variable after it has changed the newer one.
 
     `shared` are functions that may give a handle to what they are given.
     """
@@ -132,13 +132,13 @@ def _variable(mention: Mention) -> str:
 
 
 def _makes_handle(mention: Mention) -> bool:
-    """Whether what it gives may be looked at later, when the variable has changed."""
+    """Returns whether the mention's value may be looked at later, when the variable has changed."""
     is_method = bool(mention.method) and mention.method not in _READING_METHODS
     return mention.access is not Access.READ or is_method
 
 
 def _bound(cpp: Cpp) -> Iterator[Extent]:
-    """What references and pointers are made of, also those to constants."""
+    """Yields the expressions that references and pointers are made of, also those to constants."""
     for declaration in cpp.declarations:
         if declaration.initial is not None and declaration.type.endswith(("&", "*", "_view")):
             yield declaration.initial
@@ -152,7 +152,7 @@ def _given_to(functions: frozenset[str], cpp: Cpp) -> Iterator[Extent]:
 
 
 def _only_reads(mention: Mention, cpp: Cpp) -> bool:
-    """Whether nothing can change through this mention of a copy that may be changed."""
+    """Returns whether nothing can change through this mention of a copy that may be changed."""
     arguments = (argument for call in cpp.calls for argument in call.arguments)
     is_passed_on = any(_covers(argument, mention.extent) for argument in arguments)
     return mention.access is Access.READ and _variable(mention) != _WHOLE_STATE and not is_passed_on

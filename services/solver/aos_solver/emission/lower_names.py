@@ -1,4 +1,4 @@
-"""Which of the documents' names can be names in C++."""
+"""The check that the documents' names can be names in C++."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OF_THE_LANGUAGE = frozenset({
     "state__", "state___", "std",
 })  # fmt: skip
 _OF_NAMESPACES = frozenset({"model"})
-"""What no type can be called, and everything else can."""
+"""No type can have these names, and everything else can."""
 _OF_EMITTED_SKILLS = frozenset({
     "Locals", "Observed", "Parameters", "Response", "execution_time", "given_observation",
     "has_alike_groundings", "has_certain_rewards", "has_text_response", "locals", "make_groundings",

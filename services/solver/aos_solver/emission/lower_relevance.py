@@ -1,4 +1,4 @@
-"""What has no influence: on anything, or on anything but what is observed.
+"""The state variables without influence: on anything, or on anything but what is observed.
 
 Some state variables matter to nobody: no reward, observation or ending depends on them. Documents keep in
 the state what the robot has learnt, for their rollout policies, and what people like to see. A model without
@@ -111,7 +111,8 @@ def skills_alike(project: Project) -> frozenset[str]:
 def _read_without_observations(
     project: Project,
 ) -> tuple[_Influence, list[tuple[int, tuple[Assignment, ...]]]]:
-    """What influences rewards, endings, loops and variables that matter; the sections with their numbers."""
+    """Reads what influences rewards, endings, loops and variables that matter; returns it and the sections
+    with their numbers."""
     variables = frozenset(variable.name for variable in project.environment.variables)
     reading = _Influence(project.environment, observations_matter=False)
     reading.use_variables(variables - irrelevant_variables(project))
@@ -119,7 +120,7 @@ def _read_without_observations(
 
 
 def _is_opaque(project: Project) -> bool:
-    """Whether some code hides what flows where."""
+    """Returns whether some code hides what flows where."""
     return any(flows_of(cpp).is_opaque for code in _sections(project) for _, cpp in snippets_of(code))
 
 
@@ -150,7 +151,7 @@ def _sections(project: Project) -> Iterator[tuple[Assignment, ...]]:
 
 
 class _Influence:
-    """What may depend on what. Names of other variables are those of one section, numbered."""
+    """The dependences between names. Names of other variables are those of one section, numbered."""
 
     def __init__(self, environment: Environment, *, observations_matter: bool = True) -> None:
         self._observations_matter = observations_matter
@@ -201,7 +202,7 @@ class _Influence:
         return found
 
     def flows(self, cpp: Cpp) -> Flows:
-        """What flows where in a snippet; shared functions that only read are looked through."""
+        """Returns what flows where in a snippet; shared functions that only read are looked through."""
         return flows_of(read_cpp(looked_through(cpp, self._shared)), self._shared.reading)
 
     # --- one snippet -----------------------------------------------------------------------------------

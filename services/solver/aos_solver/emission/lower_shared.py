@@ -1,4 +1,4 @@
-"""What calls of shared functions read: those that only read may be looked through."""
+"""The reads in calls of shared functions: functions that only read may be looked through."""
 
 from __future__ import annotations
 

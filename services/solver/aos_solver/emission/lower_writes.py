@@ -1,4 +1,4 @@
-"""Which state variables the code can change: the others are constants, and no particle holds them.
+"""The state variables that the code can change: the others are constants, and no particle holds them.
 
 Where the text leaves a doubt, the variable counts as changed. A change that is missed all the same does not
 compile: constants are constant to the compiler.
@@ -29,13 +29,13 @@ from aos_solver.emission.lower_code import sections_of
 __all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]
 
 LAMBDA = re.compile(r"\[\s*[&=]?[\w\s,&=]*\]\s*[({]")
-"""Where a lambda begins."""
+"""The beginning of a lambda."""
 
 _CHANGING = (Access.WRITE, Access.UPDATE, Access.BIND)
 
 
 class Changes:
-    """What changes: `variables` by name, and every variable of the types that are walked as objects."""
+    """The changes: `variables` by name, and every variable of the types that are walked as objects."""
 
     def __init__(self, project: Project) -> None:
         environment = project.environment
@@ -86,7 +86,7 @@ class Changes:
         return {start: names for start, names in found.items() if start in whole}
 
     def _changed_in(self, function: SharedFunction, index: int) -> set[str] | None:
-        """What the function changes of a parameter; None where that cannot be told."""
+        """Returns what the function changes of a parameter; None where that cannot be told."""
         if function.only_reads:
             return set()
         parameter = function.takes[index] if index < len(function.takes) else ""

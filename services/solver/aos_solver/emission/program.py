@@ -89,7 +89,7 @@ class Field(msgspec.Struct, frozen=True):
 
     @property
     def is_over_enum(self) -> bool:
-        """Whether it is an array over an enum, whose default may be that of each element."""
+        """True for an array over an enum, whose default may be that of each element."""
         return self.type.startswith("aos::Named<")
 
 
@@ -124,7 +124,7 @@ class Variable(msgspec.Struct, frozen=True):
 
     @property
     def is_over_enum(self) -> bool:
-        """Whether it is an array over an enum, whose default may be that of each element."""
+        """True for an array over an enum, whose default may be that of each element."""
         return self.type.startswith("aos::Named<")
 
 
@@ -210,7 +210,7 @@ class SpecialState(msgspec.Struct, frozen=True):
 
     @property
     def is_terminal(self) -> bool:
-        """Of form A: whether the mission ends where the condition holds."""
+        """True for form A if the mission ends where the condition holds."""
         return self.is_goal or self.is_failure
 
 
@@ -271,7 +271,7 @@ class Skill(msgspec.Struct, frozen=True):
 
     @property
     def is_corrected(self) -> bool:
-        """Whether its real observations tell about the state beyond the response."""
+        """True if its real observations tell about the state beyond the response."""
         return self.given_observation is not None or bool(self.reported)
 
     @property

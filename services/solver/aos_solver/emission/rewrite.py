@@ -25,7 +25,7 @@ EnumValues = tuple[str, ...] | None
 
 
 class Rewriting(msgspec.Struct, frozen=True):
-    """What names mean in a section.
+    """The meanings of names in a section.
 
     `object_types` are the compound types with a list of objects, `enums` those that are types, `values` the
     constants that every section sees, `containers` the lists of values that the section's code declares,
@@ -156,7 +156,8 @@ _DISTRIBUTIONS = {
 
 
 def _of_reported(draw: Call) -> Iterator[tuple[Extent | int, str]]:
-    """Of an enum's values the number is reported, whatever the enum is called."""
+    """Yields the edits of a draw that is reported: of an enum's values the number, whatever the enum is
+    called."""
     yield draw.function, _DISTRIBUTIONS[draw.name[1]]
     if draw.name[1] == "SampleDiscrete" and len(draw.arguments) == 2:
         yield draw.arguments[0], "aos::normalised"

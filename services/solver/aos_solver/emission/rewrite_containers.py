@@ -56,7 +56,7 @@ def _may_bind_state(cpp: Cpp, declaration: Declaration, before: str) -> bool:
 
 
 def _mentions_state(cpp: Cpp, declaration: Declaration) -> bool:
-    """Whether the state stands anywhere in what a variable starts with."""
+    """Returns whether the state stands anywhere in what a variable starts with."""
     initial = declaration.initial
     return initial is not None and any(initial.start <= at < initial.end for at in _places_of_state(cpp))
 

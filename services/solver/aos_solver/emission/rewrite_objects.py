@@ -59,7 +59,7 @@ def _within_types(cpp: Cpp, object_types: frozenset[str]) -> Iterator[tuple[int,
 
 
 def _waits_for_its_object(cpp: Cpp, declaration: Declaration) -> bool:
-    """Whether a pointer starts without an object, and so without a type to take over."""
+    """Returns whether a pointer starts without an object, and so without a type to take over."""
     if declaration.kind is not DeclarationKind.VARIABLE:
         return False
     initial = declaration.initial

@@ -34,13 +34,14 @@ class TracedModel(msgspec.Struct, frozen=True):
     pieces: tuple[int, ...]
 
     def may_be_in(self, place: int, piece: int) -> bool:
-        """Whether a place is in the piece, or in a function that it may call."""
+        """Returns whether a place is in the piece, or in a function that it may call."""
         return (
             self.pieces[place - 1] == piece or self.emitted.pieces[self.pieces[place - 1] - 1].is_declarations
         )
 
     def has_later_statements(self, piece: int) -> bool:
-        """Whether a statement that runs with the piece stands on another line than the piece's first."""
+        """Returns whether a statement that runs with the piece stands on another line than the piece's
+        first."""
         if any(each.is_declarations for each in self.emitted.pieces):
             return True
         first = self.emitted.snippets[piece - 1]
@@ -88,7 +89,7 @@ class _Tracing:
 
     @property
     def _showing(self) -> str:
-        """What tells the state if the piece does not end: the copies and variables that it names."""
+        """The code that tells the state if the piece does not end: the copies and variables that it names."""
         named: dict[str, list[str]] = {}
         for copy, variable in _STATE.findall(self._piece.text):
             named.setdefault(copy, []).append(variable)
@@ -134,7 +135,7 @@ def _line_of(piece: Piece, number: int, emitted: EmittedModel) -> int:
 
 
 def _is_statements(piece: Piece, emitted: EmittedModel, lines: list[str]) -> bool:
-    """Whether the piece is not an expression: then its number alone is told on the line before it."""
+    """Returns whether the piece is not an expression: then its number alone is told on the line before it."""
     before = _line_of(piece, 1, emitted) - 1
     if lines[before].startswith("#line"):
         before -= 1

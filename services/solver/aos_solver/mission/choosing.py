@@ -1,4 +1,4 @@
-"""What a mission does next: an action, an ending, or to hold, for what can be carried out now."""
+"""The choice of a mission's next step: an action, an ending, or to hold, for what can be carried out now."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"
 
 
 class Available(Protocol):
-    """What a choice has to know of the robot."""
+    """The facts that a choice has to know of the robot."""
 
     clock: Clock
 
@@ -41,7 +41,8 @@ class Available(Protocol):
 
     @property
     def announced(self) -> Mapping[str, int]:
-        """How often each skill's adapter has announced itself; 0 for skills that are not there."""
+        """The number of times that each skill's adapter has announced itself; 0 for skills that are not
+        there."""
         ...
 
 
@@ -80,12 +81,12 @@ class Chooser:
         self._budget = budget
 
     def is_something_available(self, engine: Engine) -> bool:
-        """Whether any action could be carried out now."""
+        """Returns whether any action could be carried out now."""
         away = self._around.unavailable.keys() | self._set_aside().keys()
         return any(action.skill not in away for action in engine.description.actions)
 
     async def choose(self, model: RunningModel, step: int, belief: BeliefSummary) -> Choice | Ended | Held:
-        """What follows at this belief; the action still can be carried out when it is chosen."""
+        """Chooses what follows at this belief; the action still can be carried out when it is chosen."""
         engine = model.engine
         actions = engine.description.actions
         risks = await engine.risks(self._search.seed_of(step)) if self._budget else None

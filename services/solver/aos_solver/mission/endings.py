@@ -1,4 +1,4 @@
-"""When a mission is over, and how it ended: the rules that the mission loop and `aos simulate` share."""
+"""The end of a mission, and how it ended: the rules that the mission loop and `aos simulate` share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ __all__ = [
 
 
 class Ending(StrEnum):
-    """How a mission ends; `SKILLS_FAILED`, `FAULT` and `CANCELLED` come from outside the belief.
+    """The ways in which a mission ends; `SKILLS_FAILED`, `FAULT` and `CANCELLED` come from outside the
+    belief.
 
     `OVER` is an ending of the documents that is neither a goal nor a failure. `TOO_RISKY` is where every
     action risks more than the mission's constraints allow.
@@ -40,7 +41,7 @@ class Ending(StrEnum):
 
 
 class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
-    """What ends a mission: `goal_probability` holds for the goal and for the other endings alike.
+    """The limits that end a mission: `goal_probability` holds for the goal and for the other endings alike.
 
     `stop_below_value` is an expected return: when no action promises so much, the robot does better by doing
     nothing, which is worth 0. With None no mission stops for that reason.
@@ -52,7 +53,7 @@ class MissionLimits(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def worth_of_stopping(self) -> float:
-        """What it is worth to do nothing."""
+        """The return of doing nothing."""
         return self.stop_below_value if self.stop_below_value is not None else 0.0
 
     @property
@@ -83,7 +84,7 @@ def believed_ending(belief: BeliefSummary, limits: MissionLimits) -> Ending | No
 
 
 def is_held_back(belief: BeliefSummary, limits: MissionLimits) -> bool:
-    """Whether the mission would be over, but for what nobody has observed."""
+    """Returns whether the mission would be over, but for what nobody has observed."""
     return _held_ending(belief, limits) is not None and believed_ending(belief, limits) is None
 
 
@@ -124,7 +125,7 @@ def ending_after_planning(
 
 
 def is_worth_nothing(best: ActionValue, limits: MissionLimits) -> bool:
-    """Whether nothing is known that returns more than to do nothing.
+    """Returns whether nothing is known that returns more than to do nothing.
 
     Where nothing is proven, the estimate has twice its standard error as the benefit of the doubt.
     """
@@ -133,7 +134,7 @@ def is_worth_nothing(best: ActionValue, limits: MissionLimits) -> bool:
 
 
 def remark_of(ending: Ending, belief: BeliefSummary, limits: MissionLimits) -> str:
-    """Why a mission ended, in one line for people; where nobody can tell how it ended, it says so."""
+    """Says why a mission ended, in one line for people; where nobody can tell how it ended, it says so."""
     if ending == Ending.GOAL:
         cautious = belief.cautious
         unless = (

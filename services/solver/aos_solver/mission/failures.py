@@ -1,4 +1,4 @@
-"""What follows from activations that failed: for the belief, and for the mission.
+"""The consequences of activations that failed: for the belief, and for the mission.
 
 docs/when-a-skill-fails.md has all rules.
 """
@@ -18,11 +18,11 @@ __all__ = ["FailureRules", "Failures", "OnFailure", "SkillRule"]
 OnFailure = Literal["observe", "retry", "hold", "end"]
 
 RAN_PROBABILITY = 0.5
-"""How probable it is that a skill ran of which nobody knows, unless the deploy file says otherwise."""
+"""A skill of which nobody knows ran with this probability, unless the deploy file says otherwise."""
 
 
 class SkillRule(msgspec.Struct, frozen=True, kw_only=True):
-    """What the deploy file says about one skill; see docs/deploy-file.md.
+    """The deploy file's rule for one skill; see docs/deploy-file.md.
 
     Where `timeout_s`, `set_aside_after` or `set_aside_s` is None the mission's counts. Where `retries` is
     None the action is tried again once with `retry`, and else not. `ran_probability` None is 0 for failures
@@ -38,7 +38,7 @@ class SkillRule(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def tries_again(self) -> int:
-        """How often the same action is tried again before anything else follows."""
+        """The number of times that the same action is tried again before anything else follows."""
         return self.retries if self.retries is not None else int(self.on_failure == "retry")
 
 
@@ -73,7 +73,8 @@ class Failures:
         return self._rules.skills.get(skill, _USUAL)
 
     def ran_probability(self, outcome: Outcome) -> float:
-        """How probable it is that a skill ran which brought no observation. Refused, nothing was begun."""
+        """Returns how probable it is that a skill ran which brought no observation. Refused, nothing was
+        begun."""
         if outcome.status == "refused":
             return 0.0
         usual = 0.0 if outcome.status == "failed" else RAN_PROBABILITY
@@ -85,12 +86,12 @@ class Failures:
         return self._setting_aside.reasons(now_s, announced)
 
     def s_until_return(self, now_s: float) -> float:
-        """How long it takes until a skill that is set aside comes back by itself."""
+        """Returns how long it takes until a skill that is set aside comes back by itself."""
         return self._setting_aside.s_until_return(now_s)
 
     @property
     def retry_text(self) -> str:
-        """Why the same action is taken once more."""
+        """The reason why the same action is taken once more."""
         assert self.to_retry is not None
         rule = self.rule(self.to_retry.skill)
         return f"it is tried again after a failure, {self._tries} of {rule.tries_again}"

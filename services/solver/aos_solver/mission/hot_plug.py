@@ -39,8 +39,8 @@ _LAST = 19
 _UNHURRIED_DEADLINE_S = 1800.0
 
 _PATIENCE_S = 1.0
-"""How long a decision waits for a revision that is on its way. The revision was compiled when it was checked,
-so that only its engine and the middleware's module have to start."""
+"""A decision waits this long for a revision that is on its way. The revision was compiled when it was
+checked, so that only its engine and the middleware's module have to start."""
 
 _ASK_AGAIN_S = 0.02
 
@@ -70,7 +70,7 @@ async def build_project(
 
 @lru_cache(maxsize=8)
 def lowered(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """What `lower` makes of a project, remembered: whoever checks documents builds them as well."""
+    """Lowers a project and remembers the result: whoever checks documents builds them as well."""
     return lower(project)
 
 
@@ -222,7 +222,7 @@ class ModelShelf:
                     pass
 
     async def _is_mapped(self, revision: int) -> bool:
-        """Whether the middleware runs the revision too. The middleware is waited for once."""
+        """Waits for the middleware, once for a revision; returns whether it runs the revision too."""
         with suppress(TimeoutError):
             async with asyncio.timeout(_PATIENCE_S):
                 while await self._mapping_revision() < revision:
@@ -234,7 +234,7 @@ class ModelShelf:
         return False
 
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
-        """What keeps these documents from being used now: compile errors, or another state layout."""
+        """Returns what keeps these documents from being used now: compile errors, or another state layout."""
         try:
             built = await self._built(project)
         except AosError as error:

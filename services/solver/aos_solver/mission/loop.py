@@ -34,7 +34,7 @@ __all__ = ["Mission", "Ports"]
 
 
 class Ports(Available, Protocol):
-    """What the loop needs from outside."""
+    """The ports of the loop to the outside."""
 
     async def until_changed(self, timeout_s: float) -> None:
         """Returns when other skills are available, when somebody wants the mission to go on, or in time."""

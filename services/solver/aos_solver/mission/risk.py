@@ -21,14 +21,14 @@ _ROUNDING = 1e-12
 
 
 class RiskBudget:
-    """What a mission's decisions have left of its constraints."""
+    """The budget of each constraint that a mission's decisions have left."""
 
     def __init__(self, bounds: Sequence[Bound]) -> None:
         self._bounds = tuple(bounds)
         self._left = [bound.probability for bound in bounds]
 
     def __bool__(self) -> bool:
-        """Whether there is any constraint."""
+        """Returns whether there is any constraint."""
         return bool(self._bounds)
 
     def forbidden(self, risks: Risks) -> frozenset[int]:
@@ -64,7 +64,7 @@ class RiskBudget:
         return spent
 
     def remark(self, risks: Risks) -> str:
-        """Why no action can be chosen."""
+        """Says why no action can be chosen."""
         refused = []
         for number, (bound, left) in enumerate(zip(self._bounds, self._left, strict=True)):
             least = min(probabilities[number] for probabilities in risks.actions)

@@ -39,7 +39,8 @@ class SettingAside:
 
     @staticmethod
     def weight_of_told(surprise: float) -> float:
-        """What a failure counts that a rule has told: the less, the more probable the model holds it."""
+        """Returns the weight of a failure that a rule has told: the more probable the model holds it, the
+        less."""
         return min(max(surprise, 0.0) / _COUNTS_FULLY, 1.0)
 
     def count(self, skill: str, weight: float, announced: int) -> None:
@@ -72,5 +73,6 @@ class SettingAside:
         return {skill: pause.reason for skill, pause in self._pauses.items()}
 
     def s_until_return(self, now_s: float) -> float:
-        """How long it takes until the next skill comes back by itself; infinite where none is set aside."""
+        """Returns how long it takes until the next skill comes back by itself; infinite where none is set
+        aside."""
         return min((pause.ends_at_s - now_s for pause in self._pauses.values()), default=math.inf)

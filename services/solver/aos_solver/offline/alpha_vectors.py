@@ -20,7 +20,7 @@ __all__ = ["AlphaVectors", "Choice", "RegionSize", "RegionVectors"]
 
 
 class RegionSize(msgspec.Struct, frozen=True):
-    """How many states a region has, and how many vectors."""
+    """The numbers of a region's states and vectors."""
 
     states: int
     vectors: int
@@ -76,7 +76,7 @@ class AlphaVectors(msgspec.Struct, frozen=True):
         return cls(action_count, tuple(regions))
 
     def to_bytes(self) -> bytes:
-        """What a file has behind its line."""
+        """Returns the bytes of a file behind its line."""
         return b"".join(
             array.astype(kind).tobytes()
             for region in self.regions
@@ -92,7 +92,7 @@ class AlphaVectors(msgspec.Struct, frozen=True):
         return sum(len(region.actions) for region in self.regions)
 
     def region_of(self, state_count: int) -> tuple[Integers, Integers]:
-        """For every state its region, or -1, and its place in it."""
+        """Returns for every state its region, or -1, and its place in it."""
         region, place = np.full(state_count, -1), np.zeros(state_count, dtype=np.int64)
         for number, part in enumerate(self.regions):
             region[part.states] = number

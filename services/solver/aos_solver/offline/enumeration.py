@@ -21,7 +21,7 @@ ENDED = "ended"
 """The name of the state that stands for all in which the mission is over."""
 
 _NEXT_TO_NOTHING = 1e-12
-"""What may be missing from a row's probabilities by rounding."""
+"""The probabilities of a row may miss this much by rounding."""
 
 
 class Enumeration(msgspec.Struct, frozen=True):
@@ -73,7 +73,7 @@ async def enumerate_model(
 def _with_an_end(
     name: str, numbers: FlatModel, actions: tuple[str, ...], observations: tuple[str, ...]
 ) -> ExplicitModel:
-    """What is missing from the probabilities of a row leads to a state in which the mission is over.
+    """Adds a state in which the mission is over: what is missing from the probabilities of a row leads there.
 
     What is observed then does not matter.
     """

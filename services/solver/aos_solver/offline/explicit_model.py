@@ -39,7 +39,7 @@ class Ragged(msgspec.Struct, frozen=True):
         return len(self.first) - 1
 
     def with_certain_row(self, number: int) -> Ragged:
-        """With one row more, which has this number alone."""
+        """Returns it with one row more, which has this number alone."""
         first = np.r_[self.first, self.first[-1] + 1]
         return Ragged(first, np.r_[self.numbers, number], np.r_[self.probabilities, 1.0])
 
@@ -57,7 +57,7 @@ class Ragged(msgspec.Struct, frozen=True):
 
     @property
     def row_numbers(self) -> Integers:
-        """For every element the row it is in."""
+        """The number of the row that each element is in."""
         return np.repeat(np.arange(len(self)), np.diff(self.first))
 
 
@@ -70,7 +70,7 @@ class StartBelief(msgspec.Struct, frozen=True):
 
 
 class ModelSize(msgspec.Struct, frozen=True):
-    """How large a model is; `outcomes` counts (state, action, next state)."""
+    """The size of a model; `outcomes` counts (state, action, next state)."""
 
     states: int
     actions: int

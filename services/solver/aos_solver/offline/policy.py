@@ -27,7 +27,7 @@ FORMAT = "aos-policy-2"
 
 
 class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
-    """What a policy is about.
+    """The subject of a policy.
 
     `model_digest` is the compiled model's, or the problem file's. `states` are the engine's texts of states,
     without what does not matter, or the problem file's names. From the start the policy gives at least

@@ -24,7 +24,7 @@ _CROSSED_STATUS = 3
 
 
 class SolvingLimits(msgspec.Struct, frozen=True, kw_only=True):
-    """When to stop: bounds nearer than `precision`, `cpu_s` seconds of computing, so much memory."""
+    """The limits of solving: bounds nearer than `precision`, `cpu_s` seconds of computing, so much memory."""
 
     precision: float = 1e-3
     cpu_s: float = 60.0
@@ -32,8 +32,8 @@ class SolvingLimits(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Bounds(msgspec.Struct, frozen=True):
-    """What is known after so many seconds of computing: the policy gives at least `lower` from the start,
-    and no policy gives more than `upper`. Both are discounted."""
+    """The bounds that are known after so many seconds of computing: the policy gives at least `lower` from
+    the start, and no policy gives more than `upper`. Both are discounted."""
 
     seconds: float
     lower: float
