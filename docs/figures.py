@@ -60,7 +60,7 @@ def linting() -> str:
 
 
 def performance() -> str:
-    """What `PERFORMANCE` prints, which has a head of its own, below the command and the commit."""
+    """Returns the output of `PERFORMANCE`, which has a head of its own, below the command and the commit."""
     return f"`{' '.join(PERFORMANCE)}`, commit {_commit()}.\n{_printed(PERFORMANCE).strip()}"
 
 
@@ -68,7 +68,8 @@ FIGURES = {"linting": linting, "performance": performance}
 
 
 def _printed(command: tuple[str, ...]) -> str:
-    """What a command of the checkout prints; `python` and `aos` are those that this runs with."""
+    """Runs a command of the checkout and returns its output; `python` and `aos` are those that this runs
+    with."""
     program = str(Path(sys.executable).with_name(command[0]))
     done = subprocess.run(
         [program, *command[1:]], cwd=DOCS.parent, stdout=subprocess.PIPE, text=True, check=True

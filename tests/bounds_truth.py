@@ -1,4 +1,5 @@
-"""Whether the point-based solver's bounds hold, on random models, against exact values by another program.
+"""The check that the point-based solver's bounds hold, on random models, against another program's exact
+values.
 
     python tests/bounds_truth.py [--models 10000] [--first-seed 1] [--work 10000000]
 

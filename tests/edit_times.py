@@ -1,4 +1,4 @@
-"""How long it takes from an edited document to a decision of its model, on this machine, now.
+"""The time from an edited document to a decision of its model, on this machine, now.
 
     python tests/edit_times.py [BUNDLE] [--times N] [--simulations N]
 
@@ -90,7 +90,8 @@ async def one_decision(bundle: Path, simulations: int) -> list[float]:
 
 
 def processor_time_s() -> float:
-    """Of this process and of those below it that were waited for, as compilers are."""
+    """Returns the processor time of this process and of those below it that were waited for, as compilers
+    are."""
     uses = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(use.ru_utime + use.ru_stime for use in uses)
 

@@ -27,7 +27,7 @@ class Installation:
         self.environment = {**os.environ, **own}
 
     def run(self, *command: str) -> subprocess.CompletedProcess[str]:
-        """What a command said, after its end."""
+        """Returns the result of a command, after its end."""
         name, *arguments = command
         return subprocess.run(
             [self.commands / name, *arguments],

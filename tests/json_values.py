@@ -1,4 +1,4 @@
-"""What the JSON reader has read, as Python's own values."""
+"""The values that the JSON reader has read, as Python's own."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["plain"]
 
 
 def plain(value: JsonValue | None) -> Any:
-    """As `json.loads` would give it; None also where nothing could be read."""
+    """Returns what `json.loads` would give; None also where nothing could be read."""
     match value:
         case JsonObject():
             return {key.text: plain(item) for key, item in value.members}

@@ -1,4 +1,4 @@
-"""How long `aos lint` takes, on this machine, now: for bundles, or for some with one mistake each.
+"""The time that `aos lint` takes, on this machine, now: for bundles, or for some with one mistake each.
 
     python tests/lint_times.py [BUNDLE ...]
 

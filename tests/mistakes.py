@@ -37,7 +37,7 @@ class Mistake(msgspec.Struct, frozen=True):
 
 
 class Verdict(msgspec.Struct, frozen=True):
-    """What the checks said to a mistake: the finding of the right code that is nearest to the place."""
+    """The reply of the checks to a mistake: the finding of the right code that is nearest to the place."""
 
     mistake: Mistake
     found: tuple[Diagnostic, ...]

@@ -30,7 +30,7 @@ __all__ = ["Played", "bundles_in", "play_bundle"]
 
 
 class Played(msgspec.Struct, kw_only=True):
-    """How far a bundle came; `fault` is empty where it came through."""
+    """The way that a bundle came; `fault` is empty where it came through."""
 
     bundle: str
     findings: int

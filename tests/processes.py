@@ -11,11 +11,11 @@ from pathlib import Path
 __all__ = ["HANG_S", "descendants", "has_listener", "is_running", "kill", "until_ended"]
 
 HANG_S = 900.0
-"""How long tests wait for what takes seconds on a machine without other work: only a hang takes longer."""
+"""Tests wait this long for what takes seconds on a machine without other work: only a hang takes longer."""
 
 
 def is_running(pid: int) -> bool:
-    """Whether a process does anything still; a zombie does not."""
+    """Returns whether a process does anything still; a zombie does not."""
     try:
         status = Path(f"/proc/{pid}/stat").read_text()
     except (FileNotFoundError, ProcessLookupError):
@@ -57,7 +57,7 @@ async def _until_one_ended(pid: int) -> None:
 
 
 def has_listener(port: int) -> bool:
-    """Whether any process listens on a TCP port of this machine."""
+    """Returns whether any process listens on a TCP port of this machine."""
     wanted = f":{port:04X}"
     for table in ("/proc/net/tcp", "/proc/net/tcp6"):
         for line in Path(table).read_text().splitlines()[1:]:

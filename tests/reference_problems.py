@@ -20,9 +20,9 @@ Outcome = tuple[float, S | None, float, str]
 
 Cell = tuple[int, int]
 Chase = tuple[Cell, Cell]
-"""Where the robot is, and where its opponent."""
+"""The places of the robot and of its opponent."""
 Survey = tuple[Cell, tuple[bool, ...]]
-"""Where the robot is, and which rocks are good."""
+"""The place of the robot, and which rocks are good."""
 
 MOVES = {"north": (0, 1), "east": (1, 0), "south": (0, -1), "west": (-1, 0)}
 
@@ -143,7 +143,7 @@ def expected_reward(model: Model[S], belief: Belief[S], action: str) -> float:
 
 
 def observed(model: Model[S], belief: Belief[S], action: str, response: str) -> tuple[float, Belief[S]]:
-    """How likely the response is, and the belief after it; empty if the problem has ended with it."""
+    """Returns how likely the response is, and the belief after it; empty if the problem has ended with it."""
     after: Belief[S] = {}
     total = 0.0
     for state, weight in belief.items():

@@ -32,7 +32,7 @@ class Clock(SystemClock):
 
 
 class Surroundings:
-    """What the loop is given: a journal that the test can read, and a robot."""
+    """The surroundings of the loop: a journal that the test can read, and a robot."""
 
     clock: SystemClock = SystemClock()
 

@@ -1,4 +1,4 @@
-"""How long aos-up takes from its start to the first decision, on this machine, now.
+"""The time that aos-up takes from its start to the first decision, on this machine, now.
 
     python tests/start_times.py [DEPLOY] [--times N]
 

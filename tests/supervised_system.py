@@ -85,7 +85,7 @@ class System:
             raise root_cause(group) from group
 
     async def error(self, *programs: Program, victim: str = "") -> AosError:
-        """What a system of these programs fails with, after the victim is killed if there is one."""
+        """Returns the error of a system of these programs, after the victim is killed if there is one."""
         try:
             async with self.up(*programs) as supervisor:
                 await supervisor.until_ready()

@@ -57,7 +57,7 @@ class Wrong(msgspec.Struct, frozen=True):
     robot: WrongRobot | None
 
     def verdict(self, trials: list[Trial], by: str) -> Verdict:
-        """What an experiment would say of these missions."""
+        """Judges these missions as an experiment would."""
         truth = self.part.truth or self.experiment.truth
         return judge(asking_the_world(self.claim, by, truth), trials, by)
 

@@ -1,1 +1,1 @@
-"""What adapters and the middleware can do, in figures; see `python -m tests.adapter_numbers --help`."""
+"""The abilities of adapters and the middleware, in figures; see `python -m tests.adapter_numbers --help`."""

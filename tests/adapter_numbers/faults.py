@@ -50,7 +50,7 @@ answer = __input.answer
 
 
 class Fault(NamedTuple):
-    """What an outcome may be; the process that dies is started again each time."""
+    """The statuses that an outcome may have; the process that dies is started again each time."""
 
     statuses: tuple[str, ...]
     mapping: str = f"max_duration: {TIMEOUT_S}\n"

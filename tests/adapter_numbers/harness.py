@@ -57,7 +57,7 @@ def project_of(skills: dict[str, str]) -> Project:
 
 
 class Harness:
-    """What a measurement works with; `folder` is the run directory."""
+    """The parts that a measurement works with; `folder` is the run directory."""
 
     def __init__(self, bus: Bus, keys: Keys, folder: Path, endpoint: str) -> None:
         self.bus = bus

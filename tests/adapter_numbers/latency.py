@@ -1,4 +1,4 @@
-"""From the solver's activation to the skill, and from its result to the observation."""
+"""The way from the solver's activation to the skill, and from its result to the observation."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ async def measure_latency(calls: int) -> int:
 
 
 async def _round_trips(bus: Bus, endpoint: str, calls: int) -> list[float]:
-    """Of a query through the router to another session, and its answer, in milliseconds."""
+    """Returns the times of a query through the router to another session, and its answer, in milliseconds."""
 
     async def answer(_: MappingQuery, __: str) -> MappingState:
         return MappingState(0, ())

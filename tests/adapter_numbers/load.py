@@ -54,7 +54,7 @@ async def measure_load(seconds: float) -> int:
 
 
 async def _publish(made: Harness, seconds: float) -> int:
-    """How many messages went on each topic."""
+    """Publishes for some seconds and returns how many messages went on each topic."""
     ends_s, turn_s, sent = time.monotonic() + seconds, time.monotonic(), 0
     while time.monotonic() < ends_s:
         sent += 1
@@ -66,7 +66,7 @@ async def _publish(made: Harness, seconds: float) -> int:
 
 
 def _processor_s(made: Harness) -> float:
-    """Of the middleware and everything below it."""
+    """Returns the processor time of the middleware and everything below it."""
     assert made.middleware is not None
     return sum(_ticks(pid) for pid in _family(made.middleware.pid)) / 100
 

@@ -79,7 +79,7 @@ def _simulated(bundle: Path, seeds: int, simulations: int, steps: int) -> list[f
 
 
 def _difference(one: list[float], other: list[float]) -> float:
-    """Of two means, in standard errors of the difference."""
+    """Returns the difference of two means, in standard errors of the difference."""
     difference = statistics.fmean(one) - statistics.fmean(other)
     variance = sum(statistics.variance(each) / len(each) for each in (one, other) if len(each) > 1)
     if abs(difference) < 1e-9:

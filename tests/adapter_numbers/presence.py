@@ -1,4 +1,5 @@
-"""How soon the skills of an adapter that leaves are unavailable, and run again when it is back."""
+"""The times until the skills of an adapter that leaves are unavailable, and until they run again when it
+is back."""
 
 from __future__ import annotations
 
@@ -36,7 +37,8 @@ async def measure_presence(runs: int) -> int:
 
 
 async def _leave(made: Harness, death: signal.Signals, runs: int) -> tuple[list[float], list[float], int]:
-    """For each run: until the skill is told to be unavailable, until it is available again; outcomes."""
+    """Returns for each run the times until the skill is told to be unavailable and available again, and
+    the good outcomes."""
     gone, back, good = [], [], 0
     child = await made.adapter(SKILL, {"/skill": "skill"})
     await made.until_available(skills=1)

@@ -29,7 +29,7 @@ def free_endpoint() -> str:
 
 @pytest.fixture(scope="module")
 def endpoint(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Where the module's router listens; clients wait for it by themselves."""
+    """The address of the module's router; clients wait for it by themselves."""
     folder: Path = tmp_path_factory.mktemp("router")
     settings = ServiceSettings(robot="test", service="router", endpoint=free_endpoint(), run_dir=str(folder))
     path = folder / "router.json"

@@ -1,4 +1,4 @@
-"""Who is on the bus: how a session opens, is present, and leaves."""
+"""The sessions on the bus: how one opens, is present, and leaves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the middleware makes of a call and its result: a defined outcome, whatever goes wrong."""
+"""The outcomes that the middleware makes of a call and its result: a defined one, whatever goes wrong."""
 
 from __future__ import annotations
 

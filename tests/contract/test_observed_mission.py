@@ -136,7 +136,7 @@ RUNS: tuple[dict[str, Any], ...] = (
     {"items": 2, "order": None, "x": 1.5, "weight": "?"},
     {"items": 7, "order": 0.9, "x": 1.75, "weight": 1.6},
 )
-"""What the robot finds, run by run; the second time it cannot tell the order, nor the weight."""
+"""The findings of the robot, run by run; the second time it cannot tell the order, nor the weight."""
 
 
 class Robot:

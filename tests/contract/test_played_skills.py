@@ -26,7 +26,8 @@ Point(x=nobody_gives_this)
 
 
 async def outcome_of(system: System) -> Outcome:
-    """Of a skill whose fields cannot be computed, and whose adapter answers with the observation."""
+    """Returns the outcome of a skill whose fields cannot be computed, and whose adapter answers with the
+    observation."""
 
     def observed(result: SkillResult) -> SkillResult:
         return msgspec.structs.replace(result, response="done")

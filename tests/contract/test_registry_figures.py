@@ -1,4 +1,4 @@
-"""What a push costs above reading and checking the documents; `pytest -s` prints it."""
+"""The cost of a push above reading and checking the documents; `pytest -s` prints it."""
 
 from __future__ import annotations
 

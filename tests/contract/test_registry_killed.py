@@ -25,7 +25,7 @@ LATEST_KILL_S = 0.1
 POLL_S = 0.005
 
 Accepted = dict[int, bytes]
-"""What each accepted revision has in pick.sd."""
+"""The content of pick.sd in each accepted revision."""
 
 
 @pytest.fixture

@@ -217,7 +217,7 @@ async def test_a_router_that_is_not_there_is_an_error_that_says_how_to_start_it(
 
 
 async def answered(node: Node, service: str, fields: dict[str, Any]) -> dict[str, Any]:
-    """What the service answers once it does: the peer shows its token before it can."""
+    """Returns the service's answer once it answers: the peer shows its token before it can."""
     async with asyncio.timeout(HANG_S):
         while True:
             try:

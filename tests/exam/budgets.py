@@ -1,4 +1,4 @@
-"""What a simulation costs in each planner, on bundles of documents, in processor time.
+"""The cost of a simulation in each planner, on bundles of documents, in processor time.
 
 POMCP plays a mission of a few decisions on each bundle. The others decide on the same beliefs. A search
 counts that has used a tenth of its budget or more: one that ends early, since nothing is left to find out,
@@ -28,7 +28,7 @@ __all__ = ["Cost", "costs_of", "examine_budgets"]
 
 PLANNERS: tuple[Planner, ...] = ("pomcp", "despot", "sarsop", "auto")
 MOST = 3.0
-"""How many times as long a simulation may take in one planner as in another."""
+"""A simulation may take this many times as long in one planner as in another."""
 LEAST_USED = 0.1
 
 _ROOT = Path(__file__).resolve().parents[2]
@@ -43,7 +43,7 @@ _DOCUMENTS = ("*.ef", "*.json")
 
 
 class Cost(msgspec.Struct, frozen=True):
-    """What the searches of one planner cost on one bundle.
+    """The cost of one planner's searches on one bundle.
 
     `planner` was asked for, `used` has decided. `counted` simulations took `search_s` of processor time;
     there are none where all searches ended early. `preparation_s` is the most that lists, values and first
@@ -150,13 +150,13 @@ async def _row(folder: Path, arguments: argparse.Namespace, cache_dir: Path) -> 
 
 
 def ratio_of(costs: Sequence[Cost]) -> float:
-    """Of the dearest simulation to the cheapest one."""
+    """Returns the ratio of the dearest simulation to the cheapest one."""
     known = [cost.each_us for cost in costs if cost.counted]
     return max(known) / min(known) if known else 1.0
 
 
 def _name(folder: Path) -> str:
-    """From the checkout, or from the folder beside it: no two bundles have the same name."""
+    """Returns the path from the checkout, or from the folder beside it: no two bundles have the same name."""
     path = folder.absolute()
     return str(next((path.relative_to(root) for root in _ROOTS if path.is_relative_to(root)), path))
 

@@ -1,4 +1,4 @@
-"""What the families draw and reckon with."""
+"""The numbers that the families draw and reckon with."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ _RESPONSES = {"yes": 0, "no": 1}
 
 
 class Examined(msgspec.Struct, frozen=True):
-    """What came of a bundle: what is false, and the worst decision in percent of what actions differ by."""
+    """The result of a bundle: what is false, and the worst decision in percent of what actions differ by."""
 
     name: str
     idioms: tuple[str, ...]

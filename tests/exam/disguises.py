@@ -1,5 +1,5 @@
-"""What may be done to a world that hardly changes what it is worth: variables that matter to nobody, other
-units, actions in another order, observations that tell nothing.
+"""The changes to a world that hardly change what it is worth: variables that matter to nobody, other units,
+actions in another order, observations that tell nothing.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Odds = Sequence[tuple[float, int]]
 """Values with their probabilities."""
 
 Change = Callable[[int, int], Odds]
-"""What a value becomes by an action."""
+"""The odds of the values that a value becomes by an action."""
 
 
 def disguised(random: random.Random, world: World) -> World:
@@ -65,7 +65,7 @@ def _with_dice(random: random.Random, world: World) -> World:
 
 
 def _with_diary(random: random.Random, world: World) -> World:
-    """What the robot did last, or whether it ever did something."""
+    """Adds a variable for what the robot did last, or for whether it ever did something."""
     if random.random() < 0.5:
         return _beside(random, world, "last", [(1.0, -1)], lambda value, action: [(1.0, action)])
     return _beside(

@@ -16,7 +16,7 @@ from .problem import GOAL, RUNNING, Outcome, State, World
 __all__ = ["SINKS", "Documents", "documents"]
 
 SINKS = ("reward", "extrinsic_reward", "special_state", "goal", "response", "precondition", "draw")
-"""Where the last register is read."""
+"""The last register is read in one of these places."""
 
 HORIZON = 5
 WAIT, ONE, TWO = range(3)
@@ -148,7 +148,7 @@ def _files(
 
 
 def _world(length: int, sink: str, share: float) -> World:
-    """What the documents mean, as a state of the registers and the answer."""
+    """Returns the meaning of the documents, as a state of the registers and the answer."""
 
     def step(state: State, action: int) -> list[Outcome]:
         answer, *now = state

@@ -32,7 +32,7 @@ class Driver:
         self._process: subprocess.Popen[str] | None = None
 
     def report(self, problem: Problem) -> dict[str, Any]:
-        """What it says about a problem; a `crash` where it did not survive it."""
+        """Returns the driver's report on a problem; a `crash` where it did not survive it."""
         process = self._process = self._process or self._start()
         assert process.stdin is not None
         assert process.stdout is not None

@@ -17,7 +17,7 @@ from .jobs import job
 __all__ = ["STANDS_IN_TARGET", "Failures", "examine_failures"]
 
 STANDS_IN_TARGET = 0.95
-"""Of the jobs that the robot does without its broken skill, so many it does with it."""
+"""The robot has to do this share of the jobs that it can do without its broken skill."""
 
 
 @dataclasses.dataclass

@@ -24,7 +24,7 @@ class Register:
     kind: str
 
     def declaration(self) -> str:
-        """In the environment document."""
+        """Returns its declaration in the environment document."""
         kind = {"enum": "Light", "field": "Box"}.get(self.kind, self.kind)
         if self.kind == "array":
             return f"state_variable: int {self.name} []\ncode:\nstate.{self.name} = {{0, 0, 0}};\n"
@@ -52,7 +52,7 @@ class Register:
         }.get(self.kind, f"{place} = {value};")
 
     def place(self, state: str) -> str:
-        """What stands for it in code."""
+        """Returns the text that stands for it in code."""
         return f"{state}.{self.name}" + {"field": ".level", "array": "[1]"}.get(self.kind, "")
 
     @property

@@ -30,7 +30,7 @@ class _Skill:
     document: str
     responses: Sequence[str]
     purpose: str
-    """What it is good for; two of the same purpose can stand in for one another."""
+    """The purpose that it is good for; two of the same purpose can stand in for one another."""
 
     parameter: str = ""
 

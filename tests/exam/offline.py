@@ -17,7 +17,7 @@ __all__ = ["false_bounds"]
 
 
 async def false_bounds(problem: Problem, truth: Driver, cache_dir: Path, cpu_s: float) -> tuple[str, ...]:
-    """What the solver says of a problem with a discount below 1 that is not so, at any time of its search.
+    """Returns what the solver says falsely of a problem with a discount below 1, at any time of its search.
 
     `truth` is asked for values without an end.
     """

@@ -44,7 +44,7 @@ class Outcome:
 
 @dataclasses.dataclass(frozen=True)
 class World:
-    """What a family makes: a POMDP that has not been spelt out."""
+    """The product of a family: a POMDP that has not been spelt out."""
 
     family: str
     discount: float
@@ -77,7 +77,7 @@ class Problem:
         return dataclasses.replace(self, world=dataclasses.replace(self.world, horizon=horizon))
 
     def text(self) -> str:
-        """As the driver reads it."""
+        """Returns the text that the driver reads."""
         world = self.world
         words = [
             f"problem {self.name}",

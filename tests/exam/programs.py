@@ -39,7 +39,7 @@ async def built_program(cache_dir: Path, source: Path, *options: str, includes: 
 
 
 def what_decides(compiler: Compiler, *folders: Path) -> list[str]:
-    """What decides about the result of a compilation besides its options, for a cache's key."""
+    """Returns what decides about the result of a compilation besides its options, for a cache's key."""
     texts = (text for folder in (SOURCES, *folders) for text in _texts(folder))
     return [compiler.version, *compiler.compilation("", "", ""), *texts]
 

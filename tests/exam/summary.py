@@ -1,4 +1,4 @@
-"""What comes of an exam: counts of false claims, and regret by family."""
+"""The results of an exam: counts of false claims, and regret by family."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from .problem import Problem
 __all__ = ["MEAN_TARGET", "WORST_TARGET", "Bounds", "Regrets"]
 
 MEAN_TARGET, WORST_TARGET = 0.01, 0.10
-"""How much more of the range than exact look-ahead a planner may lose."""
+"""A planner may lose this much more of the range than exact look-ahead."""
 
 SOUND_LOOK_AHEAD = 0.02
-"""What look-ahead loses that is near the optimum. Where it loses more, it plans beyond the mission's end."""
+"""Look-ahead that is near the optimum loses at most this much. Where it loses more, it plans beyond the
+mission's end."""
 
 
 def _family(problem: Problem) -> str:

@@ -1,4 +1,5 @@
-"""Whether decisions tell what missions return: a value with its error, against the mean of missions."""
+"""The comparison of what decisions tell with what missions return: a value with its error, against the
+mean of missions."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from .problem import Problem
 __all__ = ["ALLOWED_SHARE", "Told", "Values"]
 
 ALLOWED_SHARE = 0.05
-"""Of the range from random actions to the optimum, by which a value may be off whatever its error."""
+"""A value may be off by this share of the range from random actions to the optimum, whatever its error."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Told:
 
     @property
     def deviation(self) -> float:
-        """In shares of the range; above 0 where too much was promised."""
+        """The deviation in shares of the range; above 0 where too much was promised."""
         return (self.value - self.returned) / self.range
 
     @property
@@ -46,7 +47,7 @@ class Told:
         return abs(self.value - self.returned) <= max(2 * error, ALLOWED_SHARE * self.range)
 
     def row(self) -> str:
-        """Of a table, for bundles."""
+        """Returns a row of a table, for bundles."""
         proven = f"{_text(self.at_least)} to {_text(self.at_most)}"
         cells = (
             self.problem,
@@ -100,7 +101,7 @@ class Values:
         return not all(told.is_right for _, told in found)
 
     def told(self, problem: Problem, answer: dict[str, Any]) -> str:
-        """What is wrong about a model, for people."""
+        """Returns what is wrong about a model, for people."""
         if "optimum" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         found = (told_of(problem.name, entry, answer) for entry in answer["planners"])

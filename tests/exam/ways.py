@@ -60,7 +60,7 @@ def corridor(random: Random, large: bool) -> World:
 
 
 def _edge(place: int, cells: int, accuracy: float) -> Seen:
-    """Whether there is a wall."""
+    """Senses whether there is a wall."""
     is_edge = 1 if place in (0, cells - 1) else 0
     return ((is_edge, accuracy), (1 - is_edge, 1 - accuracy))
 

@@ -38,13 +38,13 @@ INTERESTING = tuple(
         *("project: other\n", "response: \n", "code:\n"),
     )
 )
-"""What readers stumble over."""
+"""Readers stumble over these texts."""
 
 Bundle = dict[str, bytes]
 
 
 class Findings:
-    """What came of the mutations so far."""
+    """The results of the mutations so far."""
 
     def __init__(self) -> None:
         self.outcomes: Counter[str] = Counter()

@@ -35,7 +35,7 @@ def python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def humble_python(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """As `python`, of version 3.10, which is that of ROS 2 Humble."""
+    """The Python of ROS 2 Humble, version 3.10, used as `python` is."""
     versions = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"), "versions")
     found = [*map(str, versions.glob("3.10.*/bin/python3.10")), shutil.which("python3.10") or ""]
     named = next((name for name in found if name and _runs(name)), "")

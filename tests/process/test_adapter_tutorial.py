@@ -23,7 +23,7 @@ def in_a_folder(tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 
 
 def run(command: str) -> str:
-    """What a command says; it has to succeed. aos-up listens at a free port."""
+    """Runs a command, which has to succeed, and returns what it says."""
     name, *arguments = shlex.split(command)
     if name == "aos-up":
         arguments += ["--listen", "tcp/127.0.0.1:0"]

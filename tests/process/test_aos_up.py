@@ -58,7 +58,7 @@ SHARED_BEFORE: set[Path] = set()
 
 @pytest.fixture(scope="module", autouse=True)
 def _shared_before() -> None:
-    """What programs of others have left, such as a killed node that lets Zenoh share memory."""
+    """Notes what programs of others have left, such as a killed node that lets Zenoh share memory."""
     SHARED_BEFORE.update(Path("/dev/shm").iterdir())
 
 
@@ -253,7 +253,8 @@ class Refused(NamedTuple):
 
 
 def refused(deploy_file: Path, text: str, *options: str) -> Refused:
-    """How a deploy file of this text ends, without a traceback and without leaving a process."""
+    """Runs a deploy file of this text and returns how it ends, without a traceback and without leaving a
+    process."""
     changed = deploy_file.with_name("changed.yaml")
     changed.write_text(text)
     with up(changed, *options) as running:

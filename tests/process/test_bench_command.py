@@ -82,7 +82,7 @@ def test_an_unknown_benchmark_is_refused_with_the_known_ones(cache_dir: Path, na
 
 
 async def test_the_baselines_earn_the_rewards_of_the_documents(bundles: Path, cache_dir: Path) -> None:
-    """With random actions, in millions of steps each."""
+    """The baselines take random actions, in millions of steps each."""
     async with Baselines(await find_compiler()) as baselines:
         for problem in PROBLEMS:
             steps = (await baselines.measure(problem, 0.05, seed=1))[0]

@@ -70,7 +70,8 @@ def recorded(folder: Path, deploy_file: str, first_seed: int, missions: int) -> 
 
 
 def covered(result: Calibration) -> list[bool]:
-    """Of each probability that was drawn: whether the interval holds the number that it was drawn with."""
+    """Returns for each probability that was drawn whether the interval holds the number that it was drawn
+    with."""
     return [
         outcome.is_inside
         for estimate in result.estimates

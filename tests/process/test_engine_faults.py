@@ -1,4 +1,4 @@
-"""What is said when an engine cannot go on: another state, a strange response, an unknown command."""
+"""The reports of an engine that cannot go on: another state, a strange response, an unknown command."""
 
 from __future__ import annotations
 

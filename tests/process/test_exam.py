@@ -121,7 +121,7 @@ def reports(
 
 
 def action_values(problem: Problem, belief: dict[int, float], decisions: int) -> list[float]:
-    """By going through all that may be observed; weights of a belief are how likely it is to get there."""
+    """Goes through all that may be observed; the weights of a belief are how likely it is to get there."""
     return [action_value(problem, belief, action, decisions) for action in range(len(problem.world.actions))]
 
 

@@ -1,4 +1,4 @@
-"""What a mission claims, and with what it goes on, where skills fail: docs/when-a-skill-fails.md."""
+"""The claims of a mission where skills fail, and with what it goes on: docs/when-a-skill-fails.md."""
 
 from __future__ import annotations
 

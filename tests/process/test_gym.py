@@ -125,7 +125,7 @@ def test_text_observations_are_bytes(kettle: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore:.*A Box observation space m.* value is -?infinity")
 def test_numbers_beside_a_response_have_columns(kettle: Path) -> None:
-    """Of an array as many as there is room for; what a response does not report is marked."""
+    """An array has as many columns as there is room for; what a response does not report is marked."""
     for name, text in SENSING.items():
         (kettle / name).write_text(text)
     environment = AosEnv(kettle, max_episode_steps=20, array_room=3)

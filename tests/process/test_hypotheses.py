@@ -1,4 +1,4 @@
-"""What an engine believes where skills ended unobserved: one cause for each row, and the cautious belief."""
+"""The beliefs of an engine where skills ended unobserved: one cause for each row, and the cautious belief."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ async def test_what_only_the_cautious_belief_explains_is_believed(lamps: Engine)
 
 
 async def believed(engine: Engine) -> list[BeliefSummary]:
-    """Where the engine is led by what it believes, whatever it has beside its belief."""
+    """Returns the beliefs that the engine is led to, whatever it has beside its belief."""
     summaries = [await engine.summary()]
     summaries.append((await engine.update("see", "light")).summary)
     summaries.append(await lost(engine, "red"))

@@ -53,7 +53,7 @@ success = __input.success
 
 
 class Editor(LanguageClient):
-    """What an editor shows: the latest findings of each file."""
+    """The picture in an editor: the latest findings of each file."""
 
     def __init__(self) -> None:
         super().__init__("test", "1")

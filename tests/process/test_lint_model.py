@@ -1,4 +1,4 @@
-"""What `aos lint` and `aos plan` tell of a model that compiles: faults, and what no action leads to."""
+"""The words of `aos lint` and `aos plan` on a model that compiles: faults, and what no action leads to."""
 
 from __future__ import annotations
 

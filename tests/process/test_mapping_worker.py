@@ -59,7 +59,7 @@ async def fault_of(evaluator: Evaluator, result: dict[str, object] | None = None
 
 
 async def works(evaluator: Evaluator) -> bool:
-    """Whether the next activation finds a worker."""
+    """Returns whether the next activation finds a worker."""
     return await evaluator.begin({}) == {}
 
 

@@ -69,7 +69,7 @@ class Workshop:
 
 @asynccontextmanager
 async def workshop(cache_dir: Path) -> AsyncIterator[Workshop]:
-    """With nobody's child left behind."""
+    """Gives a workshop and leaves nobody's child behind."""
     made = Workshop(cache_dir)
     try:
         yield made

@@ -328,7 +328,8 @@ __moduleResponse = read;
 
 
 def value_of_listening() -> float:
-    """By value iteration over the log-odds of the tiger's place, to which a reading z adds 2 z."""
+    """Computes the value by iteration over the log-odds of the tiger's place, to which a reading z adds 2
+    z."""
     odds = np.linspace(-15, 15, 1501)
     right = 1 / (1 + np.exp(-odds))
     opened = 10 - 110 * np.minimum(right, 1 - right)
@@ -353,7 +354,7 @@ DOCUMENTS_OF_DOORS = {
 
 
 async def endings_of_doors(engine: Engine, planner: Planner) -> list[Ending]:
-    """Of 30 missions, all of which begin with listening: a door opened at once earns -45 on average."""
+    """Plays 30 missions, all of which begin with listening: a door opened at once earns -45 on average."""
     limits = MissionLimits(goal_probability=0.9, step_limit=20)
     searches = [Search(planner=planner, simulations=2000, seed=k) for k in range(30)]
     runs = [await simulate_mission(engine, search, limits) for search in searches]
@@ -376,7 +377,7 @@ async def test_pomcp_looks_ahead_over_numbers(cache_dir: Path) -> None:
 async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_cells(
     planner: Planner, cache_dir: Path
 ) -> None:
-    """What is earned over cells the robot can earn. Cells lose little here; there is no upper bound."""
+    """The robot can earn what is earned over cells. Cells lose little here; there is no upper bound."""
     best = value_of_listening()
     async with engine_of(await built_text(DOCUMENTS_OF_DOORS, cache_dir)) as engine:
         plan = await engine.plan(seed=1, simulations=20_000, planner=planner)

@@ -42,7 +42,7 @@ def ssh(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
 
 
 def up(ssh: str, command: str, folder: Path) -> tuple[int, str]:
-    """How a mission with this program on the other host ends, and what is said."""
+    """Plays a mission with this program on the other host; returns how it ends, and what is said."""
     text = Path("fetch.yaml").read_text()
     before, _, after = text.partition("{command:")
     adapter = f"{{command: {command}, host: robot@arm, folder: {folder}}}"

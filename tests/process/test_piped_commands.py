@@ -1,4 +1,4 @@
-"""What commands write where nobody looks at a terminal: their results, and nothing beside them."""
+"""The output of commands where nobody looks at a terminal: their results, and nothing beside them."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ class Chance:
         self.rewards = random.normal(size=(WORLDS, ACTIONS, STATES))
 
     def documents(self) -> dict[str, str]:
-        """As SDL; the numbers are written without loss."""
+        """Returns the documents as SDL; the numbers are written without loss."""
         tables = "\n".join(
             f"state_variable: double {name} []\ncode:\nstate.{name} = {{{', '.join(map(repr, values))}}};\n"
             for name, values in (
@@ -83,7 +83,8 @@ state.place = AOS.SampleDiscrete(std::vector<double>({STATES}, 1.0 / {STATES}));
         return joint / joint.sum(), float(joint.sum())
 
     def values(self, world: int, belief: np.ndarray, horizon: int) -> list[float]:
-        """Of both actions with so many decisions to go, by going through all that may be observed."""
+        """Returns the values of both actions with so many decisions to go, by going through all that may
+        be observed."""
         found = []
         for action in range(ACTIONS):
             value = float(belief @ self.rewards[world, action])

@@ -37,7 +37,8 @@ def untimed(plan: Plan) -> Plan:
 
 
 async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
-    """What an engine says that depends on neither time nor machine: plans, and a belief between them."""
+    """Returns what an engine says that depends on neither time nor machine: plans, and a belief between
+    them."""
     engine = await Engine.start(built, seed=7)
     try:
         before = await engine.plan(simulations=5000, seed=3)
@@ -49,7 +50,8 @@ async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
 
 
 async def mean_reward(built: BuiltModel) -> float:
-    """Of random steps: a quick build takes them one by one, a thorough one many at a time."""
+    """Returns the mean of random steps: a quick build takes them one by one, a thorough one many at a
+    time."""
     engine = await Engine.start(built, seed=7)
     try:
         return (await engine.rate(0.05, seed=5)).mean_reward

@@ -50,7 +50,8 @@ class Up:
         self._said.put("end")
 
     def has_decided(self) -> bool:
-        """Whether it came to a decision before its end; it hangs where it says nothing for too long."""
+        """Returns whether it came to a decision before its end; it hangs where it says nothing for too
+        long."""
         while (event := self._said.get(timeout=HANG_S)) not in ("decision", "end"):
             pass
         return event == "decision"

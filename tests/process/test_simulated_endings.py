@@ -16,7 +16,7 @@ from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.simulation import simulate_mission
 
 SERVED = 0.92
-"""Where nothing is seen the belief holds the goal for surer than the 0.9 that end a mission."""
+"""The belief holds the goal for this sure where nothing is seen: surer than the 0.9 that end a mission."""
 
 TABLE = {
     "table.ef": """project: table

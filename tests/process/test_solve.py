@@ -137,7 +137,7 @@ async def test_random_models_have_the_value_that_value_iteration_finds(seed: int
 async def test_lower_bounds_are_no_worse_than_the_reference_program_s(
     published: Path, cache_dir: Path, name: str, cpu_s: float, lower: float
 ) -> None:
-    """In the same time of computing on a machine of the same class."""
+    """The time of computing is the same, on a machine of the same class."""
     model = read_problem(published / f"{name}.pomdpx")
     solution = await solve(model, SolvingLimits(cpu_s=cpu_s), cache_dir=cache_dir)
     assert solution.bounds.lower >= lower

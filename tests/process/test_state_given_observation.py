@@ -1,4 +1,4 @@
-"""What real runs tell about the state beyond the response, and the text of a state, in a running engine."""
+"""The effects of real runs on the state beyond the response, and the text of a state, in a running engine."""
 
 from __future__ import annotations
 

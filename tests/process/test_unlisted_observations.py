@@ -37,7 +37,8 @@ for (int i = 0; i < 12; i++) __moduleResponseStr += char('a' + int(AOS.SampleUni
 
 
 def fully_observable_value(cell: int) -> float:
-    """Of walking on: V(c) = -1 + 0.95 (0.9 V(c + 1) + 0.1 V(c)); the step into the goal earns 50 at once."""
+    """Returns the value of walking on: V(c) = -1 + 0.95 (0.9 V(c + 1) + 0.1 V(c)); the step into the goal
+    earns 50 at once."""
     value = (-1 + 0.9 * 50) / (1 - 0.95 * 0.1)
     for _ in range(8 - cell - 1):
         value = (-1 + 0.95 * 0.9 * value) / (1 - 0.95 * 0.1)

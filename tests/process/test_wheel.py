@@ -17,7 +17,7 @@ def wheel(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def aos(wheel: Path, cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
-    """With the extra `sim`."""
+    """The installation with the extra `sim`."""
     place = tmp_path_factory.mktemp("with-sim")
     install(wheel, place / "environment")
     (place / "empty").mkdir()

@@ -1,4 +1,5 @@
-"""What the documents of the simulated worlds decide: the claims of the paper, and what brute force says."""
+"""The decisions by the documents of the simulated worlds: the claims of the paper, and what brute force
+says."""
 
 from __future__ import annotations
 

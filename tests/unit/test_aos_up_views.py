@@ -1,4 +1,4 @@
-"""What aos-up prints: plain lines, JSON lines, and the live screen, from the same events."""
+"""The output of aos-up: plain lines, JSON lines, and the live screen, from the same events."""
 
 from __future__ import annotations
 

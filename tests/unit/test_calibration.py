@@ -1,4 +1,4 @@
-"""What calibration proposes: only what records contradict, never what the documents exclude."""
+"""The proposals of calibration: only what records contradict, never what the documents exclude."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def discrete(*weights: float, is_initial: bool = False) -> Draw:
 
 
 def counted(draw: Draw, *counts: int) -> DrawEstimate:
-    """What missions of one draw each say, in which outcomes came so often."""
+    """Returns the estimate from missions of one draw each, in which the outcomes came so often."""
     lattices = [
         Lattice(np.ones(1), (), (np.array([[outcome]], dtype=np.int64),))
         for outcome, times in enumerate(counts, 1)

@@ -1,4 +1,4 @@
-"""Which loops draw, and which variables live across their rounds."""
+"""The loops that draw, and the variables that live across their rounds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is read out of C++ snippets."""
+"""The contents that are read out of C++ snippets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the language server knows about words and outlines, without an editor."""
+"""The knowledge of the language server about words and outlines, without an editor."""
 
 from __future__ import annotations
 

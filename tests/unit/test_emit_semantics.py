@@ -1,4 +1,4 @@
-"""What a step of an emitted model does: copies of the state, phases, rewards, endings."""
+"""The effects of an emitted model's step: copies of the state, phases, rewards, endings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a mission ends: by what special states say of it, in all dialects, and by what a belief holds."""
+"""The endings of a mission: by what special states say of it, in all dialects, and by what a belief holds."""
 
 from __future__ import annotations
 

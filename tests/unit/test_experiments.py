@@ -1,4 +1,4 @@
-"""What an experiment's report says of its missions: figures, the optimum beside them, tables and drawings."""
+"""The report of an experiment on its missions: figures, the optimum beside them, tables and drawings."""
 
 from __future__ import annotations
 

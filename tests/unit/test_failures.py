@@ -1,4 +1,5 @@
-"""What counts as a failure of a skill, when it is set aside, and what the mission does then."""
+"""The failures of a skill: what counts as one, when the skill is set aside, and what the mission does
+then."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the checks say to mistakes that a newcomer makes, and that they say it once."""
+"""The answers of the checks to mistakes that a newcomer makes; each is said once."""
 
 from __future__ import annotations
 

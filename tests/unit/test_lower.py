@@ -1,4 +1,4 @@
-"""What lowering decides and what it refuses."""
+"""The decisions of lowering, and what it refuses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which draws count by their mean, as far as the text of the code tells."""
+"""The draws that count by their mean, as far as the text of the code tells."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ state.level = int(AOS.SampleUniform(0, 3));
 
 
 def averaged(act: str, extrinsic: str = "", special: str = "") -> list[bool]:
-    """Of each draw of a dynamic model, in order, whether it is known to count by its mean."""
+    """Returns for each draw of a dynamic model, in order, whether it is known to count by its mean."""
     environment = HOME + (f"extrinsic_code:\n{extrinsic}\n" if extrinsic else "")
     environment += f"reward_code:\n{special}\n" if special else ""
     project = text_project(

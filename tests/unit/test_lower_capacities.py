@@ -1,4 +1,4 @@
-"""How much capacity the vectors of a state get."""
+"""The capacity that the vectors of a state get."""
 
 from __future__ import annotations
 

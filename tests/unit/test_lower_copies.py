@@ -1,4 +1,4 @@
-"""Which copies of the state a step keeps: those that are read after a newer one is written."""
+"""The copies of the state that a step keeps: those that are read after a newer one is written."""
 
 from __future__ import annotations
 

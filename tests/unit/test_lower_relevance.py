@@ -1,4 +1,4 @@
-"""Which state variables matter to nobody, as far as the text of the code tells."""
+"""The state variables that matter to nobody, as far as the text of the code tells."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ if (state.level > 3) {
 
 
 def idle(act: str, extrinsic: str = "", policy: str = "") -> set[str]:
-    """Of `known`, `count`, `row` and `cup` those that do not matter; `level` always does."""
+    """Returns those of `known`, `count`, `row` and `cup` that do not matter; `level` always does."""
     rollout = f"rollout_policy:\n{policy}\n" if policy else ""
     project = text_project(
         {
@@ -120,7 +120,8 @@ def test_what_a_rover_has_learnt_for_its_rollouts_matters_to_nobody(bundles: Pat
 
 
 def shaping(act: str) -> list[bool]:
-    """Of each draw of a dynamic model, in order, whether it is known to shape only what is observed."""
+    """Returns for each draw of a dynamic model, in order, whether it is known to shape only what is
+    observed."""
     project = text_project(
         {
             "home.ef": HOME,

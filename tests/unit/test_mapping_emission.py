@@ -1,4 +1,4 @@
-"""What is generated from a mapping, and what is said about one that is not Python."""
+"""The module that is generated from a mapping, and what is said about one that is not Python."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def mistakes(text: str) -> list[tuple[str, str]]:
 
 
 def refusal_of(mapping: AbstractionMapping) -> DocumentError:
-    """Why a mapping made by hand cannot be generated."""
+    """Returns the reason why a mapping made by hand cannot be generated."""
     with pytest.raises(DocumentError) as refusal:
         emit_mapping(replace(skill_of(HEAD), mapping=mapping))
     return refusal.value

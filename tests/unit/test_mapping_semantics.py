@@ -1,4 +1,4 @@
-"""What a generated mapping does in one activation: sources of local variables, order, rules.
+"""The run of a generated mapping in one activation: sources of local variables, order, rules.
 
 The module runs in this process; tests/process runs it where it belongs.
 """

@@ -83,7 +83,7 @@ def test_pages_of_reference_have_a_date_only_at_the_head_of_their_figures() -> N
 
 
 def test_the_index_leads_to_every_page() -> None:
-    """To a page itself, or to the list of its folder."""
+    """The index has a link to a page itself, or to the list of its folder."""
     index = ROOT / "docs" / "README.md"
     linked = {(index.parent / link.partition("#")[0]).resolve() for link in local_links(index)}
     folders = {page.parent for page in linked if page.name == "README.md"}

@@ -1,4 +1,4 @@
-"""What documents may look like: what is accepted, with which warning, and what is refused where.
+"""The forms that documents may have: what is accepted, with which warning, and what is refused where.
 
 One rule a line, over the two bundles `rooms` in tests/data, which have no findings.
 """
@@ -21,7 +21,8 @@ MARK = "«"
 
 
 class Rule(NamedTuple):
-    """In `file` the first `find` becomes `put`; the finding of this severity and code is due at the mark."""
+    """The rule that in `file` the first `find` becomes `put`; the finding of this severity and code is due
+    at the mark."""
 
     file: str
     find: str

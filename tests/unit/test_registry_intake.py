@@ -1,4 +1,4 @@
-"""What a push costs: each file is read once, and what is cheap to refuse is refused first."""
+"""The cost of a push: each file is read once, and what is cheap to refuse is refused first."""
 
 from __future__ import annotations
 

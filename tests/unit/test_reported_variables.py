@@ -1,4 +1,5 @@
-"""What documents say about what a real run tells: local variables in model code, low-level assignments."""
+"""The parts of documents that a real run tells about: local variables in model code, low-level
+assignments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""What is served to ROS: the types from the deploy file and from documents, and what is said of mistakes."""
+"""The paths that are served to ROS: the types from the deploy file and from documents, and what is said of
+mistakes."""
 
 from __future__ import annotations
 

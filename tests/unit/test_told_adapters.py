@@ -1,4 +1,4 @@
-"""What an adapter makes of the words of its command and of its environment."""
+"""The words of an adapter's command and of its environment, and what the adapter makes of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`python -m aos_registry SETTINGS.json`"""
+"""The registry service as a process: `python -m aos_registry SETTINGS.json`."""
 
 from __future__ import annotations
 
