@@ -83,7 +83,7 @@ class ScriptedModel(msgspec.Struct, frozen=True):
         return {action["action"]: action["parameters"] for action in self._run("describe")}
 
     def walk(self, steps: int) -> dict[str, Any]:
-        """That many steps of random actions, with a new start at each end."""
+        """Takes that many steps of random actions, with a new start at each end."""
         answer: dict[str, Any] = self._run("walk", "1", str(steps))
         return answer
 

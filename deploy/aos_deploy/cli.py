@@ -89,7 +89,8 @@ def _words_to_complete() -> list[str]:
 
 
 def _own_options(version: Version = False) -> None:
-    """Without a callback typer would take a lone command for the whole program."""
+    """Makes typer keep the names of commands: without a callback it takes a lone command for the whole
+    program."""
 
 
 def _run(app: typer.Typer, name: str) -> NoReturn:

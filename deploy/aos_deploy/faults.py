@@ -11,7 +11,8 @@ __all__ = ["print_fault"]
 
 
 def print_fault(command: str, error: AosError) -> None:
-    """On stderr: every diagnostic with its place, then what it comes to, unless that is the same again."""
+    """Prints on stderr every diagnostic with its place, then what it comes to, unless that is the same
+    again."""
     for diagnostic in error.diagnostics:
         typer.echo(render(diagnostic), err=True)
     if not any(diagnostic.message in error.message for diagnostic in error.diagnostics):

@@ -1,4 +1,4 @@
-"""Before the first decision: every path that a skill calls has somebody who answers it."""
+"""The wait before the first decision: every path that a skill calls has somebody who answers it."""
 
 from __future__ import annotations
 

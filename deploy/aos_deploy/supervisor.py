@@ -46,7 +46,7 @@ _HOST_S = 2.0
 _MISTAKES = (2, 126, NOT_STARTED)
 """Statuses that programs and shells have for a command line that is wrong, which stays wrong."""
 _RESTART_S = 0.2
-"""Before the first restart of a program; each further one waits twice as long."""
+"""The time before the first restart of a program; each further one waits twice as long."""
 
 
 class _Running:

@@ -86,7 +86,7 @@ class BundleServer(LanguageServer):
 
     @property
     def codec(self) -> PositionCodec:
-        """Between columns in characters and in the editor's units."""
+        """The translator between columns in characters and in the editor's units."""
         return self.workspace.position_codec
 
     def found_in(self, uri: str) -> list[Diagnostic]:

@@ -24,7 +24,7 @@ __all__ = ["outline"]
 
 _PLACE_COLUMN = 78
 _PLACE = "\0"
-"""Between a line's text and its place, until all lines are there and can be aligned."""
+"""The mark between a line's text and its place, until all lines are there and can be aligned."""
 
 
 def outline(project: Project) -> str:

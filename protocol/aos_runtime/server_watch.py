@@ -45,7 +45,8 @@ class ServerWatch:
         return bool(status.matching)
 
     def end(self) -> None:
-        """Not after the session has ended; ending twice does nothing."""
+        """Ends the watch; it must not be called after the session has ended, and ending twice does
+        nothing."""
         if not self._is_ended:
             self._is_ended = True
             self._listener.undeclare()

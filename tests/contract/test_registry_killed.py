@@ -20,7 +20,7 @@ from aos_runtime.bus import Bus
 SEED = 20261121
 KILLS = 20
 PUSHES_BEFORE_KILL = 4
-"""At most so many are accepted before the moment of the kill is drawn."""
+"""The number of pushes that are accepted at most before the moment of the kill is drawn."""
 LATEST_KILL_S = 0.1
 POLL_S = 0.005
 

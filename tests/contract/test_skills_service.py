@@ -92,7 +92,7 @@ class Robot:
 
 @pytest_asyncio.fixture
 async def robot(bus: Bus, keys: Keys, endpoint: str, tmp_path: Path, root: Path) -> AsyncIterator[Robot]:
-    """Not started yet; whatever a test starts is stopped."""
+    """A robot that is not started yet; whatever a test starts is stopped."""
     (tmp_path / "pictures").mkdir()
     robot = Robot(bus, keys, endpoint, tmp_path, root / "deploy/worlds/armadillo.yaml")
     try:

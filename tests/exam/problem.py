@@ -58,7 +58,7 @@ class World:
 
 
 class TooLarge(Exception):
-    """More states can be reached than were allowed."""
+    """The problem has more states that can be reached than were allowed."""
 
 
 @dataclasses.dataclass(frozen=True)

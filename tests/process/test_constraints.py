@@ -65,7 +65,7 @@ __moduleResponse = touched;
 
 AFTER_ONE_BLACK = 0.3 * 0.15 / (0.3 * 0.15 + 0.7 * 0.85)
 AFTER_TWO = 0.3 * 0.15**2 / (0.3 * 0.15**2 + 0.7 * 0.85**2)
-"""That the hob is hot: 0.0703 and 0.0132."""
+"""The probability that the hob is hot: 0.0703 and 0.0132."""
 
 SAW = {
     "saw.ef": """project: test

@@ -56,7 +56,7 @@ __moduleResponseStr = "done";
 }
 
 WORTH = {"7 full": 100 * 0.99**CELLS, "8 empty": 0.0, "9 full": 100 * 0.99**CELLS}
-"""After the look, with the way to go."""
+"""The values after the look, with the way to go."""
 
 
 @pytest.mark.parametrize("planner", ["sarsop", "pomcp"])

@@ -109,7 +109,7 @@ class Place:
 
 
 def free_port() -> int:
-    """Below the ports of outgoing connections."""
+    """Returns a free port below the ports of outgoing connections."""
     with hold_endpoint("tcp/127.0.0.1:0") as endpoint:
         return int(endpoint.rpartition(":")[2])
 

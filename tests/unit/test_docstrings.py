@@ -12,7 +12,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 FRAGMENTS = re.compile(
-    r"(as|by|for|from|how|in|of|to|up|what|when|where|whether|which|who|whom|whose|why|with)\b", re.IGNORECASE
+    r"(about|after|as|at|back|before|below|beside|between|by|for|from|how|in|kept|not|of|on|out|that|to|told"
+    r"|until|up|what|when|where|whether|which|who|whom|whose|why|with|within|without)\b",
+    re.IGNORECASE,
 )
 """A docstring that begins with one of these words has its subject somewhere else, or none."""
 
@@ -21,18 +23,17 @@ _SENTENCE_ENDS = (".", "?", ":")
 
 def docstrings(node: ast.AST) -> Iterator[tuple[int, str]]:
     """Yields line and text: those of modules, classes and functions, and texts below an assignment."""
-    statements: list[ast.stmt] = getattr(node, "body", [])
     owner = (
         node if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) else None
     )
-    for before, statement in pairwise([owner, *statements]):
-        if isinstance(statement, ast.Expr):
-            if before is owner is not None or isinstance(before, ast.Assign | ast.AnnAssign):
-                match statement.value:
-                    case ast.Constant(value=str(text)):
+    for name in ("body", "handlers", "orelse", "finalbody", "cases"):
+        for before, statement in pairwise([owner, *getattr(node, name, ())]):
+            match statement:
+                case ast.Expr(value=ast.Constant(value=str(text))):
+                    if before is owner is not None or isinstance(before, ast.Assign | ast.AnnAssign):
                         yield statement.lineno, text
-        elif hasattr(statement, "body"):
-            yield from docstrings(statement)
+                case _:
+                    yield from docstrings(statement)
 
 
 def fault_of(text: str) -> str:

@@ -1,4 +1,4 @@
-"""At most one motion for each activation, whatever is repeated or crashes."""
+"""Repeats and crashes: there is at most one motion for each activation."""
 
 from __future__ import annotations
 

@@ -231,7 +231,8 @@ def _of_draw(draw: Draw, counts: Numbers, random: np.random.Generator) -> DrawEs
 
 
 def _records_to_tell(estimate: Estimate, records: float) -> int:
-    """About how many records would put the document's number outside the interval; 0 for what is excluded."""
+    """Returns about how many records would put the document's number outside the interval; 0 for what is
+    excluded."""
     if estimate.is_excluded or estimate.document == 1.0:
         return 0
     document = estimate.document

@@ -44,7 +44,8 @@ class Count(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Before(msgspec.Struct, frozen=True, kw_only=True):
-    """Before each `step` came `comes`, so many `times`, after the last step `since` if that is given."""
+    """The claim that before each `step` came `comes`, so many `times`, after the last step `since` if that
+    is given."""
 
     step: str
     comes: str
@@ -53,7 +54,8 @@ class Before(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Around(msgspec.Struct, frozen=True, kw_only=True):
-    """At each `step` the world's last state before it has the text `before`, and the one after it `after`."""
+    """The claim that at each `step` the world's last state before it has the text `before`, and the one
+    after it `after`."""
 
     step: str
     before: str | None = None
@@ -211,7 +213,7 @@ def _starts(patterns: Sequence[str], trial: Trial) -> bool:
 
 
 def _never_holds(pattern: str, trial: Trial) -> bool:
-    """Without states nothing is known, so that nothing is claimed of them either."""
+    """Returns whether no state has the pattern; False where states of the trial are missing."""
     return len(trial.states) >= len(trial.actions) and not _somewhere_holds(pattern, trial)
 
 

@@ -78,7 +78,7 @@ class RayPlayer:
 
 
 class _Worker:
-    """On a machine of the cluster: the player, made with the first mission.
+    """The player on a machine of the cluster, made with the first mission.
 
     It has no coroutine of its own, which would make Ray run a loop around it.
     """

@@ -24,7 +24,8 @@ def cut(snippet: Snippet, start: int, end: int) -> Snippet:
 
 
 def expression(snippet: Snippet, *, drop_semicolon: bool = False) -> Snippet:
-    """Without the blanks around it, and without a final semicolon."""
+    """Returns the snippet without the blanks around it, and without a final semicolon if that is to be
+    dropped."""
     code = snippet.code.rstrip()
     while drop_semicolon and code.endswith(";"):
         code = code[:-1].rstrip()
@@ -42,14 +43,14 @@ def guarded(condition: Snippet, code: Snippet) -> Snippet:
 
 
 def without_blank_lines(snippet: Snippet) -> Snippet:
-    """Without blank lines at the start and blanks at the end."""
+    """Returns the snippet without blank lines at the start and blanks at the end."""
     code = snippet.code.rstrip()
     lead = len(code) - len(code.lstrip())
     return cut(snippet, code.rfind("\n", 0, lead) + 1, len(code))
 
 
 def dedented(snippet: Snippet) -> Snippet:
-    """Without the indentation that all of its lines of code share, as Python wants it."""
+    """Returns the snippet without the indentation that all of its lines of code share, as Python wants it."""
     lines = snippet.code.split("\n")
     indents = [line[: len(line) - len(line.lstrip(" \t"))] for line in lines]
     of_code = [indent for indent, line in zip(indents, lines, strict=True) if _is_code(line)]

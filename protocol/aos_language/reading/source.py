@@ -45,7 +45,7 @@ class Text(msgspec.Struct, frozen=True):
     span: Span
 
     def strip(self) -> Text:
-        """Without the blanks around it; the place moves along."""
+        """Returns the text without the blanks around it; the place moves along."""
         before = len(self.text) - len(self.text.lstrip())
         span = Span(self.span.file, self.span.line, self.span.column + before)
         return Text(self.text.strip(), span)

@@ -53,7 +53,7 @@ def json_text(
 
 
 def _given(**members: object) -> dict[str, Any]:
-    """Without what is false, empty or None."""
+    """Returns the members without those that are false, empty or None."""
     return {key: value for key, value in members.items() if value}
 
 

@@ -217,7 +217,7 @@ def _loops(word: str, loops: Iterable[Iteration]) -> Iterator[str]:
 
 
 def _expression(word: str, snippet: Snippet | None) -> Iterator[str]:
-    """On the line of its word where it fits there."""
+    """Yields the expression on the line of its word where it fits there, else below it."""
     if snippet is not None:
         is_short = "\n" not in snippet.code
         yield from (f"{word}: {snippet.code}",) if is_short else (f"{word}:", *_lines(snippet))

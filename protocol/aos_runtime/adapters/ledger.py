@@ -23,7 +23,7 @@ class _Failure(Message, frozen=True):
 
 
 class Ledger:
-    """Kept in a journal, so that it outlives the process."""
+    """The calls of an adapter and how they ended, in a journal, so that they outlive the process."""
 
     def __init__(self, path: Path) -> None:
         # After a loss of power no mission goes on, and its ids are never used again.
@@ -64,17 +64,17 @@ class Ledger:
         return tuple(self._started.values())
 
     def start(self, call: SkillCall) -> None:
-        """Before anything moves."""
+        """Notes a call; it is called before anything moves."""
         self._journal.append("started", call)
         self._started[call.id] = call
 
     def end(self, result: SkillResult) -> None:
-        """After it moved."""
+        """Notes a result; it is called after the robot moved."""
         self._journal.append("ended", result)
         self._ended[result.id] = result
 
     def fail(self, id: ActivationId, error: AosError) -> None:
-        """After it moved, and failed."""
+        """Notes an error; it is called after the robot moved and failed."""
         fault = Fault(error.code, error.message, error.hint)
         self._journal.append("failed", _Failure(id, fault))
         self._ended[id] = fault

@@ -17,7 +17,8 @@ _log = logging.getLogger("aos.middleware")
 
 
 class ServedPaths:
-    """Kept up to date by `follow`; `on_change` is called after each change."""
+    """The adapters that serve each path now; `follow` keeps them up to date, and `on_change` is called
+    after each change."""
 
     def __init__(self, bus: Bus, keys: Keys, on_change: Callable[[], None]) -> None:
         self._bus = bus

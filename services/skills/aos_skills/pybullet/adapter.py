@@ -94,7 +94,7 @@ class PybulletAdapter:
         return answer
 
     def _look_for_an_end(self) -> None:
-        """After every simulation step."""
+        """Raises if the call was cancelled; it is called after every simulation step."""
         if self._call is not None and self._call.is_cancelled:
             raise SkillError("the skill was cancelled", code="AOS507")
 

@@ -83,7 +83,7 @@ class _Tracing:
 
     @property
     def start(self) -> str:
-        """Before the first statement; the names are the piece's own, since sections have several."""
+        """The code before the first statement; the names are the piece's own, since sections have several."""
         givers = "".join(f"aos::blame::Giving {self._giver(name)}{{{name}}}; " for name in self._given)
         return f"{self._showing}{givers}"
 

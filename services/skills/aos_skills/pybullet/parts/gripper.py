@@ -31,7 +31,7 @@ class Gripper:
 
     @property
     def gap_m(self) -> float:
-        """Between the fingers."""
+        """The distance between the fingers."""
         return float(sum(self._client.getJointState(self._body, joint)[0] for joint in self._fingers))
 
     def forces_n(self) -> tuple[float, float]:

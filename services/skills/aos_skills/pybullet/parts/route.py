@@ -13,7 +13,7 @@ __all__ = ["FloorMap", "Point", "Rectangle"]
 
 CELL_M = 0.05
 NEAR_M = 0.12
-"""Within this of the forbidden border, cells cost up to NEAR_COST times as much more."""
+"""The distance from the forbidden border within which cells cost up to NEAR_COST times as much more."""
 NEAR_COST = 3.0
 
 Point = tuple[float, float]

@@ -33,7 +33,7 @@ class World(ABC):
     faults: Faults
 
     def begin(self) -> None:
-        """Before each call of a skill: draws the faults that last as long as it."""
+        """Draws the faults that last as long as a call of a skill; it is called before each."""
         self.faults.drawn.clear()
 
     def close(self) -> None:

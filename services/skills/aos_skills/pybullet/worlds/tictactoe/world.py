@@ -93,7 +93,7 @@ class TicTacToe(World):
         return self._inked_steps >= MIN_INK
 
     def tuck(self) -> None:
-        """Out of the camera's sight."""
+        """Moves the arm out of the camera's sight."""
         self.robot.arm.move(TUCKED)
 
     def let_other_draw(self) -> None:
