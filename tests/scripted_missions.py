@@ -11,9 +11,11 @@ from aos_runtime.clock import SystemClock
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules, Failures
+from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.terms import Terms
 
 __all__ = ["Clock", "Robot", "Surroundings", "jammed", "observed", "run_mission", "timed_out"]
 
@@ -31,15 +33,13 @@ class Clock(SystemClock):
         return self.now_s
 
 
-class Surroundings:
+class Surroundings(QuietPorts):
     """The surroundings of the loop: a journal that the test can read, and a robot."""
-
-    clock: SystemClock = SystemClock()
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
-        self.unavailable: dict[str, str] = {}
-        self.announced: dict[str, int] = {}
+        self.unavailable = {}
+        self.announced = {}
         self.states: list[MissionState] = []
         self.on_hold: Callable[[], None] = lambda: None
         self.journalled: list[tuple[str, Message]] = []
@@ -69,12 +69,9 @@ class Surroundings:
     async def until_changed(self, timeout_s: float) -> None:
         self.on_hold()
 
-    async def activate(self, request: Activate) -> Outcome:
+    async def activate(self, request: Activate, action: str) -> Outcome:
         assert self.journalled[-1] == ("intended", request)
         return self._robot(request)
-
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        return running
 
 
 def observed(request: Activate, response: str) -> Outcome:
@@ -103,18 +100,14 @@ async def run_mission(
 ) -> tuple[MissionState, Surroundings]:
     """A whole mission; its end, and all that was told of it."""
     around = around or Surroundings(robot)
-    search = Search(simulations=simulations, seed=1)
+    terms = Terms(
+        name="m",
+        limits=limits or MissionLimits(),
+        search=Search(simulations=simulations, seed=1),
+        activation_timeout_s=1.0,
+        failures=rules or FailureRules(),
+        hold_s=hold_s,
+    )
     async with engine_of(built) as engine:
-        mission = Mission(
-            "m",
-            1,
-            RunningModel(1, built, engine),
-            limits or MissionLimits(),
-            search,
-            around,
-            activation_timeout_s=1.0,
-            failures=Failures(rules),
-            hold_s=hold_s,
-        )
-        around.mission = mission
-        return await mission.run(), around
+        around.mission = Mission(terms, RunningModel(1, engine), around)
+        return await around.mission.run(), around

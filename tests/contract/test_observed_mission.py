@@ -6,7 +6,7 @@ import math
 import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import msgspec
 import pytest
@@ -35,13 +35,14 @@ from aos_protocol.messages import (
 )
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
-from aos_runtime.clock import SystemClock
 from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.terms import Terms
 
 STOCK = {
     "stock.ef": """project: stock
@@ -139,12 +140,8 @@ RUNS: tuple[dict[str, Any], ...] = (
 """The findings of the robot, run by run; the second time it cannot tell the order, nor the weight."""
 
 
-class Robot:
+class Robot(QuietPorts):
     """A middleware process, and an adapter that answers from `RUNS`; the ports of a mission."""
-
-    clock = SystemClock()
-    unavailable: ClassVar[dict[str, str]] = {}
-    announced: ClassVar[dict[str, int]] = {}
 
     def __init__(self, bus: Bus, keys: Keys) -> None:
         self._bus = bus
@@ -165,18 +162,9 @@ class Robot:
         if record.outcome is not None:
             self.records.append(record)
 
-    def publish_state(self, state: MissionState) -> None:
-        """The mission keeps its own."""
-
-    async def activate(self, request: Activate) -> Outcome:
+    async def activate(self, request: Activate, action: str) -> Outcome:
         key = self._keys.activate(request.skill)
         return await self._bus.ask(key, request, Outcome, timeout_s=HANG_S)
-
-    async def until_changed(self, timeout_s: float) -> None:
-        """The adapter stays."""
-
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        return running
 
     async def await_mappings(self) -> None:
         await state_when(
@@ -226,10 +214,9 @@ async def stock(cache_dir: Path) -> BuiltModel:
 
 async def mission(built: BuiltModel, robot: Robot) -> MissionState:
     limits = MissionLimits(step_limit=len(RUNS))
+    terms = Terms(name="m", limits=limits, search=Search(simulations=200, seed=1), activation_timeout_s=10.0)
     async with engine_of(built) as engine:
-        model = RunningModel(1, built, engine)
-        search = Search(simulations=200, seed=1)
-        return await Mission("m", 1, model, limits, search, robot, activation_timeout_s=10.0).run()
+        return await Mission(terms, RunningModel(1, engine), robot).run()
 
 
 def values(belief: BeliefSummary, variable: str) -> dict[str, float]:

@@ -9,13 +9,14 @@ from pathlib import Path
 import msgspec
 
 from aos_language.load import load_files
-from aos_protocol.messages import Activate, DecisionRecord, Fault, Message, MissionState, Outcome
-from aos_runtime.clock import SystemClock
+from aos_protocol.messages import Activate, Fault, MissionState, Outcome
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.hot_plug import RunningModel, build_project
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.terms import Terms
 
 from .jobs import Job
 
@@ -74,26 +75,19 @@ async def _mission(
     engine = await Engine.start(built, seed=1)
     try:
         await robot.start(engine)
-        mission = Mission(
-            "exam",
-            1,
-            RunningModel(1, built, engine),
-            LIMITS,
-            Search(simulations=simulations, seed=1),
-            robot,
+        terms = Terms(
+            name="exam",
+            limits=LIMITS,
+            search=Search(simulations=simulations, seed=1),
             activation_timeout_s=1.0,
         )
-        return await mission.run()
+        return await Mission(terms, RunningModel(1, engine), robot).run()
     finally:
         await engine.close()
 
 
-class _Robot:
+class _Robot(QuietPorts):
     """The mission's ports: skills act in the engine's world, but for the broken one."""
-
-    clock = SystemClock()
-    unavailable: Mapping[str, str] = {}
-    announced: Mapping[str, int] = {}
 
     def __init__(self, job: Job, broken: str = "") -> None:
         self._job = job
@@ -106,44 +100,24 @@ class _Robot:
         start = await engine.reset_world(random.Random(self._job.name).randrange(2**31))
         self.is_at_goal = start.ending == "goal"
 
-    async def activate(self, request: Activate) -> Outcome:
+    async def activate(self, request: Activate, action: str) -> Outcome:
         self.used.add(request.skill)
         if request.skill != self._broken:
-            return Outcome(request.id, request.skill, "observed", await self._act(request))
+            return Outcome(request.id, request.skill, "observed", await self._act(action))
         if self._job.fault == "fails":
             return _without_observation(request, "failed", "AOS510", "the gripper is jammed")
         if self._job.fault == "talks_nonsense":
             return Outcome(request.id, request.skill, "observed", self._job.nonsense)
         if self._job.did_run:
-            await self._act(request)
+            await self._act(action)
         return _without_observation(request, "timed_out", "AOS503", "the skill took longer than it may")
 
-    async def _act(self, request: Activate) -> str:
+    async def _act(self, action: str) -> str:
         """Steps the world, unless it has ended; the response."""
-        actions = self._engine.description.actions
-        index = next(
-            number
-            for number, action in enumerate(actions)
-            if (action.skill, action.parameters) == (request.skill, request.parameters)
-        )
-        step = await self._engine.step_world(index)
+        names = [grounded.name for grounded in self._engine.description.actions]
+        step = await self._engine.step_world(names.index(action))
         self.is_at_goal = self.is_at_goal or step.ending == "goal"
         return step.response
-
-    def journal(self, kind: str, payload: Message) -> None:
-        pass
-
-    def publish_record(self, record: DecisionRecord) -> None:
-        pass
-
-    def publish_state(self, state: MissionState) -> None:
-        pass
-
-    async def until_changed(self, timeout_s: float) -> None:
-        pass
-
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        return running
 
 
 def _without_observation(request: Activate, status: str, code: str, text: str) -> Outcome:

@@ -27,6 +27,7 @@ from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.hot_plug import RunningModel, build_project, emitted_model
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
+from aos_solver.mission.terms import Terms
 
 HOB = {
     "hob.ef": """project: test
@@ -242,11 +243,9 @@ async def test_a_decision_record_tells_what_every_action_risks(cache_dir: Path) 
 
     model = await built(HOB, cache_dir, f"0.05: {TOUCHES_HOT}")
     around = Surroundings(robot)
+    terms = Terms(name="m", search=Search(simulations=500, seed=1))
     async with engine_of(model) as engine:
-        running = RunningModel(1, model, engine)
-        search = Search(simulations=500, seed=1)
-        mission = Mission("m", 1, running, MissionLimits(), search, around, activation_timeout_s=1.0)
-        state = await mission.run()
+        state = await Mission(terms, RunningModel(1, engine), around).run()
     assert state.ending == "goal"
     told = [record.constraints[0] for record in around.records[::2]]
     assert [record.action for record in around.records[::2]] == ["look", "look", "touch"]
@@ -259,11 +258,9 @@ async def test_a_mission_that_may_do_nothing_any_more_says_what_is_left(cache_di
     files = {name: text for name, text in HOB.items() if not name.startswith("look")}
     model = await built(files, cache_dir, f"0.05: {TOUCHES_HOT}")
     around = Surroundings(lambda request: observed(request, "touched"))
+    terms = Terms(name="m", search=Search(simulations=500, seed=1))
     async with engine_of(model) as engine:
-        running = RunningModel(1, model, engine)
-        search = Search(simulations=500, seed=1)
-        mission = Mission("m", 1, running, MissionLimits(), search, around, activation_timeout_s=1.0)
-        state = await mission.run()
+        state = await Mission(terms, RunningModel(1, engine), around).run()
     assert (state.ending, exit_code_of_mission(state)) == ("too_risky", ExitCode.TOO_RISKY)
     left = "0.05 is left of 0.05, and the least risk is 0.3"
     assert state.remark == f"every action risks more than is allowed (never {TOUCHES_HOT}: {left})"

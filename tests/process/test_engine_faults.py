@@ -57,7 +57,7 @@ async def test_documents_with_another_state_wait_for_another_mission(cache_dir: 
     project = load_files({name: text.encode() for name, text in wider.items()}).project
     assert project is not None
     async with engine_of(built) as engine:
-        (refusal,) = await shelf.check(project, RunningModel(1, built, engine))
+        (refusal,) = await shelf.check(project, RunningModel(1, engine))
     await shelf.close()
     assert (refusal.code, refusal.span.file) == ("AOS112", "lamp.ef")
 

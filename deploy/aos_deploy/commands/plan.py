@@ -22,9 +22,15 @@ from aos_protocol.messages import ActionValue, ConstraintRisk
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
+from aos_solver.mission.choosing import Choice, Chooser
 from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.failures import Failures
+from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
+from aos_solver.mission.terms import Terms
+from aos_solver.offline.following import following
 
 __all__ = ["register"]
 
@@ -95,46 +101,52 @@ def plan(
     search = Search(
         simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
     )
-    if policy is not None:
-        search = _by_policy(search, policy)
+    search = following(search, policy)
 
     async def decide(engine: Engine) -> Decision:
         with waiting("deciding") as tell:
             engine.on_progress = lambda found: tell(found.text)
-            return await decision_of(engine)
-
-    async def decision_of(engine: Engine) -> Decision:
-        if exact:
-            return _decision((await engine.exact(horizon)).values, 0)
-        budget = RiskBudget(engine.bounds)
-        risks = await engine.risks(search.seed_of(1)) if budget else None
-        forbidden = budget.forbidden(risks) if risks is not None else ()
-        if risks is not None and len(forbidden) == len(risks.actions):
-            raise PlanningError(budget.remark(risks), code="AOS303")
-        found = await search.run(engine, 1, sorted(forbidden))
-        decision = _decision(list(found.actions), found.simulations)
-        return msgspec.structs.replace(
-            decision,
-            action=found.best.action,
-            value=found.best.q,
-            planner=found.planner,
-            why=found.why,
-            constraints=list(budget.spend(risks, found.index)) if risks is not None else [],
-            forbidden=[found.actions[number].action for number in sorted(forbidden)],
-        )
+            if exact:
+                return _decision((await engine.exact(horizon)).values, 0)
+            return await _searched_decision(engine, search)
 
     decision = _with_engine(bundle, seed, decide, never=never)
     if as_json:
         print_json(decision)
     else:
-        title = "exact" if exact else "0 simulations" if policy is None else "by the policy"
-        print_values(decision.actions, decision.simulations, title)
-        if decision.planner:
-            print(f"{decision.planner}: {decision.why}")
-        for constraint in decision.constraints:
-            print(f"{decision.action}: {risk_text(constraint)}")
-        if decision.forbidden:
-            print(f"too risky: {', '.join(decision.forbidden)}")
+        _print_decision(
+            decision, "exact" if exact else "0 simulations" if policy is None else "by the policy"
+        )
+
+
+async def _searched_decision(engine: Engine, search: Search) -> Decision:
+    """The first decision of a mission; PlanningError AOS303 where every action risks too much."""
+    budget = RiskBudget(engine.bounds)
+    chooser = Chooser(Terms(name="planned", search=search), Failures(), QuietPorts(), budget)
+    choice = await chooser.choose(RunningModel(0, engine), 1, await engine.summary())
+    if not isinstance(choice, Choice):
+        raise PlanningError(choice.remark, code="AOS303")
+    found = choice.plan
+    decision = _decision(list(found.actions), found.simulations)
+    return msgspec.structs.replace(
+        decision,
+        action=found.best.action,
+        value=found.best.q,
+        planner=found.planner,
+        why=found.why,
+        constraints=list(budget.spend(choice.risks, found.index)) if choice.risks is not None else [],
+        forbidden=[found.actions[number].action for number in sorted(choice.forbidden)],
+    )
+
+
+def _print_decision(decision: Decision, title: str) -> None:
+    print_values(decision.actions, decision.simulations, title)
+    if decision.planner:
+        print(f"{decision.planner}: {decision.why}")
+    for constraint in decision.constraints:
+        print(f"{decision.action}: {risk_text(constraint)}")
+    if decision.forbidden:
+        print(f"too risky: {', '.join(decision.forbidden)}")
 
 
 def _decision(values: list[ActionValue], simulations: int) -> Decision:
@@ -178,12 +190,10 @@ def simulate(
     limits = MissionLimits(
         goal_probability=goal_probability, step_limit=step_limit, stop_below_value=stop_below_value
     )
-
     search = Search(
         simulations=simulations, seed=seed, time_s=time_s, horizon=horizon, planner=planner, threads=threads
     )
-    if policy is not None:
-        search = _by_policy(search, policy)
+    search = following(search, policy)
 
     async def run_all(engine: Engine) -> list[SimulatedRun]:
         done: list[SimulatedRun] = []
@@ -219,14 +229,6 @@ def _summary(runs: list[SimulatedRun]) -> dict[str, float]:
             for never in runs[0].risked
         },
     }
-
-
-def _by_policy(search: Search, path: Path) -> Search:
-    """The search that follows a policy file instead."""
-    # Numbers take a tenth of a second to import.
-    from aos_solver.offline.policy import Policy, PolicySearch
-
-    return PolicySearch.instead_of(search, Policy.load(path))
 
 
 class Rate(msgspec.Struct):

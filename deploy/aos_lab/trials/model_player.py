@@ -18,6 +18,7 @@ from aos_solver.child.search import Search
 from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.hot_plug import build_project
 from aos_solver.mission.simulation import simulate_mission
+from aos_solver.offline.following import following
 
 __all__ = ["ModelMissions", "ModelPlayer"]
 
@@ -103,9 +104,4 @@ def _search(deployment: Deployment) -> Search:
         planner=solver.planner,
         threads=solver.threads,
     )
-    if deployment.policy is None:
-        return search
-    # Numbers take a tenth of a second to import.
-    from aos_solver.offline.policy import Policy, PolicySearch
-
-    return PolicySearch.instead_of(search, Policy.load(deployment.policy))
+    return following(search, deployment.policy)

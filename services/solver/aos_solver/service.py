@@ -11,6 +11,7 @@ import asyncio
 import contextlib
 import logging
 from pathlib import Path
+from typing import TypeVar
 
 import msgspec
 
@@ -40,15 +41,19 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Progress
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.failures import FailureRules, Failures
+from aos_solver.mission.endings import Ending, MissionLimits
+from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.hot_plug import ModelShelf, RunningModel
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.terms import Terms
+from aos_solver.offline.following import following
 from aos_solver.settings import Settings
 
 __all__ = ["serve"]
 
 log = logging.getLogger(__name__)
+
+T = TypeVar("T")
 
 ASK_TIMEOUT_S = 5.0
 MAPPING_DEADLINE_S = 20.0
@@ -68,6 +73,8 @@ async def serve(service: Service[Settings]) -> None:
 class _Solver:
     """The mission's ports on the real bus and disk, and the queries the service answers."""
 
+    world_ending: Ending | None = None
+
     def __init__(self, service: Service[Settings]) -> None:
         settings = service.settings
         self.clock = service.clock
@@ -85,7 +92,7 @@ class _Solver:
         )
         self._name = Path(settings.run_dir).name
         self._running: RunningModel | None = None
-        self._search = msgspec.convert(settings, Search, from_attributes=True)
+        self._search = self._settings_as(Search)
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()
@@ -117,6 +124,10 @@ class _Solver:
             await self._running.engine.close()
         self._journal.close()
 
+    def _settings_as(self, kind: type[T]) -> T:
+        """The part of the settings that has the fields of this kind."""
+        return msgspec.convert(self._settings, kind, from_attributes=True)
+
     # --- answers -------------------------------------------------------------------------------------
 
     async def _start(self, _: StartMission, __: str) -> MissionState:
@@ -124,7 +135,8 @@ class _Solver:
         async with self._starting:
             if self._running is None:
                 self._running = await self._shelf.first()
-            self._search = self._search_by_policy(self._running)
+            policy = Path(self._settings.policy) if self._settings.policy else None
+            self._search = following(self._settings_as(Search), policy, model_digest=self._running.digest)
         self._started.set()
         return self._state()
 
@@ -172,17 +184,6 @@ class _Solver:
         engine.on_progress = self._report_planning
         return engine
 
-    def _search_by_policy(self, running: RunningModel) -> Search:
-        """The search that follows the policy of the settings, if they name one that fits the model."""
-        if not self._settings.policy:
-            return self._search
-        # Numbers take a tenth of a second to import, and few missions need them.
-        from aos_solver.offline.policy import Policy, PolicySearch
-
-        policy = Policy.load(Path(self._settings.policy))
-        policy.check_model(running.digest)
-        return PolicySearch.instead_of(self._search, policy)
-
     async def _mapping_revision(self) -> int:
         """The revision that the middleware runs; 0 while it cannot be asked."""
         try:
@@ -209,18 +210,16 @@ class _Solver:
     async def _run_mission(self) -> None:
         await self._started.wait()
         assert self._running is not None
-        settings = self._settings
-        self._mission = Mission(
-            self._name,
-            self._next_epoch(),
-            self._running,
-            msgspec.convert(settings, MissionLimits, from_attributes=True),
-            self._search,
-            self,
-            activation_timeout_s=settings.activation_timeout_s,
-            failures=Failures(msgspec.convert(settings, FailureRules, from_attributes=True)),
-            hold_s=settings.hold_s,
+        terms = Terms(
+            name=self._name,
+            epoch=self._next_epoch(),
+            limits=self._settings_as(MissionLimits),
+            search=self._search,
+            failures=self._settings_as(FailureRules),
+            activation_timeout_s=self._settings.activation_timeout_s,
+            hold_s=self._settings.hold_s,
         )
+        self._mission = Mission(terms, self._running, self)
         await self._await_mappings(self._running.revision)
         state = await self._mission.run()
         log.info("the mission ended: %s, %s", state.ending, state.remark)
@@ -272,7 +271,7 @@ class _Solver:
     def publish_state(self, state: MissionState) -> None:
         self._bus.tell(self._keys.mission_state, state)
 
-    async def activate(self, request: Activate) -> Outcome:
+    async def activate(self, request: Activate, action: str) -> Outcome:
         return await self._bus.ask(
             self._keys.activate(request.skill),
             request,

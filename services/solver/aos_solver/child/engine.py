@@ -142,6 +142,11 @@ class Engine:
         return self._built.emitted.digest
 
     @property
+    def state_digest(self) -> str:
+        """The digest of the state's layout: engines with the same one can exchange beliefs."""
+        return self._built.emitted.state_digest
+
+    @property
     def observed(self) -> Mapping[str, tuple[Observed, ...]]:
         """The numbers that skills report beside their responses, for those that do."""
         return self._built.emitted.observed

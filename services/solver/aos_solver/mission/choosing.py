@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
 
 import msgspec
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord
-from aos_runtime.clock import Clock
 from aos_solver.child.answers import Plan, Risks
 from aos_solver.child.engine import Engine
-from aos_solver.child.search import Search
 from aos_solver.mission.endings import (
     Ending,
-    MissionLimits,
     ending_after_planning,
     is_held_back,
     is_worth_nothing,
@@ -22,37 +18,26 @@ from aos_solver.mission.endings import (
 from aos_solver.mission.endings import remark_of as remark_of_ending
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.ports import Available
 from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.terms import Terms
 
-__all__ = ["Available", "Choice", "Chooser", "Ended", "Held"]
+__all__ = ["Choice", "Chooser", "Ended", "Held"]
 
 _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"
 
 
-class Available(Protocol):
-    """The facts that a choice has to know of the robot."""
-
-    clock: Clock
-
-    @property
-    def unavailable(self) -> Mapping[str, str]:
-        """The skills that nobody could run now, each with the reason."""
-        ...
-
-    @property
-    def announced(self) -> Mapping[str, int]:
-        """The number of times that each skill's adapter has announced itself; 0 for skills that are not
-        there."""
-        ...
-
-
 class Choice(msgspec.Struct, frozen=True):
-    """An action, and what it was chosen without. `is_cautious` says that it is for the cautious belief."""
+    """An action, and what it was chosen without. `is_cautious` says that it is for the cautious belief.
+
+    `forbidden` are the numbers of the actions that risk too much.
+    """
 
     plan: Plan
     risks: Risks | None
+    forbidden: frozenset[int]
     set_aside: dict[str, str]
-    is_cautious: bool
+    is_cautious: bool = False
 
 
 class Ended(msgspec.Struct, frozen=True):
@@ -71,11 +56,10 @@ class Held(msgspec.Struct, frozen=True):
 class Chooser:
     """Decides within a mission's limits, constraints and rules for failures."""
 
-    def __init__(
-        self, search: Search, limits: MissionLimits, failures: Failures, around: Available, budget: RiskBudget
-    ) -> None:
-        self._search = search
-        self._limits = limits
+    def __init__(self, terms: Terms, failures: Failures, around: Available, budget: RiskBudget) -> None:
+        self._terms = terms
+        self._search = terms.search
+        self._limits = terms.limits
         self._failures = failures
         self._around = around
         self._budget = budget
@@ -108,12 +92,13 @@ class Chooser:
             if retried is not None and model.digest == retried.model_digest:
                 index = [action.name for action in actions].index(retried.action)
                 if index in left and index not in barred:
-                    return Choice(await self._repeated(engine, retried, index), risks, set_aside, False)
+                    return Choice(await self._repeated(engine, retried, index), risks, forbidden, set_aside)
             plan, is_cautious = await self._plan(engine, step, belief, barred, set_aside)
             if actions[plan.index].skill in self._around.unavailable:
                 continue
             ended = await self._ending(engine, plan, belief, set_aside)
-            return ended or Choice(_explained(plan, set_aside, is_cautious), risks, set_aside, is_cautious)
+            plan = _explained(plan, set_aside, is_cautious)
+            return ended or Choice(plan, risks, forbidden, set_aside, is_cautious)
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
@@ -131,6 +116,8 @@ class Chooser:
         It is where the mission would be over but for that belief, or else nothing would be worth doing.
         """
         without = sorted(set_aside)
+        if not self._terms.is_cautious:
+            return await self._search.run(engine, step, barred, without=without), False
         if is_held_back(belief, self._limits):
             return await self._search.run(engine, step, barred, without=without, cautious=True), True
         plan = await self._search.run(engine, step, barred, without=without)

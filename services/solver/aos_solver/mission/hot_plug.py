@@ -49,12 +49,11 @@ class RunningModel(msgspec.Struct, frozen=True):
     """A compiled model with its engine child."""
 
     revision: int
-    built: BuiltModel
     engine: Engine
 
     @property
     def digest(self) -> str:
-        return self.built.emitted.digest
+        return self.engine.model_digest
 
 
 async def build_project(
@@ -131,7 +130,7 @@ class ModelShelf:
     async def _make(self, revision: ProjectRevision) -> None:
         try:
             built = await self._built(revision.project)
-            model = RunningModel(revision.revision, built, await self._start_engine(built))
+            model = RunningModel(revision.revision, await self._start_engine(built))
         except AosError as error:
             log.warning("revision %d is not used: %s", revision.revision, error)
             async with self._shelf:
@@ -199,7 +198,7 @@ class ModelShelf:
             candidate = self._ready
             if candidate is None or not await self._is_mapped(candidate.revision):
                 return running
-            if candidate.built.emitted.state_digest != running.built.emitted.state_digest:
+            if candidate.engine.state_digest != running.engine.state_digest:
                 log.warning("revision %d changes the state and waits for a new mission", candidate.revision)
                 return running
             beliefs = await running.engine.export_beliefs()
@@ -242,7 +241,7 @@ class ModelShelf:
                 return error.diagnostics
             span = project.environment.span
             return (Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),)
-        if running is not None and built.emitted.state_digest != running.built.emitted.state_digest:
+        if running is not None and built.emitted.state_digest != running.engine.state_digest:
             message = (
                 "the state variables differ from the running mission's, whose belief cannot be carried over"
             )

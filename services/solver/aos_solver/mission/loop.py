@@ -7,8 +7,8 @@ move before anything moves.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Protocol
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import msgspec
 
@@ -18,79 +18,49 @@ from aos_protocol.messages import (
     ActivationId,
     BeliefSummary,
     DecisionRecord,
-    Message,
     MissionState,
     Outcome,
 )
 from aos_solver.child.answers import BeliefUpdate
-from aos_solver.child.search import Search
-from aos_solver.mission.choosing import Available, Choice, Chooser, Ended, Held
-from aos_solver.mission.endings import Ending, MissionLimits, ending_of_belief, remark_of
+from aos_solver.mission.choosing import Choice, Chooser, Ended, Held
+from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.ports import Ports
 from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.terms import Terms
 
-__all__ = ["Mission", "Ports"]
-
-
-class Ports(Available, Protocol):
-    """The ports of the loop to the outside."""
-
-    async def until_changed(self, timeout_s: float) -> None:
-        """Returns when other skills are available, when somebody wants the mission to go on, or in time."""
-        ...
-
-    def journal(self, kind: str, payload: Message) -> None:
-        """Write durably; returns once it is on the disk."""
-        ...
-
-    def publish_record(self, record: DecisionRecord) -> None: ...
-
-    def publish_state(self, state: MissionState) -> None: ...
-
-    async def activate(self, request: Activate) -> Outcome:
-        """Run a grounded action; AosError when nobody can be asked or nobody answers."""
-        ...
-
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        """The model for the next decision, with the running one's belief: the same, or a hot-plugged one."""
-        ...
+__all__ = ["Mission"]
 
 
 class Mission:
-    """One mission from the initial belief to its ending; `run` is called once."""
+    """One mission from the engine's belief to its ending; `run` or `run_or_raise` is called once.
 
-    def __init__(
-        self,
-        name: str,
-        epoch: int,
-        model: RunningModel,
-        limits: MissionLimits,
-        search: Search,
-        ports: Ports,
-        *,
-        activation_timeout_s: float,
-        failures: Failures | None = None,
-        hold_s: float = 600.0,
-    ) -> None:
-        self.state = MissionState(name, "waiting", 0, 0.0, revision=model.revision, epoch=epoch)
+    `belief` is the newest one.
+    """
+
+    belief: BeliefSummary
+
+    def __init__(self, terms: Terms, model: RunningModel, ports: Ports) -> None:
+        self.state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
         self.records: list[DecisionRecord] = []
-        self._epoch = epoch
+        self._terms = terms
         self._model = model
-        self._limits = limits
-        self._search = search
         self._ports = ports
-        self._activation_timeout_s = activation_timeout_s
-        self._failures = failures or Failures()
-        self._hold_s = hold_s
+        self._failures = Failures(terms.failures)
         self._is_resumed = False
         self._budget = RiskBudget(model.engine.bounds)
-        self._chooser = Chooser(search, limits, self._failures, ports, self._budget)
+        self._chooser = Chooser(terms, self._failures, ports, self._budget)
+
+    @property
+    def decisions(self) -> Sequence[DecisionRecord]:
+        """The records of decisions, without those of what came of them."""
+        return [record for record in self.records if record.outcome is None]
 
     async def run(self) -> MissionState:
         """Decide and act until the mission ends; machine faults end it as `fault` with their text."""
         try:
-            await self._run_until_ended()
+            await self.run_or_raise()
         except AosError as error:
             self._end(Ending.FAULT, str(error))
         return self.state
@@ -104,78 +74,81 @@ class Mission:
         """Somebody has looked after what the mission holds for."""
         self._is_resumed = True
 
-    async def _run_until_ended(self) -> None:
-        belief = await self._model.engine.summary()
-        steps_taken = 0
-        while (ending := ending_of_belief(belief, steps_taken, self._limits)) is None:
+    async def run_or_raise(self) -> None:
+        """Decide and act until the mission ends, as `run`; AosError for a machine fault."""
+        self.belief = await self._model.engine.summary()
+        while (ending := self._ending()) is None:
             self._model = await self._ports.newest_model(self._model)
-            choice = await self._choose(steps_taken, belief)
+            choice = await self._choose()
             if isinstance(choice, Ended):
                 return self._end(choice.ending, choice.remark)
-            steps_taken += 1
-            decision = self._decide(steps_taken, choice, belief)
-            self._move_to("acting", steps_taken, belief, remark=decision.action)
-            await self._search.ponder(self._model.engine, steps_taken, choice.plan.index)
-            outcome = await self._act(decision)
-            belief = await self._observe(decision, outcome)
+            decision = self._decide(choice)
+            self._move_to("acting", decision.step, remark=decision.action)
+            await self._terms.search.ponder(self._model.engine, decision.step, choice.plan.index)
+            await self._observe(decision, await self._act(decision))
             if self._failures.to_end:
                 return self._end(Ending.SKILLS_FAILED, self._failures.to_end)
             if self._failures.to_hold:
-                await self._hold(self._failures.to_hold, steps_taken, belief, lambda: False)
-        self._end(ending, remark_of(ending, belief, self._limits))
+                await self._hold(self._failures.to_hold, lambda: False)
+        self._end(ending, remark_of(ending, self.belief, self._terms.limits))
 
-    async def _choose(self, steps_taken: int, belief: BeliefSummary) -> Choice | Ended:
+    def _ending(self) -> Ending | None:
+        """The ending that the belief calls for, or else the one that the world has come to."""
+        return ending_of_belief(self.belief, self.state.step, self._terms.limits) or self._ports.world_ending
+
+    async def _choose(self) -> Choice | Ended:
         """The next decision, or an ending; holds while nothing can be run."""
-        engine = self._model.engine
+        engine, step = self._model.engine, self.state.step
         while True:
-            self._move_to("planning", steps_taken, belief)
-            choice = await self._chooser.choose(self._model, steps_taken + 1, belief)
+            self._move_to("planning", step)
+            choice = await self._chooser.choose(self._model, step + 1, self.belief)
             if not isinstance(choice, Held):
                 return choice
-            await self._hold(
-                choice.remark, steps_taken, belief, lambda: self._chooser.is_something_available(engine)
-            )
+            await self._hold(choice.remark, lambda: self._chooser.is_something_available(engine))
 
-    async def _hold(self, why: str, step: int, belief: BeliefSummary, goes_on: Callable[[], bool]) -> None:
+    async def _hold(self, why: str, goes_on: Callable[[], bool]) -> None:
         """Decides nothing until the mission goes on by itself or is resumed, for `hold_s` at most."""
-        ends_at_s = self._ports.clock.monotonic_s() + self._hold_s
+        hold_s = self._terms.hold_s
+        ends_at_s = self._ports.clock.monotonic_s() + hold_s
         self._is_resumed = False
-        self._move_to("holding", step, belief, remark=why)
+        self._move_to("holding", self.state.step, remark=why)
         while not (self._is_resumed or goes_on()):
             now_s = self._ports.clock.monotonic_s()
             left_s = ends_at_s - now_s
             if left_s <= 0:
-                raise AosError(f"{why}; nothing has changed for {self._hold_s:g} s", code="AOS513")
+                raise AosError(f"{why}; nothing has changed for {hold_s:g} s", code="AOS513")
             await self._ports.until_changed(min(left_s, self._failures.s_until_return(now_s)))
 
-    def _decide(self, step: int, choice: Choice, belief: BeliefSummary) -> DecisionRecord:
-        plan, risks = choice.plan, choice.risks
+    def _decide(self, choice: Choice) -> DecisionRecord:
+        """The record of a decision, which spends what the action risks."""
+        plan, step = choice.plan, self.state.step + 1
         actions = self._model.engine.description.actions
         chosen = actions[plan.index]
-        told = [number for number, each in enumerate(actions) if each.skill not in choice.set_aside]
+        listed = [number for number, action in enumerate(actions) if action.skill not in choice.set_aside]
+        spent = self._budget.spend(choice.risks, plan.index, listed) if choice.risks is not None else ()
         record = DecisionRecord(
             sequence=len(self.records),
             stamp_ns=self._ports.clock.now_ns(),
             mission=self.state.mission,
-            epoch=self._epoch,
+            epoch=self._terms.epoch,
             step=step,
             action=chosen.name,
             skill=chosen.skill,
             parameters=chosen.parameters,
             model_digest=self._model.digest,
             revision=self._model.revision,
-            seed=self._search.seed_of(step),
+            seed=self._terms.search.seed_of(step),
             simulations=plan.simulations,
             horizon=plan.horizon,
             planning_s=plan.seconds,
             preparation_s=plan.preparation_s,
             actions=plan.actions,
             predicted=plan.predicted,
-            belief=belief,
+            belief=self.belief,
             planner=plan.planner,
             why=plan.why,
             threads=plan.threads,
-            constraints=self._budget.spend(risks, plan.index, told) if risks is not None else (),
+            constraints=spent,
             set_aside=choice.set_aside,
             is_cautious=choice.is_cautious,
         )
@@ -187,17 +160,17 @@ class Mission:
             ActivationId(decision.mission, decision.step),
             decision.skill,
             decision.parameters,
-            self._failures.rule(decision.skill).timeout_s or self._activation_timeout_s,
+            self._failures.rule(decision.skill).timeout_s or self._terms.activation_timeout_s,
             decision.revision,
             self._model.engine.variables_of(decision.action),
-            self._epoch,
+            decision.epoch,
         )
         self._ports.journal("intended", request)
-        outcome = await self._ports.activate(request)
+        outcome = await self._ports.activate(request, decision.action)
         self._ports.journal("outcome", outcome)
         return outcome
 
-    async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> BeliefSummary:
+    async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> None:
         before_s = self._ports.clock.monotonic_s()
         update = await self._updated_belief(decision, outcome)
         update_s = self._ports.clock.monotonic_s() - before_s
@@ -218,10 +191,10 @@ class Mission:
             surprise=update.surprise,
             update_s=update_s,
             is_impossible=update.is_impossible,
-            remark="; ".join(each for each in (update.remark, remark) if each),
+            remark="; ".join(text for text in (update.remark, remark) if text),
         )
         self._publish(record)
-        return update.summary
+        self.belief = update.summary
 
     async def _updated_belief(self, decision: DecisionRecord, outcome: Outcome) -> BeliefUpdate:
         """The belief after an outcome; without an observation by how probable it is that the skill ran."""
@@ -233,7 +206,7 @@ class Mission:
                 outcome.response,
                 outcome.local_variables or None,
                 outcome.numbers,
-                refuted_below=self._limits.refuted_below,
+                refuted_below=self._terms.limits.refuted_below,
             )
         ran_probability = self._failures.ran_probability(outcome)
         if ran_probability == 0:
@@ -245,11 +218,11 @@ class Mission:
         self.records.append(record)
         self._ports.publish_record(record)
 
-    def _move_to(self, phase: str, step: int, belief: BeliefSummary, *, remark: str = "") -> None:
+    def _move_to(self, phase: str, step: int, *, remark: str = "") -> None:
         self._change_state(
             phase=phase,
             step=step,
-            goal_probability=belief.goal_probability,
+            goal_probability=self.belief.goal_probability,
             remark=remark,
             revision=self._model.revision,
         )

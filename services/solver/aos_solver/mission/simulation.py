@@ -1,26 +1,31 @@
 """Whole missions without a robot: the world is a hidden state that the documents' own model steps.
 
-The stop rules are the mission loop's. Rewards are the model's, so that returns can be compared. A mission
-with a robot knows its belief alone; here the world is known too, and so whether the belief was right.
+The mission is the same as with a robot; its ports are other ones. Rewards are the model's, so that returns
+can be compared. A mission with a robot knows its belief alone; here the world is known too, and so whether
+the belief was right.
 """
 
 from __future__ import annotations
 
+import sys
+
 import msgspec
 
 from aos_protocol.errors import DocumentError
+from aos_protocol.messages import Activate, Outcome
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
-from aos_solver.mission.endings import (
-    Ending,
-    MissionLimits,
-    believed_ending,
-    ending_after_planning,
-    ending_of_belief,
-)
-from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.endings import Ending, MissionLimits, believed_ending
+from aos_solver.mission.failures import FailureRules
+from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.loop import Mission
+from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.terms import Terms
 
 __all__ = ["SimulatedRun", "simulate_mission"]
+
+_NO_CONSEQUENCES = FailureRules(failure_limit=sys.maxsize, set_aside_after=sys.maxsize)
+"""A model's skills never break. Where the world has other documents, their reports are left to the belief."""
 
 
 class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
@@ -60,61 +65,79 @@ async def simulate_mission(
     """Runs one mission from the initial belief; `search.seed` also draws the world.
 
     `world` plays the world where the robot's model may be wrong about it: the engine of other documents with
-    the same actions. Rewards and endings are then theirs.
+    the same actions. Rewards and endings are then theirs. An AosError ends it.
     """
-    belief = await engine.reset_belief()
-    world = world or engine
-    places = {action.name: index for index, action in enumerate(world.description.actions)}
-    world_ending = (await world.reset_world(search.seed)).ending
-    discount = engine.description.discount
-    total = discounted = 0.0
-    actions: list[str] = []
-    observations: list[str] = []
-    numbers: list[dict[str, float | list[float | None]]] = []
-    states = [await world.world_state()] if with_states else []
-    budget, violations = RiskBudget(engine.bounds), 0
-    risked: dict[str, float] = {bound.never: 0.0 for bound in engine.bounds}
-    while True:
-        ending = ending_of_belief(belief, len(actions), limits)
-        if ending is None and world_ending:
-            ending = Ending(world_ending)
-        risks = await engine.risks(search.seed_of(len(actions) + 1)) if ending is None and budget else None
-        forbidden = budget.forbidden(risks) if risks is not None else frozenset[int]()
-        if forbidden and len(forbidden) == len(engine.description.actions):
-            ending = Ending.TOO_RISKY
-        if ending is None:
-            plan = await search.run(engine, len(actions) + 1, sorted(forbidden))
-            ending = ending_after_planning(plan.best, plan.actions, limits)
-        if ending is not None:
-            return SimulatedRun(
-                search.seed,
-                total,
-                discounted,
-                ending,
-                len(actions),
-                tuple(actions),
-                tuple(observations),
-                tuple(states),
-                Ending(world_ending) if world_ending else None,
-                believed_ending(belief, limits),
-                tuple(numbers) if any(numbers) else (),
-                tuple(each.never for number, each in enumerate(engine.bounds) if violations >> number & 1),
-                risked,
-            )
-        for spent in budget.spend(risks, plan.index) if risks is not None else ():
+    await engine.reset_belief()
+    played = _World(world or engine, engine.description.discount, with_states)
+    await played.begin(search.seed)
+    terms = Terms(
+        name="simulated",
+        limits=limits,
+        # Nothing takes time in this world, so that there is none to look ahead in.
+        search=msgspec.structs.replace(search, ponder_while_acting=False),
+        failures=_NO_CONSEQUENCES,
+        is_cautious=False,
+    )
+    mission = Mission(terms, RunningModel(0, engine), played)
+    await mission.run_or_raise()
+    risked = {bound.never: 0.0 for bound in engine.bounds}
+    for decision in mission.decisions:
+        for spent in decision.constraints:
             risked[spent.never] += spent.risk
-        if plan.best.action not in places:
-            raise DocumentError(
-                f"the world's documents have no action {plan.best.action}", hint="Name others"
-            )
-        step = await world.step_world(places[plan.best.action])
-        violations |= step.violations
-        total += step.reward
-        discounted += discount ** len(actions) * step.reward
-        actions.append(plan.best.action)
-        observations.append(step.response)
-        numbers.append(step.numbers)
-        if with_states:
-            states.append(await world.world_state())
-        belief = (await engine.update(plan.best.action, step.response, numbers=step.numbers)).summary
-        world_ending = step.ending
+    return SimulatedRun(
+        seed=search.seed,
+        total=played.total,
+        discounted_return=played.discounted,
+        ending=Ending(mission.state.ending),
+        steps=len(played.actions),
+        actions=tuple(played.actions),
+        observations=tuple(played.responses),
+        states=tuple(played.states),
+        world_ending=played.world_ending,
+        believed_ending=believed_ending(mission.belief, limits),
+        numbers=tuple(played.numbers) if any(played.numbers) else (),
+        violated=tuple(
+            bound.never for number, bound in enumerate(engine.bounds) if played.violations >> number & 1
+        ),
+        risked=risked,
+    )
+
+
+class _World(QuietPorts):
+    """A mission's ports where skills act on the hidden state of an engine, and what came of that."""
+
+    def __init__(self, engine: Engine, discount: float, has_states: bool) -> None:
+        self._engine = engine
+        self._discount = discount
+        self._has_states = has_states
+        self._places = {action.name: index for index, action in enumerate(engine.description.actions)}
+        self.total = self.discounted = 0.0
+        self.violations = 0
+        self.actions: list[str] = []
+        self.responses: list[str] = []
+        self.numbers: list[dict[str, float | list[float | None]]] = []
+        self.states: list[str] = []
+
+    async def begin(self, seed: int) -> None:
+        """Draws the hidden state."""
+        start = await self._engine.reset_world(seed)
+        await self._look(start.ending)
+
+    async def activate(self, request: Activate, action: str) -> Outcome:
+        """Steps the hidden state; DocumentError where the world's documents have no such action."""
+        if action not in self._places:
+            raise DocumentError(f"the world's documents have no action {action}", hint="Name others")
+        step = await self._engine.step_world(self._places[action])
+        self.violations |= step.violations
+        self.total += step.reward
+        self.discounted += self._discount ** len(self.actions) * step.reward
+        self.actions.append(action)
+        self.responses.append(step.response)
+        self.numbers.append(step.numbers)
+        await self._look(step.ending)
+        return Outcome(request.id, request.skill, "observed", step.response, numbers=step.numbers)
+
+    async def _look(self, ending: str | None) -> None:
+        self.world_ending = Ending(ending) if ending else None
+        if self._has_states:
+            self.states.append(await self._engine.world_state())

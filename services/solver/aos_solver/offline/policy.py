@@ -9,7 +9,6 @@ import time
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Self
 
 import msgspec
 import numpy as np
@@ -110,11 +109,6 @@ class PolicySearch(Search, frozen=True, kw_only=True):
     """Decides by a policy instead of searching; the budget is not used."""
 
     policy: Policy
-
-    @classmethod
-    def instead_of(cls, search: Search, policy: Policy) -> Self:
-        """Follows the policy where `search` would search."""
-        return cls(policy=policy, **msgspec.structs.asdict(search))
 
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""

@@ -1,0 +1,101 @@
+"""The outside of a mission as ports: the robot, the record of what happens, the supply of models.
+
+`aos_solver.service` gives a mission the bus and the disk; `simulation` gives it a hidden state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from aos_protocol.messages import Activate, DecisionRecord, Message, MissionState, Outcome
+from aos_runtime.clock import Clock, SystemClock
+from aos_solver.mission.endings import Ending
+from aos_solver.mission.hot_plug import RunningModel
+
+__all__ = ["Available", "Models", "Ports", "QuietPorts", "Record", "Robot"]
+
+
+class Available(Protocol):
+    """The facts that a choice has to know of the robot."""
+
+    clock: Clock
+
+    @property
+    def unavailable(self) -> Mapping[str, str]:
+        """The skills that nobody could run now, each with the reason."""
+        ...
+
+    @property
+    def announced(self) -> Mapping[str, int]:
+        """The count of announcements of each skill's adapter; 0 for skills that are not there."""
+        ...
+
+
+class Robot(Available, Protocol):
+    """The robot and its world."""
+
+    @property
+    def world_ending(self) -> Ending | None:
+        """The ending of the world, where somebody sees it; nobody tells a real robot."""
+        ...
+
+    async def activate(self, request: Activate, action: str) -> Outcome:
+        """Run the grounded action of this name; AosError when nobody can be asked or nobody answers."""
+        ...
+
+    async def until_changed(self, timeout_s: float) -> None:
+        """Returns when other skills are available, when somebody wants the mission to go on, or in time."""
+        ...
+
+
+class Record(Protocol):
+    """The journal and the audience of a mission."""
+
+    def journal(self, kind: str, payload: Message) -> None:
+        """Write durably; returns once it is on the disk."""
+        ...
+
+    def publish_record(self, record: DecisionRecord) -> None: ...
+
+    def publish_state(self, state: MissionState) -> None: ...
+
+
+class Models(Protocol):
+    """The supply of models while the mission runs."""
+
+    async def newest_model(self, running: RunningModel) -> RunningModel:
+        """The model for the next decision, with the running one's belief: the same, or a hot-plugged one."""
+        ...
+
+
+class Ports(Robot, Record, Models, Protocol):
+    """Everything that a mission needs from outside."""
+
+
+class QuietPorts:
+    """The ports, but for the robot itself, of a mission that nobody follows.
+
+    Nothing is journalled or told. The skills stay available, and the model stays the same.
+    """
+
+    clock: Clock = SystemClock()
+    unavailable: Mapping[str, str] = {}
+    announced: Mapping[str, int] = {}
+    world_ending: Ending | None = None
+
+    async def until_changed(self, timeout_s: float) -> None:
+        """Nothing ever changes."""
+
+    def journal(self, kind: str, payload: Message) -> None:
+        """Nothing is kept."""
+
+    def publish_record(self, record: DecisionRecord) -> None:
+        """Nobody listens."""
+
+    def publish_state(self, state: MissionState) -> None:
+        """Nobody listens."""
+
+    async def newest_model(self, running: RunningModel) -> RunningModel:
+        """The same model."""
+        return running

@@ -1,0 +1,27 @@
+"""The choice between searching and following a policy file, for commands that may have either."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from aos_solver.child.search import Search
+
+__all__ = ["following"]
+
+
+def following(search: Search, policy: Path | None, *, model_digest: str = "") -> Search:
+    """The search itself, or one that follows the policy file where there is one.
+
+    PlanningError where the file cannot be read, and where the policy is not for the model of this digest.
+    """
+    if policy is None:
+        return search
+    # Numbers take a tenth of a second to import, and few missions need them.
+    from aos_solver.offline.policy import Policy, PolicySearch
+
+    loaded = Policy.load(policy)
+    if model_digest:
+        loaded.check_model(model_digest)
+    return PolicySearch(policy=loaded, **msgspec.structs.asdict(search))
