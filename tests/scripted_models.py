@@ -37,7 +37,7 @@ _DRIVER = Path(__file__).parent / "cpp"
 _HEADER = "scripted.hpp"
 _OPTIONS = ("-O0", f"-I{SOURCES}")
 _EXECUTABLE = "scripted"
-_TABLE = re.compile(r"constinit const aos::ModelTable .*table_of<(.*)>\(\);")
+_TABLE = re.compile(r"constinit const aos::ModelTable .*\s+aos::table_of<(.*)>\(\);")
 _MAIN = r"""int main(int argc, char** argv) { return aos::run<\1>(argc, argv); }"""
 
 

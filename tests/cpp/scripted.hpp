@@ -6,35 +6,60 @@
 #include <cstdlib>
 #include <initializer_list>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "aos/base/json.hpp"
 #include "aos/model/support.hpp"
 
 namespace aos {
 
-// Takes each draw from a list: a Bernoulli is true for 1, a discrete draw is the index itself. After the end of the list
-// the likelier, or the first, value.
-class Script {
+// The built-ins that a source of draws has besides `index(weights)` and its distributions.
+template <class Source>
+class ScriptedDraws {
  public:
-  explicit Script(const char* draws) : rest_(draws) {}
-  Script& sensing() { return *this; }
-  bool Bernoulli(double probability) { return next(probability >= 0.5 ? 1 : 0) != 0; }
-  int SampleDiscrete(int name, std::initializer_list<double>) { return name + 1 + static_cast<int>(next(0)); }
+  Source& sensing() { return source(); }
   template <class Weights = std::initializer_list<double>>
-  int SampleDiscrete(const Weights&) {
-    return static_cast<int>(next(0));
+  int SampleDiscrete(int name, const Weights& weights) {
+    return name + 1 + source().index(weights, true);
   }
-  template <class Weights>
-  int SampleDiscrete(int name, const Weights&) {
-    return name + 1 + static_cast<int>(next(0));
+  template <class Enum, class Weights = std::initializer_list<double>>
+    requires std::is_enum_v<Enum>
+  Enum SampleDiscrete(const Weights& weights) {
+    return static_cast<Enum>(source().index(weights, true));
   }
-  double SampleNormal(double mean, double) { return next(mean); }
-  double SampleUniform(double low, double) { return next(low); }
+  template <class Weights = std::initializer_list<double>>
+    requires(!std::is_enum_v<Weights>)
+  int SampleDiscrete(const Weights& weights) {
+    return source().index(weights, false);
+  }
+  template <class Value, class Weights = std::initializer_list<double>>
+  Value SampleOf(std::initializer_list<Value> values, const Weights& weights) {
+    return values.begin()[source().index(weights, true)];
+  }
+  template <class Values, class Weights = std::initializer_list<double>>
+  decltype(auto) SampleOf(Values& values, const Weights& weights) {
+    return values.at(source().index(weights, true));
+  }
   void SetNull(bool& value) { value = false; }
   void Uninitialize(bool& value) { value = false; }
   void Initialize(bool& value) { value = true; }
   bool IsInitialized(bool value) { return value; }
   void report(NumberKey, const Distribution&) {}
+
+ private:
+  Source& source() { return static_cast<Source&>(*this); }
+};
+
+// Takes each draw from a list: a Bernoulli is true for 1, a discrete draw is the index itself. After the end of the list
+// the likelier, or the first, value.
+class Script : public ScriptedDraws<Script> {
+ public:
+  explicit Script(const char* draws) : rest_(draws) {}
+  bool Bernoulli(double probability) { return next(probability >= 0.5 ? 1 : 0) != 0; }
+  int index(const auto&, bool) { return static_cast<int>(next(0)); }
+  double SampleNormal(double mean, double) { return next(mean); }
+  double SampleUniform(double low, double) { return next(low); }
 
  private:
   double next(double otherwise) {
@@ -48,10 +73,9 @@ class Script {
 };
 
 // A quick generator for long walks and for the rate.
-class Dice {
+class Dice : public ScriptedDraws<Dice> {
  public:
   explicit Dice(std::uint64_t seed) : state_(seed) {}
-  Dice& sensing() { return *this; }
   std::uint64_t bits() {
     std::uint64_t mixed = state_ += 0x9e3779b97f4a7c15u;
     mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -61,22 +85,14 @@ class Dice {
   int below(int count) { return static_cast<int>((bits() >> 32) * static_cast<std::uint64_t>(count) >> 32); }
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   bool Bernoulli(double probability) { return uniform() < probability; }
-  int SampleDiscrete(int name, std::initializer_list<double> weights) {
+  // Without `scales` the weights may leave a share in which no index is drawn.
+  int index(const auto& weights, bool scales) {
     double sum = 0;
     for (const double weight : weights) sum += weight;
-    return name + 1 + pick(weights, uniform() * sum);
-  }
-  template <class Weights = std::initializer_list<double>>
-  int SampleDiscrete(const Weights& weights) {
-    return pick(weights, uniform());
+    return pick(weights, uniform() * (scales ? sum : 1));
   }
   double SampleNormal(double mean, double sigma) { return mean + sigma * (uniform() + uniform() + uniform() - 1.5) * 2; }
   double SampleUniform(double low, double high) { return low + uniform() * (high - low); }
-  void SetNull(bool& value) { value = false; }
-  void Uninitialize(bool& value) { value = false; }
-  void Initialize(bool& value) { value = true; }
-  bool IsInitialized(bool value) { return value; }
-  void report(NumberKey, const Distribution&) {}
 
  private:
   template <class Weights>
@@ -100,7 +116,7 @@ std::string observation_name(int action, Observation observation) {
   if (observation == default_observation) return default_observation_text;
   if (observation < 0) return std::string{observation_text(observation)};
   const int skill = Model::grounded_actions()[static_cast<std::size_t>(action)].skill;
-  return Model::skills[static_cast<std::size_t>(skill)].responses[observation];
+  return Model::skills()[static_cast<std::size_t>(skill)].responses[observation];
 }
 
 template <class Model>
@@ -147,7 +163,9 @@ void play() {
     Script draws{bar == std::string::npos ? "" : line.c_str() + bar + 1};
     Script none{""};
     json.begin_object().member("meets_precondition", Model::meets_precondition(state, action, none));
-    json.member("rollout_weight", Model::rollout_weight(state, action, none));
+    std::vector<double> weights;
+    Model::rollout_weights(state, none, [&](double weight) { weights.push_back(weight); });
+    json.member("rollout_weight", weights[static_cast<std::size_t>(action)]);
     json.member("state_value", Model::state_value(state, none));
     const Step step = Model::step(state, action, draws);
     json.member("reward", step.reward).member("observation", observation_name<Model>(action, step.observation));
@@ -185,7 +203,7 @@ void describe() {
   json.begin_array();
   for (const GroundedAction& action : Model::grounded_actions()) {
     json.begin_object().member("action", action.name).key("parameters");
-    Model::skills[static_cast<std::size_t>(action.skill)].write_parameters(action.parameters, json);
+    Model::skills()[static_cast<std::size_t>(action.skill)].write_parameters(action.parameters, json);
     json.end_object();
   }
   std::puts(json.end_array().text().c_str());

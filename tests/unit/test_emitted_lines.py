@@ -47,14 +47,6 @@ def test_long_lists_go_on_in_the_next_line(bundles: Path) -> None:
     assert sum("place_number_39" in line for line in own) >= 1
 
 
-def test_the_number_before_an_enums_first_is_explained_where_it_is_used(bundles: Path) -> None:
-    used = lowered(bundle_project(bundles / "armadillo-finer"))[0].cpp
-    unused = lowered(bundle_project(bundles / "bench/tiger"))[0].cpp
-    explanation = "the first\n// argument is the number before the first that can be drawn"
-    assert explanation in used
-    assert explanation not in unused
-
-
 def test_names_of_the_emitted_model_are_no_names_of_documents() -> None:
     home = "project: test\nhorizon: 3\nstate_variable: int aos_ending\n"
     act = "project: test\ndynamic_model:\nstate__.aos_ending = 1;\n"

@@ -18,7 +18,7 @@ NAMES = Rewriting(
 def test_a_draw_over_a_local_vector_gives_one_of_its_values() -> None:
     code = "vector<int> values{1, 5}; n = AOS.SampleDiscrete(values, {0.5, 0.5});"
     text, _ = rewrite(read_cpp(code), Rewriting(frozenset(), {}, containers=frozenset({"values"})), {})
-    assert text == "vector<int> values{1, 5}; n = values.at(AOS.SampleDiscrete(-1, {0.5, 0.5}));"
+    assert text == "vector<int> values{1, 5}; n = AOS.SampleOf(values, {0.5, 0.5});"
 
 
 def rewritten(code: str) -> str:
@@ -63,11 +63,15 @@ def test_plain_code_stands_as_it_is(code: str) -> None:
         ("state->x = 1;", "state.x = 1;"),
         ("for (tBox* box : state.tBoxObjects) n++;", "for (auto* box : state.tBoxObjects()) n++;"),
         ("auto f = [](tBox* box) { return box->x; };", "auto f = [](auto* box) { return box->x; };"),
-        ("c = AOS.SampleDiscrete(tColour, {1, 2});", "c = tColour(AOS.SampleDiscrete(-1, {1, 2}));"),
-        ("{c = AOS.SampleDiscrete(tColour, {1})}", "{c = tColour(AOS.SampleDiscrete(-1, {1}));}"),
+        ("c = AOS.SampleDiscrete(tColour, {1, 2});", "c = AOS.template SampleDiscrete<tColour>({1, 2});"),
+        ("{c = AOS.SampleDiscrete(tColour, {1})}", "{c = AOS.template SampleDiscrete<tColour>({1});}"),
+        (
+            "c = AOS.SampleDiscrete /* ( */ (tColour,  // ,\n{1, 2});",
+            "c = AOS.template SampleDiscrete /* ( */ <tColour>(// ,\n{1, 2});",
+        ),
         (
             "o = AOS.SampleDiscrete(Odd, {1, 1});",
-            "o = aos::nth({Odd::three, Odd::seven}, AOS.SampleDiscrete(-1, {1, 1}));",
+            "o = AOS.SampleOf({Odd::three, Odd::seven}, {1, 1});",
         ),
     ],
 )
@@ -86,4 +90,5 @@ def test_columns_lead_back_through_edits() -> None:
 
 def test_a_column_in_an_edit_leads_to_the_edited_place() -> None:
     piece = piece_of("c = AOS.SampleDiscrete(tColour, {1, 2});")
-    assert piece.locate(1, piece.text.index("tColour(") + 3) == Span("a.sd", 10, 5)
+    assert piece.locate(1, piece.text.index("template") + 3) == Span("a.sd", 10, 9)
+    assert piece.locate(1, piece.text.index("tColour") + 3) == Span("a.sd", 10, 26)

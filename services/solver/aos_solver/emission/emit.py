@@ -15,6 +15,7 @@ from pathlib import Path
 import jinja2
 import msgspec
 
+from aos_language.cpp.snippets import read_cpp
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.program import Local, ObjectList, Observed, Piece, Program, Skill, Variable
@@ -27,12 +28,12 @@ MODEL_FILE = "model.cpp"
 _MARK, _END = "\ue000", "\ue001"
 _PLACE = re.compile(f"{_MARK}(\\d+){_END}")
 _OWN_NAMES = (
-    "State", "Draft", "Constants", "Environment", "Model", "actions", "constants", "default_values",
-    "members", "start", "variables",
+    "State", "Draft", "Constants", "Environment", "constants", "default_values", "members", "variables",
 )  # fmt: skip
 _MAX_COLUMNS = 110
 _COMMA = re.compile(r'"(?:[^"\\]|\\.)*"|(, )')
 """Text in quotes, or a comma outside of quotes."""
+_NOTE = re.compile(r"\s*aos::blame::at\(\d+\);")
 _PLAIN_VALUE = re.compile(r"[\w.+-]*")
 
 
@@ -122,16 +123,13 @@ def _laid_out(program: Program) -> tuple[str, dict[int, tuple[Origin, ...]]]:
         flags_type=_flags_type(program),
         has_tables=any(variable.axes for variable in program.variables),
         has_named_arrays=_has_named_arrays(program),
-        has_rollout_policy=any(skill.rollout_policy for skill in program.skills),
-        draws_enums=any("AOS.SampleDiscrete(-1, " in piece.text for piece in program.pieces),
         has_drawing_loops=any("aos::DrawingLoop" in piece.text for piece in program.pieces),
-        has_corrections=any(skill.is_corrected for skill in program.skills),
-        has_costs=any(constraint.cost for constraint in program.constraints),
-        looks_ahead=any(constraint.looks_ahead for constraint in program.constraints),
+        facts=_facts(program),
         special_states=[state for state in program.special_states if state.condition or state.section],
         watched_skills=_watched_skills(program),
         saved_variables=_saved_variables(program),
         members_of=lambda objects: _members_of(objects, own_names["State"]),
+        declares=lambda piece: bool(read_cpp(piece.snippet.code).declarations),
         par_names=lambda variable: ", ".join(f"par{n}" for n, _ in enumerate(variable.axes, 1)),
         MARK=_MARK,
         END=_END,
@@ -149,6 +147,7 @@ def _templates() -> jinja2.Environment:
     )
     environment.filters["literal"] = _string_literal
     environment.filters["number"] = _number_literal
+    environment.filters["skill_type"] = "aos_skill_{}".format
     return environment
 
 
@@ -162,7 +161,7 @@ def _put_code(text: str, pieces: tuple[Piece, ...]) -> tuple[str, dict[int, tupl
         places = [pieces[int(number) - 1] for number in _PLACE.findall(line)]
         if not places:
             lines.add(line)
-        elif _PLACE.fullmatch(line) or any(_needs_lines(piece) for piece in places):
+        elif _PLACE.fullmatch(line.strip()) or any(_needs_lines(piece) for piece in places):
             _put_block(lines, _PLACE.split(line), pieces)
         else:
             _put_inline(lines, _PLACE.split(line), pieces)
@@ -170,29 +169,39 @@ def _put_code(text: str, pieces: tuple[Piece, ...]) -> tuple[str, dict[int, tupl
 
 
 class _Lines:
-    """The file as it grows."""
+    """The file as it grows. `_note` stands before the next line of document code, on that line."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.origins: dict[int, tuple[Origin, ...]] = {}
         self._is_in_document = False
         self._next: tuple[str, int] = ("", 0)
+        self._note = ""
 
     def add(self, line: str) -> None:
-        """A line of ours."""
+        """A line of ours. A note of what runs next does not part document code from document code."""
         if self._is_in_document:
+            if _NOTE.fullmatch(line) and not self._note:
+                self._note = f"{line.strip()} "
+                return
             self.lines.append(f'#line {len(self.lines) + 2} "{MODEL_FILE}"')
             self._is_in_document = False
-        self.lines += _wrapped(line)
+        self.lines += [*([self._note] if self._note else []), *_wrapped(line)]
+        self._note = ""
 
     def add_code(self, line: str, span: Span, origins: tuple[Origin, ...]) -> None:
         """A line with document code, of which `span` is the document line."""
         if not self._is_in_document or self._next != (span.file, span.line):
             self.lines.append(f"#line {span.line} {_string_literal(span.file)}")
-        self.lines.append(line)
-        self.origins[len(self.lines)] = origins
+        code = line.lstrip()
+        shift = len(self._note)
+        self.lines.append(f"{line[: len(line) - len(code)]}{self._note}{code}".rstrip())
+        self.origins[len(self.lines)] = tuple(
+            msgspec.structs.replace(origin, column=origin.column + shift) for origin in origins
+        )
         self._is_in_document = True
         self._next = (span.file, span.line + 1)
+        self._note = ""
 
     def add_plain(self, line: str, origins: tuple[Origin, ...]) -> None:
         """A line of ours that shows a plain value from a document."""
@@ -219,15 +228,23 @@ def _needs_lines(piece: Piece) -> bool:
 
 
 def _put_block(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> None:
-    """Every piece on lines of its own; the code around it on lines before and after."""
+    """Every piece on lines of its own, indented; the code around it on lines before and after."""
+    indent = " " * (len(parts[0]) - len(parts[0].lstrip())) if parts[0].strip() else parts[0]
     for index, part in enumerate(parts):
         if index % 2 == 0:
             if part.strip():
                 lines.add(part)
             continue
         piece = pieces[int(part) - 1]
+        before = "" if _has_long_literals(piece) else indent
         for number, text in enumerate(piece.text.split("\n"), 1):
-            lines.add_code(text, piece.snippet.locate(number), (Origin(1, len(text), piece.number, number),))
+            origin = Origin(len(before) + 1, len(text), piece.number, number)
+            lines.add_code(before + text, piece.snippet.locate(number), (origin,))
+
+
+def _has_long_literals(piece: Piece) -> bool:
+    """Whether a literal may go over lines, whose blanks would then belong to it."""
+    return 'R"' in piece.text or "\\\n" in piece.text
 
 
 def _put_inline(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> None:
@@ -265,6 +282,18 @@ def _own_names(program: Program) -> dict[str, str]:
             free += "_"
         names[name] = free
     return names
+
+
+def _facts(program: Program) -> dict[str, bool]:
+    """The facts of aos::ProjectDefaults."""
+    return {
+        "draws_defaults": program.draws_defaults,
+        "has_rollout_policy": any(skill.rollout_policy for skill in program.skills),
+        "has_state_heuristic": program.state_heuristic is not None,
+        "has_corrections": any(skill.is_corrected for skill in program.skills),
+        "constraints_look_ahead": any(constraint.looks_ahead for constraint in program.constraints),
+        "has_costs": any(constraint.cost for constraint in program.constraints),
+    }
 
 
 def _flags_type(program: Program) -> str:

@@ -89,7 +89,9 @@ class Pieces:
 
     def code(self, snippet: Snippet, rewriting: Rewriting, of_loops: LoopsOfPiece = NO_LOOPS) -> Piece:
         """Statements."""
-        return self._make(snippet, read_cpp(snippet.code), rewriting, self._numbered(of_loops))
+        return self._make(
+            snippet, read_cpp(snippet.code), rewriting, self._numbered(of_loops), is_statements=True
+        )
 
     def _numbered(self, of_loops: LoopsOfPiece) -> LoopsOfPiece:
         first = self._loops + 1
@@ -117,13 +119,19 @@ class Pieces:
         return piece
 
     def _make(
-        self, snippet: Snippet, cpp: Cpp, rewriting: Rewriting, of_loops: LoopsOfPiece = NO_LOOPS
+        self,
+        snippet: Snippet,
+        cpp: Cpp,
+        rewriting: Rewriting,
+        of_loops: LoopsOfPiece = NO_LOOPS,
+        *,
+        is_statements: bool = False,
     ) -> Piece:
         self.check(snippet, cpp)
         is_safe = all(fault.kind is FaultKind.SYNTAX for fault in cpp.faults)
         told_apart = self._told_apart.get(snippet, {})
         text, edits = rewrite(cpp, rewriting, told_apart, of_loops=of_loops) if is_safe else ("", ())
-        piece = Piece(len(self.made) + 1, snippet, text, edits)
+        piece = Piece(len(self.made) + 1, snippet, text, edits, is_statements=is_statements)
         self.made.append(piece)
         return piece
 

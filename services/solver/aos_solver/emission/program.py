@@ -49,14 +49,15 @@ class Edit(msgspec.Struct, frozen=True):
 class Piece(msgspec.Struct, frozen=True):
     """A snippet as it stands in the emitted file: `text` has the snippet's lines, with few edits.
 
-    `number`, from 1, is what blame.hpp stores while the piece runs. Declarations stand in a namespace, and
-    whoever calls them is what runs.
+    `number`, from 1, is what blame.hpp stores while the piece runs. A piece is an expression, or statements,
+    or declarations: these stand in a namespace, and whoever calls them is what runs.
     """
 
     number: int
     snippet: Snippet
     text: str
     edits: tuple[Edit, ...] = ()
+    is_statements: bool = False
     is_declarations: bool = False
 
     def locate(self, line: int, column: int) -> Span:

@@ -10,7 +10,7 @@ import msgspec
 from aos_language.cpp.flow import STATES
 from aos_language.cpp.loops import DrawingLoop
 from aos_language.cpp.shared import SharedFunction
-from aos_language.cpp.snippets import Call, Cpp, Extent
+from aos_language.cpp.snippets import Call, Cpp, Extent, strip_comments
 from aos_language.observed import reports_in
 from aos_solver.emission.program import Edit
 from aos_solver.emission.rewrite_containers import container_edits
@@ -65,8 +65,9 @@ def rewrite(
     - a missing last `;` is put in
     - `AOSUtils::` becomes `AOSUtils.`
     - `state.<Type>Objects`, a view made on demand, gets its `()`
-    - `AOS.SampleDiscrete(Enum, {...})` becomes `Enum(AOS.SampleDiscrete(-1, {...}))`
-    - over a local vector `values` it becomes `values.at(AOS.SampleDiscrete(-1, {...}))`
+    - `AOS.SampleDiscrete(Enum, {...})` becomes `AOS.template SampleDiscrete<Enum>({...})`
+    - over a local vector `values` it becomes `AOS.SampleOf(values, {...})`, over an enum whose values have
+      numbers of their own `AOS.SampleOf({Enum::a, Enum::b}, {...})`
     - such a draw says so: `AOS.sensing().Bernoulli(p)`, `AOS.averaged().SampleNormal(mean, deviation)`
     - a draw that is reported becomes its distribution: `__observed.range = aos::Normal(mean, deviation)`
     - `state->x` becomes `state.x`
@@ -168,18 +169,30 @@ def _of_call(call: Call, code: str, rewriting: Rewriting) -> Iterator[tuple[Exte
         return
     if len(call.arguments) != 2:
         return
-    first = call.arguments[0]
-    enum = code[first.start : first.end].strip()
-    if enum in rewriting.containers:
-        before = f"{enum}.at("  # Where there are fewer values than weights, `at` tells it.
-    elif enum in rewriting.enums:
-        values = rewriting.enums[enum]
-        before = f"{enum}(" if values is None else f"aos::nth({{{', '.join(values)}}}, "
-    else:
-        return
-    yield first, "-1"
-    yield call.extent.start, before
-    yield call.extent.end, ")"
+    first, second = call.arguments
+    name = _extent(code, call.function.end - len("SampleDiscrete"), call.function.end)
+    over = code[first.start : first.end].strip()
+    values = rewriting.enums.get(over)
+    if over in rewriting.containers:
+        yield name, "SampleOf"
+    elif values is not None:
+        yield name, "SampleOf"
+        yield first, f"{{{', '.join(values)}}}"
+    elif over in rewriting.enums:
+        bracket = strip_comments(code).index("(", call.function.end)
+        yield name.start, "template "
+        yield _extent(code, bracket, bracket + 1), "<"
+        yield _comma(code, first, second), ">("
+
+
+def _comma(code: str, first: Extent, second: Extent) -> Extent:
+    """The comma between two arguments, with the blanks behind it."""
+    between = strip_comments(code)[first.end : second.start]
+    start = first.end + between.index(",")
+    end = start + 1
+    while code[end] in " \t":
+        end += 1
+    return _extent(code, start, end)
 
 
 def _extent(code: str, start: int, end: int) -> Extent:

@@ -57,15 +57,17 @@ def traced(emitted: EmittedModel) -> TracedModel:
     for piece in emitted.pieces:
         tracing = _Tracing(piece, len(spans))
         text = None
-        if piece.is_declarations or _is_statements(piece, emitted, lines):
+        if piece.is_declarations or piece.is_statements:
             text = marked(piece.text, tracing.marks, are_declarations=piece.is_declarations)
         if text is None:
             continue
         spans += tracing.spans.values()
         pieces += [piece.number] * len(tracing.spans)
         text = f"{tracing.start}{text}"
+        note = f"aos::blame::at({piece.number}); "
         for number, line in enumerate(text.split("\n"), 1):
-            lines[_line_of(piece, number, emitted)] = line
+            at = _line_of(piece, number, emitted)
+            lines[at] = f"{note}{line}" if lines[at].lstrip().startswith(note.rstrip()) else line
     return TracedModel(
         msgspec.structs.replace(emitted, cpp="\n".join(lines), snippets=tuple(spans)), tuple(pieces)
     )
@@ -132,11 +134,3 @@ def _line_of(piece: Piece, number: int, emitted: EmittedModel) -> int:
         for line, origins in emitted.origins.items()
         if origins[0].piece == piece.number and origins[0].line == number
     )
-
-
-def _is_statements(piece: Piece, emitted: EmittedModel, lines: list[str]) -> bool:
-    """Returns whether the piece is not an expression: then its number alone is told on the line before it."""
-    before = _line_of(piece, 1, emitted) - 1
-    if lines[before].startswith("#line"):
-        before -= 1
-    return lines[before].strip() == f"aos::blame::at({piece.number});"

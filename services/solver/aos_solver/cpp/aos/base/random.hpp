@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -56,9 +57,27 @@ class Draws {
     return name + 1 + normalised(copied.weights, copied.count);
   }
 
+  // Draws a value of an enum whose values count from 0.
+  template <class Enum, class Weights = std::initializer_list<double>>
+    requires std::is_enum_v<Enum>
+  Enum SampleDiscrete(const Weights& weights) {
+    return static_cast<Enum>(SampleDiscrete(-1, weights));
+  }
+  // Draws one of several values.
+  template <class Value, class Weights = std::initializer_list<double>>
+  Value SampleOf(std::initializer_list<Value> values, const Weights& weights) {
+    return values.begin()[SampleDiscrete(-1, weights)];
+  }
+  // Draws an element of a vector. Where there are fewer elements than weights, `at` tells it.
+  template <class Values, class Weights = std::initializer_list<double>>
+  decltype(auto) SampleOf(Values& values, const Weights& weights) {
+    return values.at(SampleDiscrete(-1, weights));
+  }
+
   // Draws an index. The weights are not normalised: the index is -1 with the probability that they leave
   // below 1. A gap of at most `weight_rounding` counts as none.
   template <class Weights = std::initializer_list<double>>
+    requires(!std::is_enum_v<Weights>)
   int SampleDiscrete(const Weights& weights) {
     Copied copied{weights};
     const double total = checked_total(copied.weights, copied.count, /*may_be_zero=*/true);

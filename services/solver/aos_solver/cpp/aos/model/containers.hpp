@@ -11,12 +11,6 @@
 
 namespace aos {
 
-// The value at an index of a list. A draw over an enum whose values have their own numbers gives the index.
-template <class E>
-E nth(std::initializer_list<E> values, int index) {
-  return values.begin()[index];
-}
-
 // These throw a ModelFault. They are kept out of the code that runs in every step.
 [[noreturn, gnu::cold]] void out_of_range(std::ptrdiff_t index, std::size_t size);
 [[noreturn, gnu::cold]] void over_capacity(std::size_t size, std::size_t max);

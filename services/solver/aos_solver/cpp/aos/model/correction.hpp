@@ -30,6 +30,7 @@ struct LocalArray : std::vector<T> {
   }
 };
 
+// Reads the values of a skill's local variables.
 template <class Locals>
 void read_locals(Locals& locals, std::string_view text) {
   StateReader values{text};
@@ -49,9 +50,9 @@ void tell(const char* name, auto& variable, const auto& value) {
 // Corrects `next`, the state to which a step led from `before`. The special states are evaluated again on the
 // corrected state. A state that had ended before the step stays as it is.
 template <class Environment, class Skill, class State>
-void correct(const State& before, State& next, const auto& parameters, auto& random) {
+void correct(const State& before, State& next, const auto& parameters, const auto& locals, auto& random) {
   if (before.aos_ending != Ending::running) return;
-  Skill::given_observation(before, next, parameters, random);
+  Skill::given_observation(before, next, parameters, locals, random);
   next.aos_ending = Ending::running;
   if constexpr (requires { next.aos_spent; }) next.aos_spent = before.aos_spent;
   Environment::special_states(next, random);

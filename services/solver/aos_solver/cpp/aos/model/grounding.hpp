@@ -5,7 +5,6 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -46,9 +45,9 @@ struct SkillFacts {
 };
 
 template <class Skill>
-constexpr SkillFacts facts_of(const char* name) {
+constexpr SkillFacts facts_of(void (*read_locals)(std::string_view values)) {
   return {
-      .name = name,
+      .name = Skill::aos_name,
       .responses = Skill::response_names.data(),
       .response_count = static_cast<int>(Skill::response_names.size()),
       .has_text_response = Skill::has_text_response,
@@ -59,7 +58,7 @@ constexpr SkillFacts facts_of(const char* name) {
           [](const void* parameters, JsonWriter& json) {
             write_json(json, *static_cast<const typename Skill::Parameters*>(parameters));
           },
-      .read_locals = Skill::read_locals,
+      .read_locals = read_locals,
   };
 }
 
@@ -84,18 +83,6 @@ class Groundings {
   int skill_;
   const char* name_;
 };
-
-// Calls `use` with a skill's type and the parameters of each of its groundings, skill by skill.
-template <class... Skills>
-void with_each_grounding(const std::vector<GroundedAction>& actions, auto&& use) {
-  auto action = actions.begin();
-  int number = 0;
-  const auto groundings_of = [&]<class Skill>(std::type_identity<Skill> skill) {
-    for (; action != actions.end() && action->skill == number; ++action) use(skill, parameters_of<Skill>(*action));
-    ++number;
-  };
-  (groundings_of(std::type_identity<Skills>{}), ...);
-}
 
 // Draws for code that runs once, before there are particles: the likeliest outcome, the mean, the middle.
 struct FixedDraws : Draws<FixedDraws> {

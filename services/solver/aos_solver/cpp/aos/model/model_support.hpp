@@ -15,6 +15,7 @@
 #include "aos/model/containers.hpp"
 #include "aos/model/correction.hpp"
 #include "aos/model/grounding.hpp"
+#include "aos/model/model_of.hpp"
 #include "aos/model/model_table.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/reporting.hpp"

@@ -39,7 +39,7 @@ inline constexpr auto size_mark = [] {
   return mark;
 }();
 
-// See the emitted `Model` for what each member means.
+// See `ModelOf` for what each member means.
 struct ModelTable {
   const char* size_mark;
   std::size_t state_bytes;
@@ -99,7 +99,6 @@ constexpr DrawingFunctions<Random> drawing_functions() {
 template <class Model>
 constexpr ModelTable table_of() {
   using State = typename Model::State;
-  constexpr bool is_constrained = requires { Model::constraint_count; };
   static_assert(std::is_trivially_copyable_v<State> && alignof(State) <= alignof(std::uint64_t));
   return {
       .size_mark = size_mark<sizeof(State)>.data(),
@@ -107,20 +106,14 @@ constexpr ModelTable table_of() {
       .project = Model::project,
       .horizon = Model::horizon,
       .discount = Model::discount,
-      .skills = Model::skills,
+      .skills = Model::skills(),
       .actions = &Model::grounded_actions(),
       .has_rollout_policy = Model::has_rollout_policy,
       .has_state_heuristic = Model::has_state_heuristic,
       .ending_offset = offsetof(State, aos_ending),
       .irrelevant = Model::irrelevant,
-      .constraint_count = [] {
-        if constexpr (is_constrained) return Model::constraint_count;
-        return 0;
-      }(),
-      .constraints_look_ahead = [] {
-        if constexpr (is_constrained) return Model::constraints_look_ahead;
-        return false;
-      }(),
+      .constraint_count = Model::constraint_count,
+      .constraints_look_ahead = Model::constraints_look_ahead,
       .prepare = Model::prepare,
       .equal =
           [](const void* left, const void* right) {
@@ -153,7 +146,7 @@ constexpr ModelTable table_of() {
             return meets;
           },
       .violations = [](const void* before, const void* next, int action) -> Violations {
-        if constexpr (is_constrained) {
+        if constexpr (Model::constraint_count > 0) {
           return Model::violations(*static_cast<const State*>(before), *static_cast<const State*>(next), action);
         }
         return 0;

@@ -170,6 +170,7 @@ class AnyValue {
  public:
   template <class T>
   AnyValue(const T& value) : value_(&value), visit_(visit_as<T>) {}
+  AnyValue(const void* value, void (*visit)(const void*, ValueVisitor&)) : value_(value), visit_(visit) {}
   void visit(ValueVisitor& visitor) const { visit_(value_, visitor); }
   const void* place() const { return value_; }
 

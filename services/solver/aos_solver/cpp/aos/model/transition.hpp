@@ -10,6 +10,7 @@
 #include "aos/base/fault.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/grounding.hpp"
+#include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
@@ -65,8 +66,9 @@ struct SkillDefaults {
   static void execution_time(const auto&, int&, const auto&, auto&) {}
   static void next_state(auto&, auto&, auto&, bool, int, auto&, const auto&, auto&) {}
   static void rollout_policy(const auto&, double&, const auto&, auto&) {}
-  static void read_locals(std::string_view) {}
-  static void given_observation(const auto&, auto&, const auto&, auto&) {}
+  // The local variables of the abstraction mapping at the time of the response.
+  struct Locals {};
+  static void given_observation(const auto&, auto&, const auto&, const auto&, auto&) {}
 };
 
 // The defaults for what an environment document leaves out.
@@ -78,6 +80,7 @@ struct EnvironmentDefaults {
   static void extrinsic_changes(auto&, auto&, double&, int, const auto&, auto&) {}
   static double special_states(auto&, auto&) { return 0; }
   static void state_heuristic(const auto&, double&, auto&) {}
+  static std::string state_text(const auto& state) { return leaves_text(state); }
 };
 
 // What a special state says: only that the mission ends, or also whether this is a failure.
