@@ -8,13 +8,14 @@ import sys
 from pathlib import Path
 
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
-from aos_protocol.errors import DocumentError
+from aos_protocol.errors import DocumentError, StorageError
 from aos_runtime.children import PIPE, Child, guarded
 from aos_runtime.lifecycle import Service, ServiceSettings, run_service
 
 
 class Settings(ServiceSettings, frozen=True, kw_only=True):
-    """`mood` is `good`, `slow` (never ready), `faulty`, `broken`, `deaf` (to SIGTERM) or `parental`."""
+    """`mood` is `good`, `slow` (never ready), `faulty`, `broken`, `full` (its disk), `deaf` (to SIGTERM) or
+    `parental`."""
 
     mood: str = "good"
 
@@ -29,6 +30,9 @@ async def serve(service: Service[Settings]) -> None:
             raise DocumentError("the world is wrong", code="AOS102", hint="Mend it", diagnostics=(finding,))
         case "broken":
             raise RuntimeError("a defect")
+        case "full":
+            _leave_no_space_for_faults(service.settings)
+            raise StorageError("the journal: database or disk is full", code="AOS701")
         case "parental":
             child = await Child.start(guarded(["sh", "-c", "sleep 1000 & echo; wait"]), stdout=PIPE)
             await child.stdout.readline()
@@ -40,6 +44,12 @@ async def serve(service: Service[Settings]) -> None:
         await asyncio.Event().wait()
     finally:
         _note_stop(service.settings)
+
+
+def _leave_no_space_for_faults(settings: Settings) -> None:
+    faults = Path(settings.run_dir, "faults")
+    faults.rmdir()
+    faults.touch()
 
 
 def _note_stop(settings: Settings) -> None:

@@ -57,15 +57,19 @@ _BY_ENDING = {
 
 def exit_code_of_mission(state: MissionState) -> ExitCode:
     """The exit code of a mission that has ended."""
+    if state.ending == "not_started":
+        return _before_the_mission(state.code)
     return _BY_ENDING.get(state.ending, ExitCode.FAULT)
 
 
-def exit_code_of_error(error: AosError, *, has_started: bool = False) -> ExitCode:
-    """The exit code of a fault; `has_started` says that the mission already ran."""
-    if has_started:
-        return ExitCode.FAULT
-    if error.code.startswith(("AOS1", "AOS32")) or error.code in ("AOS201", "AOS801", "AOS808"):
+def exit_code_of_error(error: AosError) -> ExitCode:
+    """The exit code of a command that ended by this fault, and of a mission that it kept from starting."""
+    return _before_the_mission(error.code)
+
+
+def _before_the_mission(code: str) -> ExitCode:
+    if code.startswith(("AOS1", "AOS32")) or code in ("AOS201", "AOS801", "AOS808"):
         return ExitCode.DOCUMENTS_WRONG
-    if error.code.startswith(("AOS6", "AOS8")) or error.code in ("AOS202", "AOS203", "AOS701"):
+    if code.startswith(("AOS6", "AOS8")) or code in ("AOS202", "AOS203", "AOS701"):
         return ExitCode.NOT_STARTED
     return ExitCode.FAULT

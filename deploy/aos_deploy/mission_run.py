@@ -17,15 +17,16 @@ from aos_deploy.bundle_files import check_constraints_of, files_of_bundle
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, Told
-from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
 from aos_deploy.living_runs import noted
 from aos_deploy.printing import from_here
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
+from aos_deploy.run_end import settled
 from aos_deploy.supervisor import Supervisor, supervised
+from aos_deploy.verdict import Account, Verdict
 from aos_protocol.diagnostics import Diagnostic
-from aos_protocol.errors import AosError, DeployError, DocumentError
+from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError
 from aos_protocol.messages import (
     BundleReport,
     DecisionRecord,
@@ -57,8 +58,7 @@ class MissionRun:
         self.error: AosError | None = None
         self._started = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
         self._supervisor: Supervisor | None = None
-        self._state: MissionState | None = None
-        self._steps: dict[int, DecisionRecord] = {}
+        self._seen = Account()
         self._own_pushes: set[str] = set()
         self._services_ready_s: float | None = None
         self._first_decision_s: float | None = None
@@ -66,8 +66,9 @@ class MissionRun:
     async def run(self) -> Summary:
         """Runs until the mission has ended and every process with it, by itself, by a fault or cancelled.
 
-        A fault is kept in `error`. In every case the run directory holds the summary, if there is a run
-        directory; AosError if there is none, because its endpoint is taken or it cannot be made.
+        A fault is kept in `error`, and so is a lack of space for the journal's end or the summary: the exit
+        code is the same without them. AosError if there is no run directory, because its endpoint is taken or
+        it cannot be made.
         """
         with hold_endpoint(self._deployment.file.bus.listen) as endpoint:
             return await self._run_at(endpoint)
@@ -75,37 +76,34 @@ class MissionRun:
     async def _run_at(self, endpoint: str) -> Summary:
         run = RunDirectory.create(self._deployment.runs, self._deployment.file.robot, self._clock.now_ns())
         self._report(Told(f"run directory {from_here(run.path)}"))
+        was_interrupted = False
         try:
             with noted(run):
-                state = await self._run_in(run, endpoint)
-            ending, remark, code = state.ending, state.remark, exit_code_of_mission(state)
+                await self._run_in(run, endpoint)
         except asyncio.CancelledError:
-            ending, remark, code = "cancelled", "interrupted", ExitCode.INTERRUPTED
+            was_interrupted = True
         except AosError as error:
             self.error = error
-            ending = "fault" if self._has_started else "not_started"
-            remark, code = str(error), exit_code_of_error(error, has_started=self._has_started)
-        summary = self._summary(ending, remark, code)
-        run.write_summary(summary)
+        verdict, lacking = settled(
+            run.path, self._seen, stopped_by=self.error, was_interrupted=was_interrupted
+        )
+        self.error = self.error or lacking
+        summary = self._summary(verdict)
+        try:
+            run.write_summary(summary)
+        except StorageError as error:
+            self.error = self.error or error
         run.close()
-        took = f"{summary.steps} steps in {summary.duration_s:.1f} s"
-        self._report(Told(f"{ending} after {took}; everything is kept in {from_here(run.path)}"))
+        took = f"{verdict.steps} steps in {summary.duration_s:.1f} s"
+        self._report(Told(f"{verdict.ending} after {took}; everything is kept in {from_here(run.path)}"))
         return summary
-
-    @property
-    def _has_started(self) -> bool:
-        return bool(self._steps)
-
-    @property
-    def _has_ended(self) -> bool:
-        return self._state is not None and self._state.phase == "ended"
 
     def kill(self) -> None:
         """Ends every process without waiting for it."""
         if self._supervisor is not None:
             self._supervisor.kill()
 
-    async def _run_in(self, run: RunDirectory, endpoint: str) -> MissionState:
+    async def _run_in(self, run: RunDirectory, endpoint: str) -> None:
         deployment = self._deployment
         base = ServiceSettings(
             robot=deployment.file.robot, service="", endpoint=endpoint, run_dir=str(run.path)
@@ -121,17 +119,16 @@ class MissionRun:
                 async with asyncio.TaskGroup() as tasks:
                     tasks.create_task(self._follow(supervisor))
                     await self._start_mission(supervisor, write_again)
-                if not self._has_ended:
+                if not self._seen.has_ended:
                     # The solver's process ends in a moment, and the supervision with the reason.
                     await supervisor.until_one_ended(timeout_s=_END_NOTICE_S)
-                elif self._state is not None and self._state.ending == "fault":
+                elif self._seen.state is not None and self._seen.state.ending == "fault":
                     # A service that is killed leaves the bus before its process counts as ended.
                     await supervisor.until_one_ended(timeout_s=CAUSE_NOTICE_S)
         except BaseExceptionGroup as group:
             raise root_cause(group) from group
-        if self._state is None or not self._has_ended:
+        if not self._seen.has_ended:
             raise DeployError("the solver left before the mission ended", code="AOS804")
-        return self._state
 
     async def _start_mission(self, supervisor: Supervisor, write_record: Callable[[], None]) -> None:
         async with asyncio.TaskGroup() as tasks:
@@ -192,12 +189,10 @@ class MissionRun:
             self._report(event)
 
     def _take(self, event: Event) -> None:
-        if isinstance(event, MissionState):
-            self._state = event
-        elif isinstance(event, DecisionRecord):
-            if self._first_decision_s is None:
-                self._first_decision_s = self._elapsed_s()
-            self._steps[event.step] = event
+        if isinstance(event, DecisionRecord | MissionState):
+            self._seen.take(event)
+        if isinstance(event, DecisionRecord) and self._first_decision_s is None:
+            self._first_decision_s = self._elapsed_s()
 
     def _write_record(self, run: RunDirectory, endpoint: str, supervisor: Supervisor) -> None:
         run.write_record(
@@ -212,25 +207,14 @@ class MissionRun:
             )
         )
 
-    def _summary(self, ending: str, remark: str, code: ExitCode) -> Summary:
-        steps = [self._steps[number] for number in sorted(self._steps)]
-        belief = steps[-1].belief if steps else None
-        cautious = None if belief is None else belief.cautious or belief
+    def _summary(self, verdict: Verdict) -> Summary:
         return Summary(
             robot=self._deployment.file.robot,
             deploy_file=str(self._deployment.path),
             seed=self._deployment.file.solver.seed,
             started=self._started,
-            ending=ending,
-            remark=remark,
-            exit_code=int(code),
-            steps=len(steps),
-            goal_probability=belief.goal_probability if belief else 0.0,
-            cautious_goal_probability=cautious.goal_probability if cautious else 0.0,
-            over_probability=belief.over_probability if belief else 0.0,
-            failure_probability=belief.failure_probability if belief else 0.0,
-            actions=tuple(step.action for step in steps),
-            responses=tuple(step.outcome.response if step.outcome else "" for step in steps),
+            **msgspec.structs.asdict(verdict),
+            steps=verdict.steps,
             services_ready_s=self._services_ready_s,
             first_decision_s=self._first_decision_s,
             duration_s=self._elapsed_s(),

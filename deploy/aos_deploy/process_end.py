@@ -8,7 +8,8 @@ import signal
 from aos_deploy.program import Program
 from aos_deploy.remote import why_it_failed
 from aos_deploy.run_directory import RunDirectory
-from aos_protocol.errors import AosError, DeployError, error_from_code
+from aos_protocol.errors import AosError, DeployError, StorageError, error_from_code
+from aos_runtime.lifecycle import STORAGE_STATUS
 
 __all__ = ["end_of", "look_at_log", "status_text"]
 
@@ -26,6 +27,9 @@ def end_of(program: Program, run: RunDirectory, status: int, *, was_ready: bool)
         )
     if program.host and (failed := why_it_failed(name, program.host, status, run.last_log_lines(name))):
         return failed
+    if status == STORAGE_STATUS and not program.command:
+        text = f"{name} could not write or read its files"
+        return StorageError(text, code="AOS701", hint=look_at_log(run, name))
     code = "AOS804" if was_ready else "AOS802"
     text, hint = f"{name} ended unexpectedly: {status_text(status)}", look_at_log(run, name)
     if program.ready is not None and program.ready.exit is not None:

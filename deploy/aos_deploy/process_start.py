@@ -26,7 +26,7 @@ async def start_process(program: Program, base: ServiceSettings, run: RunDirecto
     told = {"AOS_ENDPOINT": base.endpoint, "AOS_ROBOT": base.robot, "PYTHONUNBUFFERED": "1"}
     if not program.is_own:
         told |= {"AOS_SETTINGS": str(settings), "AOS_ADAPTER": program.name}
-    with run.log(program.name).open("ab") as log:
+    with run.open_log(program.name) as log:
         if program.host:
             check_ssh(program.name, program.host)
             command = remote_command(program, base.endpoint, told, settings)

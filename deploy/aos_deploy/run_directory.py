@@ -6,20 +6,22 @@ runs/20260105T101500Z-armadillo/
   logs/            what each service said
   faults/          why a service ended, if it ended by a fault
   journal.db       the mission: decisions and outcomes
-  summary.json     how it ended; its absence means that it runs, or was killed
+  summary.json     how it ended; its absence means that it runs, was killed, or found no space for it
 """
 
 from __future__ import annotations
 
 import fcntl
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import msgspec
 
-from aos_protocol.errors import BusError, DeployError
+from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
 from aos_runtime.service_settings import fault_path
 
@@ -120,13 +122,20 @@ class RunDirectory:
         return cls((runs / _LATEST).resolve())
 
     def write_settings(self, service: str, settings: dict[str, Any]) -> Path:
-        """Writes the settings of a service and returns their path."""
+        """Writes the settings of a service, and returns their path; StorageError AOS701 if that cannot be."""
         path = self.path / "settings" / f"{service}.json"
-        path.write_bytes(_pretty(settings))
+        with _kept(path):
+            path.write_bytes(_pretty(settings))
         return path
 
     def log(self, service: str) -> Path:
         return self.path / "logs" / f"{service}.log"
+
+    def open_log(self, service: str) -> BinaryIO:
+        """The log, for a process to write to its end; StorageError AOS701 if it cannot be opened."""
+        path = self.log(service)
+        with _kept(path):
+            return path.open("ab")
 
     def last_log_lines(self, service: str, count: int = 8) -> list[str]:
         """The end of a service's log."""
@@ -145,19 +154,23 @@ class RunDirectory:
 
     def forget_fault(self, service: str) -> None:
         """Puts the fault aside of a service that is started again: its log has it."""
-        fault_path(self.path, service).unlink(missing_ok=True)
+        with suppress(OSError):
+            fault_path(self.path, service).unlink()
 
     def write_record(self, record: RunRecord) -> None:
-        """Writes the record by which the run can be found from now on, and lets `latest` name it. The
-        record may be written anew."""
+        """Writes the record by which the run can be found from now on, and lets `latest` name it.
+
+        The record may be written anew. StorageError AOS701 if it cannot be; an older one stays as it is.
+        """
         path = self.path / "run.json"
         is_known = path.exists()
-        path.write_bytes(_pretty(record))
+        _write_whole(path, _pretty(record))
         if is_known:
             return
         link = self.path.with_name(f".{_LATEST}-{self.path.name}")
-        link.symlink_to(self.path.name)
-        link.replace(self.path.with_name(_LATEST))
+        with _kept(link):
+            link.symlink_to(self.path.name)
+            link.replace(self.path.with_name(_LATEST))
 
     def read_record(self) -> RunRecord:
         """DeployError AOS801 if this is not a run directory."""
@@ -168,7 +181,8 @@ class RunDirectory:
             raise DeployError(f"{self.path} is not a run directory: {error}", code="AOS801") from error
 
     def write_summary(self, summary: Summary) -> None:
-        (self.path / "summary.json").write_bytes(_pretty(summary))
+        """All of it, or nothing and StorageError AOS701."""
+        _write_whole(self.path / "summary.json", _pretty(summary))
 
     def read_summary(self) -> Summary | None:
         """None while the mission runs, or if aos-up was killed."""
@@ -190,6 +204,30 @@ class RunDirectory:
         except OSError:
             return True
         return False
+
+
+def _write_whole(path: Path, content: bytes) -> None:
+    """Writes beside the file and renames, so that nobody ever reads a part of it."""
+    beside = path.with_name(f".{path.name}-{os.getpid()}")
+    with _kept(path):
+        try:
+            beside.write_bytes(content)
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def _kept(path: Path) -> Iterator[None]:
+    """Turns the system's refusal to write a file of the run into StorageError AOS701."""
+    try:
+        yield
+    except OSError as error:
+        raise StorageError(
+            f"{path} cannot be written: {error.strerror}",
+            code="AOS701",
+            hint="Make space there, or name another folder with --runs",
+        ) from error
 
 
 def _locked(path: Path, kind: int) -> int:

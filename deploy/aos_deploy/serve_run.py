@@ -57,7 +57,7 @@ class ServeRun:
                 self._report(Told("stopped"))
             except AosError as error:
                 self.error = error
-                code = exit_code_of_error(error, has_started=False)
+                code = exit_code_of_error(error)
             run.close()
         return ServeEnd(int(code))
 

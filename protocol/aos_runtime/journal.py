@@ -8,6 +8,7 @@ tool reads a journal. One process writes, any number read.
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -131,15 +132,19 @@ class Journal:
 
     def rows(self, kind: str | None = None, since: int = 0) -> list[JournalRow]:
         """The rows numbered `since` and above, of one kind or of all."""
+        return list(self.walk(kind, since))
+
+    def walk(self, kind: str | None = None, since: int = 0) -> Iterator[JournalRow]:
+        """As `rows`, one after the other, so that a long journal need not fit into memory."""
         try:
-            found = self._connection.execute(
+            for seq, stamp_ns, of_kind, text in self._connection.execute(
                 "SELECT seq, stamp_ns, kind, payload FROM entries"
                 " WHERE seq >= :since AND (:kind IS NULL OR kind = :kind) ORDER BY seq",
                 {"since": since, "kind": kind},
-            ).fetchall()
+            ):
+                yield JournalRow(seq, stamp_ns, of_kind, text.encode())
         except sqlite3.Error as error:
             raise _fault("AOS702", self._path, error) from error
-        return [JournalRow(seq, stamp_ns, of_kind, text.encode()) for seq, stamp_ns, of_kind, text in found]
 
 
 def _check_version(connection: sqlite3.Connection, path: Path, *, may_be_new: bool) -> None:

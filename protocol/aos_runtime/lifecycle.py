@@ -3,7 +3,8 @@
     python -m aos_registry SETTINGS.json
 
 A service ends with its parent, on SIGTERM, or with a fault. SIGTERM cancels `serve`, which cleans up in
-`finally`. A fault goes to the log on stderr and, for aos-up, to `<run_dir>/faults/<service>.json`.
+`finally`. A fault goes to the log on stderr and, for aos-up, to `<run_dir>/faults/<service>.json`. On a full
+disk neither may have space: the exit status tells that, too.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import Any, Generic, NoReturn, TypeVar
 
 import msgspec
 
-from aos_protocol.errors import AosError, DeployError
+from aos_protocol.errors import AosError, DeployError, StorageError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Fault
 from aos_runtime.bus import Bus
@@ -32,11 +33,22 @@ from aos_runtime.older_python import BaseExceptionGroup
 from aos_runtime.parent import die_with_parent
 from aos_runtime.service_settings import ServiceSettings, fault_path
 
-__all__ = ["ROUTER_S", "Service", "ServiceSettings", "root_cause", "run_process", "run_service"]
+__all__ = [
+    "ROUTER_S",
+    "STORAGE_STATUS",
+    "Service",
+    "ServiceSettings",
+    "root_cause",
+    "run_process",
+    "run_service",
+]
 
 
 ROUTER_S = 10.0
 """The router may take this time to listen. Services start at the same time, and wait for it as long."""
+
+STORAGE_STATUS = os.EX_IOERR
+"""The exit status of a service that could not write or read its files."""
 
 S = TypeVar("S", bound=ServiceSettings)
 
@@ -114,7 +126,7 @@ def run_process(
     except AosError as error:
         _log.error("%s", error)
         _leave_fault(settings, Fault(error.code, error.message, error.hint, error.diagnostics))
-        status = 1
+        status = STORAGE_STATUS if isinstance(error, StorageError) else 1
     except Exception as error:
         _log.exception("ended by a defect")
         text = f"ended by a defect: {type(error).__name__}: {error}"

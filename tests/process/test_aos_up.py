@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import pytest
 from processes import HANG_S, descendants, has_listener, is_running, until_ended
 
+from aos_deploy.run_end import account_of
 from aos_runtime.journal import Journal
 
 BIN = Path(sys.executable).parent
@@ -167,7 +168,9 @@ def test_services_start_in_order_and_all_get_ready(mission: Mission) -> None:
 def test_the_run_directory_keeps_the_mission(mission: Mission) -> None:
     summary = json.loads((mission.run / "summary.json").read_text())
     decided = [event for event in mission.up.events if event["event"] == "decision"]
-    assert summary["exit_code"] == mission.status
+    verdict = account_of(mission.run).verdict()
+    assert summary["exit_code"] == verdict.exit_code == mission.status
+    assert summary["ending"] == verdict.ending
     assert summary["actions"] == [event["action"] for event in decided if "outcome" in event]
     assert 0 < summary["services_ready_s"] < summary["first_decision_s"] < summary["duration_s"]
     for service in ("router", "registry", "middleware", "pybullet", "solver"):
@@ -213,6 +216,7 @@ def test_nothing_is_left_after_an_interrupt(deploy_file: Path, scratch: Path, nu
     assert not has_listener(port_of(latest(deploy_file)))
     assert not files_left(scratch)
     assert json.loads((latest(deploy_file) / "summary.json").read_text())["ending"] == "cancelled"
+    assert account_of(latest(deploy_file)).verdict().ending == "cancelled"
 
 
 async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch: Path) -> None:

@@ -73,6 +73,12 @@ async def test_a_defect_in_a_service_is_told_in_one_line(system: System) -> None
     assert "Traceback" in system.run.log("skills").read_text()
 
 
+async def test_a_service_on_a_full_disk_is_told_as_that_though_its_fault_has_no_space(system: System) -> None:
+    error = await system.error(small("registry"), small("skills", "full"))
+    assert str(error).startswith("AOS701: skills could not write or read its files. Its log is ")
+    assert "database or disk is full" in error.hint
+
+
 async def test_a_program_that_cannot_run_is_told(system: System) -> None:
     error = await system.error(Program(name="skills", module="no_such_package"))
     assert error.code == "AOS802"

@@ -12,6 +12,7 @@ from rich.console import Console
 from aos_deploy.events import Event, ServiceChanged, Told
 from aos_deploy.exit_codes import ExitCode, exit_code_of_error, exit_code_of_mission
 from aos_deploy.terminal import console
+from aos_deploy.verdict import Account
 from aos_deploy.views import make_view
 from aos_deploy.views.lines import JsonView, PlainView, decision_line
 from aos_deploy.views.live import LiveView, Screen
@@ -355,4 +356,11 @@ def test_each_ending_has_its_exit_code(ending: str, code: int) -> None:
 def test_a_fault_counts_by_when_it_happens(code: str, before: int, after: int) -> None:
     error: AosError = error_from_code(code, "")
     assert exit_code_of_error(error) == before
-    assert exit_code_of_error(error, has_started=True) == after == ExitCode.FAULT
+    account = Account()
+    early = account.stopped("m", error)
+    assert early is not None
+    assert exit_code_of_mission(early) == before
+    account.take(DECISION)
+    late = account.stopped("m", error)
+    assert late is not None
+    assert exit_code_of_mission(late) == after == ExitCode.FAULT

@@ -12,7 +12,8 @@ from aos_deploy.living_runs import RUNS, living_runs
 from aos_deploy.options import AsJson
 from aos_deploy.printing import from_here, print_json
 from aos_deploy.run_directory import RunDirectory
-from aos_protocol.errors import DeployError
+from aos_deploy.run_end import account_of
+from aos_protocol.errors import DeployError, StorageError
 
 __all__ = ["register"]
 
@@ -65,13 +66,21 @@ def _runs_in(folder: Path) -> list[RunDirectory]:
     return [RunDirectory(record.parent) for record in found if not record.parent.is_symlink()]
 
 
+def _ending_in_journal(run: RunDirectory) -> str:
+    """The ending of a run that has no summary, for want of space or because its aos-up was killed."""
+    try:
+        return account_of(run.path).verdict().ending or "killed"
+    except StorageError:
+        return "killed"
+
+
 def _entry(run: RunDirectory) -> Entry:
     try:
         record = run.read_record()
     except DeployError:
         return Entry(str(from_here(run.path)), "", "", "unreadable", None, None, "")
     summary = run.read_summary()
-    ending = summary.ending if summary else "running" if run.is_running else "killed"
+    ending = summary.ending if summary else "running" if run.is_running else _ending_in_journal(run)
     return Entry(
         directory=str(from_here(run.path)),
         robot=record.robot,

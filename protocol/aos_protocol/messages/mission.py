@@ -101,6 +101,9 @@ class MissionState(Message, frozen=True):
     `skills_failed`, `cancelled`, `fault`, or empty while it runs. The first three are what the belief holds
     for sure enough: how the world has really ended, nobody tells the robot. `remark` is one line for people.
     `epoch` counts the starts of the mission's solver, and is 0 before the mission has begun.
+
+    A mission that does not end by itself is ended in the journal by aos-up: as `cancelled`, as `fault`, or as
+    `not_started` where nothing was decided. `code` is that of the fault.
     """
 
     mission: str
@@ -111,6 +114,7 @@ class MissionState(Message, frozen=True):
     remark: str = ""
     revision: int = 0
     epoch: int = 0
+    code: str = ""
 
 
 class ActionValue(Message, frozen=True):

