@@ -25,7 +25,7 @@ MISSION_KINDS: dict[str, type[DecisionRecord] | type[MissionState]] = {
 
 
 class Verdict(msgspec.Struct, frozen=True, kw_only=True):
-    """How a run ended; the `ending` is empty where it goes on, or where its `aos-up` was killed.
+    """The end of a run; the `ending` is empty where it goes on, or where its `aos-up` was killed.
 
     The endings are those of a mission, and `not_started` where a fault came before the first decision.
     `actions` and `responses` are those of the steps. The probabilities are those of the last belief:
@@ -115,7 +115,7 @@ class Account:
 
 
 def message_of_row(row: JournalRow) -> DecisionRecord | MissionState | None:
-    """What a row tells of how the mission went, None of the others; StorageError AOS702 if it is damaged."""
+    """The decision or state in a row, None in those of other kinds; StorageError AOS702 if it is damaged."""
     kind = MISSION_KINDS.get(row.kind)
     if kind is None:
         return None

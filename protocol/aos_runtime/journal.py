@@ -135,7 +135,7 @@ class Journal:
         return list(self.walk(kind, since))
 
     def walk(self, kind: str | None = None, since: int = 0) -> Iterator[JournalRow]:
-        """As `rows`, one after the other, so that a long journal need not fit into memory."""
+        """Yields the same rows one after the other, so that a long journal need not fit into memory."""
         try:
             for seq, stamp_ns, of_kind, text in self._connection.execute(
                 "SELECT seq, stamp_ns, kind, payload FROM entries"
