@@ -29,7 +29,7 @@ class BuildForRobots(build_py):
 
     def find_package_modules(self, package: str, package_dir: str) -> list[tuple[str, str, str]]:
         found = super().find_package_modules(package, package_dir)
-        return [each for each in found if each[1] not in NOT_FOR_ROBOTS]
+        return [module for module in found if module[1] not in NOT_FOR_ROBOTS]
 
     def run(self) -> None:
         super().run()

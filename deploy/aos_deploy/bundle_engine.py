@@ -35,7 +35,7 @@ async def engine_of_bundle(
             f"{bundle} has errors", hint="Mend the places named above", diagnostics=loaded.diagnostics
         )
     # Remarks are for `aos lint`: here they would be told with every run.
-    for diagnostic in (each for each in loaded.diagnostics if each.severity is not Severity.REMARK):
+    for diagnostic in (finding for finding in loaded.diagnostics if finding.severity is not Severity.REMARK):
         typer.echo(render(diagnostic), err=True)
     try:
         built = await build_project(

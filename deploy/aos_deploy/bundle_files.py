@@ -19,7 +19,7 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
     """The documents in a bundle's folder or archive by name, without those of skills that are left out."""
     files, remarks = read_bundle_files(bundle)
     if has_errors(remarks):
-        found = tuple(each for each in remarks if each.is_error)
+        found = tuple(remark for remark in remarks if remark.is_error)
         raise DocumentError(f"the bundle {bundle} cannot be read", code=found[0].code, diagnostics=found)
     skills = skills_of_files(files) if leave_out else {}
     return {name: data for name, data in files.items() if skills.get(name) not in leave_out}

@@ -230,7 +230,7 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         hint = "Write it with aos solve"
         findings.error("AOS101", f"there is no policy file {policy}", _place(node, "solver", "policy"), hint)
     adapters = read_adapters(node, findings, str(world) if world else "")
-    check_programs(file.programs, node, findings, (*TAKEN, *file.adapters, *(each.name for each in adapters)))
+    check_programs(file.programs, node, findings, (*TAKEN, *file.adapters, *(plan.name for plan in adapters)))
     return Deployment(
         path=path,
         file=file,

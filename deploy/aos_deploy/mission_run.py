@@ -174,8 +174,8 @@ class MissionRun:
             progress.cancel()
 
     async def _follow_progress(self, supervisor: Supervisor) -> None:
-        async with supervisor.bus.listen(supervisor.keys.all_progress, SkillProgress) as told:
-            async for _, progress in told:
+        async with supervisor.bus.listen(supervisor.keys.all_progress, SkillProgress) as reports:
+            async for _, progress in reports:
                 self._report(progress)
 
     async def _follow_mission(self, supervisor: Supervisor) -> None:

@@ -76,14 +76,14 @@ class ProgramPart(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def check_programs(
-    programs: dict[str, ProgramPart], node: YamlMap, findings: Findings, taken: Iterable[str]
+    programs: dict[str, ProgramPart], node: YamlMap, findings: Findings, other_names: Iterable[str]
 ) -> None:
-    """Adds findings about what the types alone cannot say. `taken` are the names of adapters and services."""
+    """Adds findings about what the types alone cannot say. `other_names` are those of other processes."""
     given = node.entries.get("programs")
     places = given.keys if isinstance(given, YamlMap) else {}
     for name, part in programs.items():
         where = places[name]
-        if not _NAME.fullmatch(name) or name in taken:
+        if not _NAME.fullmatch(name) or name in other_names:
             hint = "Use letters, digits, - and _, and no name of an adapter or a service"
             findings.error("AOS126", f"{name!r} is no name for a program", where, hint)
         if not part.command:
@@ -96,8 +96,8 @@ def check_programs(
             hint = "It is a folder on the other host; without a host the deploy file's folder is meant"
             findings.error("AOS106", f"programs.{name}.folder is given without a host", where, hint)
         if part.ready is not None:
-            told = plain_value(given).get(name, {}).get("ready") if given is not None else None
-            _check_ready(name, part, part.ready, where, findings, is_empty=not told)
+            given_ready = plain_value(given).get(name, {}).get("ready") if given is not None else None
+            _check_ready(name, part, part.ready, where, findings, is_empty=not given_ready)
 
 
 def _check_ready(

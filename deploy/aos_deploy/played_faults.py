@@ -48,10 +48,10 @@ class PlayedFaults(msgspec.Struct, frozen=True):
 
     def drawn(self, skill: str, seed: int, step: int) -> str:
         """The fault of this step's call, or nothing. A mission's seed and its step decide about it alone."""
-        left = random.Random(f"fault {seed} {step}").random()
+        draw = random.Random(f"fault {seed} {step}").random()
         for fault, chance in self._of(skill).items():
-            left -= chance
-            if left < 0:
+            draw -= chance
+            if draw < 0:
                 return fault
         return ""
 

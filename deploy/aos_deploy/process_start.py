@@ -23,13 +23,13 @@ async def start_process(program: Program, base: ServiceSettings, run: RunDirecto
     """The process. `base` says robot, endpoint, run directory. DeployError AOS802 if it cannot be started."""
     own = msgspec.structs.replace(base, service=program.name)
     settings = run.write_settings(program.name, settings_of(program, own))
-    told = {"AOS_ENDPOINT": base.endpoint, "AOS_ROBOT": base.robot, "PYTHONUNBUFFERED": "1"}
+    environment = {"AOS_ENDPOINT": base.endpoint, "AOS_ROBOT": base.robot, "PYTHONUNBUFFERED": "1"}
     if not program.is_own:
-        told |= {"AOS_SETTINGS": str(settings), "AOS_ADAPTER": program.name}
+        environment |= {"AOS_SETTINGS": str(settings), "AOS_ADAPTER": program.name}
     with run.open_log(program.name) as log:
         if program.host:
             check_ssh(program.name, program.host)
-            command = remote_command(program, base.endpoint, told, settings)
+            command = remote_command(program, base.endpoint, environment, settings)
             # Its input stays open: when that ends, so does the program over there.
             return await Child.start(
                 guarded(command, Limits(grace_s=program.stop_s)),
@@ -42,7 +42,7 @@ async def start_process(program: Program, base: ServiceSettings, run: RunDirecto
             program.argv(settings),
             name=program.name,
             cwd=program.folder,
-            env=told if program.command else None,
+            env=environment if program.command else None,
             stdout=log,
             stderr=log,
         )

@@ -71,7 +71,7 @@ def _reached(diagnostic: Diagnostic, is_fault: bool) -> Diagnostic:
 def _goal_span(environment: Environment) -> Span | None:
     """The first special state that may be a goal."""
     for special in environment.special_states:
-        code = " ".join(each.code.code for each in special.code if each.code is not None)
+        code = " ".join(part.code.code for part in special.code if part.code is not None)
         is_goal = special.is_goal and not special.is_failure
         if (is_goal and (special.is_failure is False or special.reward > 0)) or "__isGoalState" in code:
             return special.span

@@ -76,13 +76,15 @@ def check_ssh(adapter: str, host: str) -> None:
         )
 
 
-def remote_command(program: Program, endpoint: str, told: Mapping[str, str], settings: Path) -> list[str]:
+def remote_command(
+    program: Program, endpoint: str, variables: Mapping[str, str], settings: Path
+) -> list[str]:
     """The ssh that runs a program on its host until its input ends.
 
-    The command finds the environment `told`, with the bus's port on its own side, and the settings in a file.
+    The command finds `variables`, with the bus's port on its own side, and the settings in a file.
     """
     port = random.SystemRandom().randrange(*_PORTS)
-    environment = {**told, "AOS_ENDPOINT": f"tcp/127.0.0.1:{port}"}
+    environment = {**variables, "AOS_ENDPOINT": f"tcp/127.0.0.1:{port}"}
     environment.pop("AOS_SETTINGS", None)
     first, *arguments = program.command
     first = "python3" if first == "python" else first
@@ -119,7 +121,7 @@ def why_it_failed(name: str, host: str, status: int, said: list[str]) -> DeployE
         )
     if status != _SSH_FAILED:
         return None
-    hint = next((each for sign, each in _HINTS.items() if any(sign in line for line in said)), "")
+    hint = next((meaning for sign, meaning in _HINTS.items() if any(sign in line for line in said)), "")
     return DeployError(
         f"{name}: {host} cannot be reached by ssh: {text or 'it says nothing'}",
         code="AOS802",

@@ -128,9 +128,9 @@ class Supervisor:
 
         DeployError AOS802 if a process cannot be started. Nobody else may listen at the endpoint.
         """
-        later = [each for each in self._programs if each.command]
-        if any(each.is_own for each in later):
-            later = [each for each in self._programs if each.command or each.is_adapter]
+        later = [program for program in self._programs if program.command]
+        if any(program.is_own for program in later):
+            later = [program for program in self._programs if program.command or program.is_adapter]
         for program in (ROUTER, *self._programs):
             if program not in later:
                 await self._spawn(program)
@@ -143,7 +143,7 @@ class Supervisor:
 
     async def _start_in_order(self, programs: list[Program]) -> None:
         """Each program of the user's own when those before it are ready, then the adapters."""
-        for program in sorted(programs, key=lambda each: not each.is_own):
+        for program in sorted(programs, key=lambda program: not program.is_own):
             if program.is_own:
                 await check_port_is_free(program.name, program.ready)
             else:
@@ -290,9 +290,9 @@ class Supervisor:
         return GIVEN_UP if was_ready and self._has_other_adapters(running) else THE_RUN_ENDS
 
     def _has_other_adapters(self, running: _Running) -> bool:
-        others = (each for each in self._running.values() if each is not running)
+        others = (other for other in self._running.values() if other is not running)
         return running.program.is_adapter and any(
-            each.program.is_adapter and each.child.returncode is None for each in others
+            other.program.is_adapter and other.child.returncode is None for other in others
         )
 
     def _end_of(self, running: _Running, status: int) -> AosError:

@@ -59,11 +59,14 @@ def tokens_of(name: str, text: str, occurrences: Iterable[Occurrence]) -> list[T
     if suffix not in GRAMMARS:
         return []
     tokens = {
-        (each.span.line, each.span.column - 1): _KINDS[each.symbol.kind]
-        for each in occurrences
-        if each.symbol.kind is not SymbolKind.SKILL or not each.is_declaration
+        (occurrence.span.line, occurrence.span.column - 1): _KINDS[occurrence.symbol.kind]
+        for occurrence in occurrences
+        if occurrence.symbol.kind is not SymbolKind.SKILL or not occurrence.is_declaration
     }
-    lengths = {(each.span.line, each.span.column - 1): len(each.symbol.name) for each in occurrences}
+    lengths = {
+        (occurrence.span.line, occurrence.span.column - 1): len(occurrence.symbol.name)
+        for occurrence in occurrences
+    }
     found = {place: Token(*place, lengths[place], kind) for place, kind in tokens.items()}
     for section in parse_sdl(Source(name, text), GRAMMARS[suffix], {}, Findings()):
         for part in (section, *section.parts):

@@ -31,8 +31,10 @@ def references(
     bundle: Bundle, at: Occurrence, folder: Path, lines: Lines, codec: PositionCodec, *, declares: bool
 ) -> list[types.Location]:
     """Returns the places where the symbol stands, with its declaration if that is wanted."""
-    found = (each for each in bundle.of(at.symbol) if declares or not each.is_declaration)
-    return [place for each in found if (place := _location(each, folder, lines, codec)) is not None]
+    found = (occurrence for occurrence in bundle.of(at.symbol) if declares or not occurrence.is_declaration)
+    return [
+        place for occurrence in found if (place := _location(occurrence, folder, lines, codec)) is not None
+    ]
 
 
 def renamed(
@@ -44,7 +46,9 @@ def renamed(
     for file, occurrences in files_of(bundle.of(at.symbol)).items():
         uri = from_fs_path(str(folder / file))
         if uri is not None:
-            changes[uri] = [types.TextEdit(_range(each, lines, codec), new_name) for each in occurrences]
+            changes[uri] = [
+                types.TextEdit(_range(occurrence, lines, codec), new_name) for occurrence in occurrences
+            ]
     return types.WorkspaceEdit(changes)
 
 

@@ -65,7 +65,7 @@ class BundleServer(LanguageServer):
     def __init__(self) -> None:
         super().__init__("aos", __version__)
         self._pending: dict[Path, asyncio.TimerHandle] = {}
-        self._told: dict[Path, set[str]] = {}
+        self._files_with_findings: dict[Path, set[str]] = {}
         self._found: dict[str, list[Diagnostic]] = {}
 
     def check_soon(self, uri: str) -> None:
@@ -123,15 +123,15 @@ class BundleServer(LanguageServer):
         self._pending.pop(folder, None)
         open_texts = dict(self._open_texts(folder))
         checked = check_folder(folder, open_texts) if open_texts else {}
-        told = {name for name, (_, found) in checked.items() if found}
-        for name in sorted(told | self._told.get(folder, set())):
+        with_findings = {name for name, (_, found) in checked.items() if found}
+        for name in sorted(with_findings | self._files_with_findings.get(folder, set())):
             lines, found = checked.get(name, ([""], []))
-            items = [_diagnostic(each, lines, self.codec) for each in found]
+            items = [_diagnostic(diagnostic, lines, self.codec) for diagnostic in found]
             uri = from_fs_path(str(folder / name))
             if uri is not None:
                 self._found[uri] = found
                 self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, items))
-        self._told[folder] = told
+        self._files_with_findings[folder] = with_findings
 
     def _open_texts(self, folder: Path) -> Iterator[tuple[str, str]]:
         for document in self.workspace.text_documents.values():

@@ -82,19 +82,19 @@ class Bundle(msgspec.Struct, frozen=True):
 
     def at(self, file: str, line: int, column: int) -> Occurrence | None:
         """The name at a place (line from 1, column from 0)."""
-        for each in self.occurrences:
-            start = each.span.column - 1
-            if (each.span.file, each.span.line) == (file, line) and (
-                start <= column <= start + len(each.symbol.name)
+        for occurrence in self.occurrences:
+            start = occurrence.span.column - 1
+            if (occurrence.span.file, occurrence.span.line) == (file, line) and (
+                start <= column <= start + len(occurrence.symbol.name)
             ):
-                return each
+                return occurrence
         return None
 
     def of(self, symbol: Symbol) -> list[Occurrence]:
-        return [each for each in self.occurrences if each.symbol == symbol]
+        return [occurrence for occurrence in self.occurrences if occurrence.symbol == symbol]
 
     def definition(self, symbol: Symbol) -> Occurrence | None:
-        return next((each for each in self.of(symbol) if each.is_declaration), None)
+        return next((occurrence for occurrence in self.of(symbol) if occurrence.is_declaration), None)
 
     def check_rename(self, symbol: Symbol, new_name: str) -> None:
         """UnrenamableError where the bundle would mean something else, or nothing, with the new name."""
@@ -125,8 +125,8 @@ def read_bundle(folder: Path, open_texts: Mapping[str, str]) -> Bundle:
         fault.kind is not FaultKind.SYNTAX for _, block in blocks for fault in read_block(block).faults
     )
     unique: dict[tuple[Symbol, Span], Occurrence] = {}
-    for each in sorted(found, key=lambda each: (each.span, not each.is_declaration)):
-        unique.setdefault((each.symbol, each.span), each)
+    for occurrence in sorted(found, key=lambda occurrence: (occurrence.span, not occurrence.is_declaration)):
+        unique.setdefault((occurrence.symbol, occurrence.span), occurrence)
     environment = assembly.environment
     reported: set[str] = set()
     if environment is not None:
@@ -160,9 +160,9 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
                 yield from typed(field.type, field.type_span if field.type in types else None)
         if (snippet := environment.shared_code) is not None:
             shared = shared_code_of(environment)
-            for each in (*shared.names, *shared.functions):
-                extent = each.name_extent
-                yield declared(SymbolKind.SHARED, each.name, snippet.locate(extent.line, extent.column))
+            for item in (*shared.names, *shared.functions):
+                extent = item.name_extent
+                yield declared(SymbolKind.SHARED, item.name, snippet.locate(extent.line, extent.column))
         for variable in environment.variables:
             yield declared(SymbolKind.VARIABLE, variable.name, variable.span)
             yield from typed(variable.type, variable.type_span if variable.type in types else None)
@@ -264,7 +264,7 @@ class _BlockNames:
         """The place of a path's part: the words of the text between its start and its end, in order."""
         text = self._cpp.code[mention.extent.start : mention.extent.end]
         before = sum(part == symbol.name for part in mention.path[:index])
-        places = [each for each in re.finditer(r"\w+", text) if each.group() == symbol.name]
+        places = [word for word in re.finditer(r"\w+", text) if word.group() == symbol.name]
         if before < len(places):
             start = mention.extent.start + places[before].start()
             line = self._cpp.code.count("\n", 0, start) + 1
@@ -319,6 +319,6 @@ def _python(mapping: AbstractionMapping) -> Iterator[Occurrence]:
 def files_of(occurrences: Iterable[Occurrence]) -> dict[str, list[Occurrence]]:
     """Occurrences by file."""
     by_file: dict[str, list[Occurrence]] = {}
-    for each in occurrences:
-        by_file.setdefault(each.span.file, []).append(each)
+    for occurrence in occurrences:
+        by_file.setdefault(occurrence.span.file, []).append(occurrence)
     return by_file

@@ -15,7 +15,7 @@ async def main(endpoint: str = "tcp/127.0.0.1:7447", robot: str = "armadillo") -
     async with AosClient.connect(endpoint, robot) as aos:
         async for record in aos.decisions():
             if record.outcome is None:
-                values = {each.action: round(each.q, 2) for each in record.actions}
+                values = {action.action: round(action.q, 2) for action in record.actions}
                 print(f"step {record.step}: {record.planner} chose {record.action}, of {values}")
             else:
                 goal = record.belief.goal_probability

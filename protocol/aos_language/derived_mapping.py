@@ -41,20 +41,20 @@ def derived_mapping(model: SkillModel, environment: Environment | None) -> Abstr
     """The mapping of a skill that has only a skill document. Its parts stand at places of that document."""
     numbers = reported_numbers(model)
     used = [number.name for number in numbers]
-    taken: dict[str, str] = {}
+    variable_names: dict[str, str] = {}
     for parameter in model.parameters:
-        taken[parameter.name] = _free(parameter.name, used)
-        used.append(taken[parameter.name])
+        variable_names[parameter.name] = _free(parameter.name, used)
+        used.append(variable_names[parameter.name])
     response = _free(RESPONSE_FIELD, used)
     locals_ = [
         LocalVariable(
-            taken[each.name],
+            variable_names[parameter.name],
             LocalSource.PARAMETER,
-            each.span,
-            parameter_path=each.name,
-            source_span=each.span,
+            parameter.span,
+            parameter_path=parameter.name,
+            source_span=parameter.span,
         )
-        for each in model.parameters
+        for parameter in model.parameters
     ]
     responses = _responses(model, environment)
     has_text = _has_text_response(model)
@@ -73,8 +73,8 @@ def derived_mapping(model: SkillModel, environment: Environment | None) -> Abstr
             f"/{model.name}",
             model.span,
             fields=tuple(
-                ActivationField(each.name, Snippet(taken[each.name], (each.span,)))
-                for each in model.parameters
+                ActivationField(parameter.name, Snippet(variable_names[parameter.name], (parameter.span,)))
+                for parameter in model.parameters
             ),
         ),
         rules=tuple(
@@ -118,9 +118,11 @@ def _responses(model: SkillModel, environment: Environment | None) -> dict[str, 
     for assignment in model.dynamic_model:
         if (temporary := assignment.temporary) is not None:
             known |= {temporary.name, temporary.enum_name, *temporary.enum_values}
-    declared = {each.name: each.kind for _, cpp in read for each in cpp.declarations}
+    declared = {declaration.name: declaration.kind for _, cpp in read for declaration in cpp.declarations}
     variables = {name for name, kind in declared.items() if kind is DeclarationKind.VARIABLE}
-    variables |= {each.temporary.name for each in model.dynamic_model if each.temporary is not None}
+    variables |= {
+        assignment.temporary.name for assignment in model.dynamic_model if assignment.temporary is not None
+    }
     found: dict[str, Span] = {}
     # A variable that becomes the response has responses as its values in turn.
     holders = ["__moduleResponse"]
@@ -136,8 +138,8 @@ def _responses(model: SkillModel, environment: Environment | None) -> dict[str, 
 
 def _values_of(variable: str, cpp: Cpp) -> Iterator[tuple[str, int]]:
     """The lone names that a variable is set to, with their offsets in the snippet."""
-    extents = [each.initial for each in cpp.declarations if each.name == variable]
-    extents += [each.assigned for each in cpp.mentions if each.path == (variable,)]
+    extents = [declaration.initial for declaration in cpp.declarations if declaration.name == variable]
+    extents += [mention.assigned for mention in cpp.mentions if mention.path == (variable,)]
     for extent in extents:
         if extent is not None:
             text = cpp.code[extent.start : extent.end]

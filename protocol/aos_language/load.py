@@ -76,7 +76,9 @@ def load_files(
     check(assembly, findings)
     project = None if findings.has_errors else assembly.project()
     digests = {file: hashlib.sha256(files[file]).hexdigest() for file in documents}
-    versions = {file: each.version.text for file, each in documents.items() if each.version is not None}
+    versions = {
+        file: document.version.text for file, document in documents.items() if document.version is not None
+    }
     digest = bundle_digest(files, documents)
     return LoadedBundle(project, (*remarks, *findings.sorted()), digest, digests, versions)
 

@@ -48,9 +48,9 @@ def merge(
         for name, data in current.items()
         if name not in current_documents or current_documents[name].identity not in identities
     }
-    taken = [name for name in new if name in kept and name in new_documents]
-    diagnostics = [_name_taken(name, current_documents[name]) for name in sorted(taken)]
-    stored = {each.identity: (name, each) for name, each in current_documents.items()}
+    in_both = [name for name in new if name in kept and name in new_documents]
+    diagnostics = [_name_taken(name, current_documents[name]) for name in sorted(in_both)]
+    stored = {document.identity: (name, document) for name, document in current_documents.items()}
     for name, document in new_documents.items():
         old_name, old = stored.get(document.identity, ("", None))
         if old is not None and _has_name(document) and current[old_name] != new[name]:

@@ -331,11 +331,11 @@ class Bus:
         """Returns when `answer` is there; it is settled as lost once nobody serves its key."""
         is_served = True
         while is_served:
-            ends: set[asyncio.Future[Any]] = {answer, watch.left}
+            ends: set[asyncio.Future[Any]] = {answer, watch.has_left}
             await asyncio.wait(ends, timeout=_UNANSWERED_S, return_when=asyncio.FIRST_COMPLETED)
             if answer.done():
                 return
-            is_served = not watch.left.done() and (not await self._has_gone_round() or watch.is_served)
+            is_served = not watch.has_left.done() and (not await self._has_gone_round() or watch.is_served)
         # An answer that was under way when its giver left comes first.
         await asyncio.wait({answer}, timeout=_UNANSWERED_S)
         if not answer.done():

@@ -30,7 +30,7 @@ async def state_when(
     LateAnswerError if no such state is told within `timeout_s`, BusError AOS605 if the bus is left.
     """
     try:
-        async with timeout(timeout_s), bus.listen(key, kind) as told:
+        async with timeout(timeout_s), bus.listen(key, kind) as states:
             try:
                 state = await bus.ask(key, question, kind, timeout_s=min(timeout_s, _QUESTION_S))
             except _IS_AWAY:
@@ -38,7 +38,7 @@ async def state_when(
             else:
                 if holds(state):
                     return state
-            async for _, state in told:
+            async for _, state in states:
                 if holds(state):
                     return state
     except TimeoutError:

@@ -23,7 +23,7 @@ class ServerWatch:
 
     def __init__(self, session: zenoh.Session, key: str) -> None:
         loop = asyncio.get_running_loop()
-        self.left: asyncio.Future[None] = loop.create_future()
+        self.has_left: asyncio.Future[None] = loop.create_future()
 
         def on_change(status: Any) -> None:  # Zenoh's stub names no type.
             if not status.matching:
@@ -54,5 +54,5 @@ class ServerWatch:
 
     def _leave(self) -> None:
         if not self._is_ended:
-            self.left.set_result(None)
+            self.has_left.set_result(None)
             self.end()

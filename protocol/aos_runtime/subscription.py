@@ -82,8 +82,8 @@ def merged(*subscriptions: Subscription[Any], queue_size: int = 1000) -> Subscri
         undeclare = [await subscription._declare(into) for subscription in subscriptions]
 
         def undeclare_all() -> None:
-            for each in undeclare:
-                each()
+            for end in undeclare:
+                end()
 
         return undeclare_all
 

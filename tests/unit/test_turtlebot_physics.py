@@ -93,7 +93,7 @@ def test_while_it_turns_it_sees_nothing_but_what_is_on_the_map(make: Make) -> No
     for _ in range(20):
         world.sensors()
         world.scene.wait(0.05)
-        assert world.floor_map.distance(world.robot.seen()).max() < UNMAPPED_M
+        assert world.floor_map.distance(world.robot.seen_points()).max() < UNMAPPED_M
 
 
 def test_a_lost_report_says_failed_where_the_robot_arrived(make: Make) -> None:

@@ -160,7 +160,7 @@ def _python_modules(project: Project, only: str) -> str:
         raise typer.BadParameter(f"the skills are {', '.join(names)}", param_hint="--skill")
     chosen = [skill for skill in project.skills if only in ("", skill.name)]
     shared = project.environment.shared_mapping_code
-    return "\n\n".join(emit_mapping(each, project.low_level, shared=shared).python for each in chosen)
+    return "\n\n".join(emit_mapping(skill, project.low_level, shared=shared).python for skill in chosen)
 
 
 def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:

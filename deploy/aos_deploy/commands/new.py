@@ -164,7 +164,10 @@ def _check_name(name: str, kind: str) -> None:
 def _filled(kind: str, **names: str) -> dict[str, str]:
     """The templates of a kind by file name, with the names put in."""
     folder = files("aos_deploy") / "templates" / kind
-    return {each.name: Template(each.read_text("utf-8")).substitute(names) for each in folder.iterdir()}
+    return {
+        template.name: Template(template.read_text("utf-8")).substitute(names)
+        for template in folder.iterdir()
+    }
 
 
 def _in_dialect(texts: dict[str, str], dialect: Dialect) -> dict[str, str]:

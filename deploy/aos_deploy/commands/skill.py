@@ -138,13 +138,13 @@ def cancel(
     """Stop what moves; the mission goes on with that outcome."""
 
     async def work(aos: AosClient) -> None:
-        paths = [path] if path else sorted({each.path for each in await _servers(aos)})
-        answers = await asyncio.gather(*(_stop(aos, each) for each in paths), return_exceptions=True)
-        stopped = {each for answer in answers if isinstance(answer, Cancelled) for each in answer.ids}
+        paths = [path] if path else sorted({server.path for server in await _servers(aos)})
+        answers = await asyncio.gather(*(_stop(aos, served) for served in paths), return_exceptions=True)
+        stopped = {id for answer in answers if isinstance(answer, Cancelled) for id in answer.ids}
         typer.echo(f"stopped {', '.join(sorted(stopped))}" if stopped else "nothing was moving")
-        for each in answers:
-            if isinstance(each, AosError) and path:
-                raise each
+        for answered in answers:
+            if isinstance(answered, AosError) and path:
+                raise answered
 
     system.do(work)
 
@@ -198,11 +198,11 @@ async def _stop(aos: AosClient, path: str, id: ActivationId | None = None) -> Ca
 
 
 async def _tell(progress: Subscription[tuple[str, SkillProgress]], as_json: bool) -> None:
-    async for _, each in progress:
+    async for _, report in progress:
         if as_json:
-            typer.echo(msgspec.json.encode(each), err=True)
+            typer.echo(msgspec.json.encode(report), err=True)
         else:
-            typer.echo(f"{each.state:10} {each.progress:4.0%}  {each.text}", err=True)
+            typer.echo(f"{report.state:10} {report.progress:4.0%}  {report.text}", err=True)
 
 
 def _row(skill: str, path: str, state: MappingState, servers: list[Serving]) -> dict[str, Any]:
@@ -210,7 +210,7 @@ def _row(skill: str, path: str, state: MappingState, servers: list[Serving]) -> 
     return {
         "skill": skill,
         "path": path,
-        "served_by": [f"{each.adapter} {each.version}" for each in servers if each.path == path],
+        "served_by": [f"{server.adapter} {server.version}" for server in servers if server.path == path],
         "unavailable": state.unavailable.get(skill, ""),
     }
 

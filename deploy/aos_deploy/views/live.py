@@ -144,18 +144,18 @@ class Screen:
 
     def _of_the_skill(self) -> Text:
         """Shows how far the skill of this step is; empty before a skill says so, and when it has ended."""
-        state, told = self.state, self.progress
-        if state is None or told is None or state.phase != "acting" or told.state not in _RUNNING:
+        state, progress = self.state, self.progress
+        if state is None or progress is None or state.phase != "acting" or progress.state not in _RUNNING:
             return Text()
-        is_of_this_step = (told.id.mission, told.id.step) == (state.mission, state.step)
-        return Text("  ").append_text(progress_text(told)) if is_of_this_step else Text()
+        is_of_this_step = (progress.id.mission, progress.id.step) == (state.mission, state.step)
+        return Text("  ").append_text(progress_text(progress)) if is_of_this_step else Text()
 
     def _step_remark(self, shown: list[int]) -> Iterator[Text]:
         """Yields the remark of the newest of the steps that has one."""
         remarked = [step for step in shown if self.steps[step].remark]
         if remarked:
-            told = f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}"
-            yield Text(told, style="yellow", no_wrap=True, overflow="ellipsis")
+            text = f"step {remarked[-1]}: {self.steps[remarked[-1]].remark}"
+            yield Text(text, style="yellow", no_wrap=True, overflow="ellipsis")
 
 
 class LiveView:

@@ -13,13 +13,13 @@ __all__ = ["at_least_text", "at_most_text", "observation_text", "value_text"]
 
 def observation_text(response: str, numbers: Mapping[str, Any]) -> str:
     """`scanned (beams = 1.2 3.4, tilt = 0.12)`; a number that is missing in an array is a dash."""
-    told = ", ".join(f"{name} = {_numbers(value)}" for name, value in numbers.items())
-    return f"{response} ({told})" if told else response
+    shown = ", ".join(f"{name} = {_numbers(value)}" for name, value in numbers.items())
+    return f"{response} ({shown})" if shown else response
 
 
 def _numbers(value: Any) -> str:
     values = value if isinstance(value, list | tuple) else [value]
-    return " ".join("-" if each is None else f"{each:.4g}" for each in values)
+    return " ".join("-" if element is None else f"{element:.4g}" for element in values)
 
 
 def value_text(value: float, digits: int) -> str:

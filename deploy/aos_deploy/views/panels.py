@@ -61,12 +61,12 @@ def value_table(record: DecisionRecord, width: int, rows: int) -> Table:
     table.add_column("action", no_wrap=True)
     risks = _risks(record)
     has_bounds = width >= _WIDE and any(
-        each.at_least is not None or each.at_most is not None for each in record.actions
+        action.at_least is not None or action.at_most is not None for action in record.actions
     )
     bounds = ["at least", "at most"] if has_bounds else []
     for column in ("value", "±", *bounds, "visits", *(["risk"] if risks else [])):
         table.add_column(column, justify="right", no_wrap=True)
-    best: list[ActionValue] = sorted(record.actions, key=lambda each: -each.q)
+    best: list[ActionValue] = sorted(record.actions, key=lambda action: -action.q)
     shown = best if len(best) <= rows else best[: max(rows - 1, 1)]
     names = _fitting([value.action for value in shown], width - 30 - (_BOUNDS_CELLS if has_bounds else 0))
     for value, name in zip(shown, names, strict=True):
@@ -84,12 +84,12 @@ def _risks(record: DecisionRecord) -> dict[str, str]:
     """Returns for each action the most that it risks of any constraint, and whether that is too much."""
     if not record.constraints:
         return {}
-    told = {}
+    texts = {}
     for number, value in enumerate(record.actions):
-        is_barred = any(each.risks[number] > each.left for each in record.constraints)
-        most = max(each.risks[number] for each in record.constraints)
-        told[value.action] = f"{most:.3g}{' too much' if is_barred else ''}"
-    return told
+        is_barred = any(constraint.risks[number] > constraint.left for constraint in record.constraints)
+        most = max(constraint.risks[number] for constraint in record.constraints)
+        texts[value.action] = f"{most:.3g}{' too much' if is_barred else ''}"
+    return texts
 
 
 def belief_bars(belief: BeliefSummary, rows: int) -> Table:
@@ -118,10 +118,10 @@ def belief_lines(belief: BeliefSummary, width: int, rows: int) -> list[Text]:
     lines: list[Text] = []
     for marginal in doubtful:
         likely = list(marginal.values.items())[:_SHOWN_VALUES]
-        told = " ".join(
+        values_text = " ".join(
             value if probability > 0.9995 else f"{value} {probability:.2f}" for value, probability in likely
         )
-        item = Text.assemble((f"{marginal.variable} ", "dim"), told)
+        item = Text.assemble((f"{marginal.variable} ", "dim"), values_text)
         item.truncate(width, overflow="ellipsis")
         if lines and lines[-1].cell_len + 3 + item.cell_len <= width:
             lines[-1].append("   ").append(item)

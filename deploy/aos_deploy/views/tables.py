@@ -41,7 +41,7 @@ def print_values(values: list[ActionValue], simulations: int, title: str) -> Non
     # Bars give way first: actions often differ in their last letters only.
     action_width = min(max(len(value.action) for value in values), LONGEST_ACTION)
     has_room = action_width + NUMBERS_WIDTH + BOUNDS_WIDTH <= out.width
-    has_bounds = has_room and any(each.at_least is not None or each.at_most is not None for each in values)
+    has_bounds = has_room and any(value.at_least is not None or value.at_most is not None for value in values)
     numbers_width = NUMBERS_WIDTH + (BOUNDS_WIDTH if has_bounds else 0)
     bar_width = max(min(BAR_WIDTH, out.width - action_width - numbers_width), 1)
     table.add_column("action", overflow="fold", min_width=action_width)

@@ -25,16 +25,16 @@ __all__ = ["Calibration", "calibrate"]
 
 def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
     """Yields the places where the records contradict a number that is not to be estimated."""
-    for each in estimates:
-        excluded = [outcome for outcome in each.outcomes if outcome.is_excluded and not outcome.is_inside]
+    for found in estimates:
+        excluded = [outcome for outcome in found.outcomes if outcome.is_excluded and not outcome.is_inside]
         for outcome in excluded:
             yield (
-                f"{each.draw.span}: the documents exclude {outcome.outcome}, and the records have it "
+                f"{found.draw.span}: the documents exclude {outcome.outcome}, and the records have it "
                 f"{outcome.count:.0f} times: a weight of 0 is changed by hand only"
             )
-        if each.draw.is_initial and not each.is_inside and not excluded:
+        if found.draw.is_initial and not found.is_inside and not excluded:
             yield (
-                f"{each.draw.span}: this draw decides what there is at the start, and the records begin "
+                f"{found.draw.span}: this draw decides what there is at the start, and the records begin "
                 "otherwise: it is changed by hand only"
             )
 
@@ -83,7 +83,7 @@ async def calibrate(
     finally:
         await engine.close()
     estimates = estimate(draws.draws, lattices, on_sweep)
-    patch, by_hand = patch_of((each for each in estimates if each.is_contradicted), files, paths)
+    patch, by_hand = patch_of((estimate for estimate in estimates if estimate.is_contradicted), files, paths)
     return Calibration(
         missions=len(missions),
         steps=sum(lattice.steps for lattice in lattices),

@@ -170,9 +170,9 @@ class _Search:
         first = call.arguments[0]
         name = cpp.code[first.start : first.end].strip()
         local = [
-            each.name
-            for each in cpp.declarations
-            if each.kind is DeclarationKind.ENUMERATOR and each.type == name
+            enumerator.name
+            for enumerator in cpp.declarations
+            if enumerator.kind is DeclarationKind.ENUMERATOR and enumerator.type == name
         ]
         values = tuple(local) or self._enums.get(name, ())
         return (
@@ -211,7 +211,7 @@ def _weights(cpp: Cpp, call: Call) -> list[_Weight] | None:
     else:
         return None
     weights = [_weight(cpp, last.start + at, piece) for at, piece in pieces]
-    return [each for each in weights if each is not None] if all(weights) else None
+    return [weight for weight in weights if weight is not None] if all(weights) else None
 
 
 def _weight(cpp: Cpp, start: int, text: str) -> _Weight | None:
@@ -219,14 +219,14 @@ def _weight(cpp: Cpp, start: int, text: str) -> _Weight | None:
     use = _extent(cpp.code, start + len(text) - len(text.lstrip()), text.strip())
     if _NUMBER.fullmatch(text.strip()):
         return _Weight(use, use)
-    for each in cpp.declarations:
+    for declaration in cpp.declarations:
         if (
-            each.name == text.strip()
-            and each.initial is not None
-            and each.type.startswith(("const ", "constexpr "))
+            declaration.name == text.strip()
+            and declaration.initial is not None
+            and declaration.type.startswith(("const ", "constexpr "))
         ):
-            value = cpp.code[each.initial.start : each.initial.end]
-            return _Weight(use, each.initial) if _NUMBER.fullmatch(value) else None
+            value = cpp.code[declaration.initial.start : declaration.initial.end]
+            return _Weight(use, declaration.initial) if _NUMBER.fullmatch(value) else None
     return None
 
 

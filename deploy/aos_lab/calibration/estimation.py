@@ -77,7 +77,7 @@ class DrawEstimate(msgspec.Struct, frozen=True):
         possible = [outcome for outcome in self.outcomes if not outcome.is_excluded]
         if not self.count or len(possible) < 2 or self.draw.is_initial:
             return False
-        return any(not each.is_inside and _is_improbable(each, self.count) for each in possible)
+        return any(not outcome.is_inside and _is_improbable(outcome, self.count) for outcome in possible)
 
 
 class _Parameters:
@@ -178,7 +178,7 @@ def _alike(lattices: Sequence[Lattice]) -> list[tuple[Lattice, int]]:
     """Those that differ, and how many missions are like each: with few responses there are few."""
     found: dict[bytes, tuple[Lattice, int]] = {}
     for lattice in lattices:
-        key = b"|".join(each.tobytes() for each in (lattice.start, *lattice.links, *lattice.drawn))
+        key = b"|".join(array.tobytes() for array in (lattice.start, *lattice.links, *lattice.drawn))
         found[key] = (lattice, found.get(key, (lattice, 0))[1] + 1)
     return list(found.values())
 
@@ -226,7 +226,7 @@ def _of_draw(draw: Draw, counts: Numbers, random: np.random.Generator) -> DrawEs
             Estimate(outcome, float(hits.mean()), _interval(hits, totals, random), float(document[number]))
         )
     is_counted = bool((counts == counts[0]).all())
-    needed = max((_records_to_tell(each, totals.mean()) for each in estimates), default=0)
+    needed = max((_records_to_tell(estimate, totals.mean()) for estimate in estimates), default=0)
     return DrawEstimate(draw, float(totals.mean()), is_counted, tuple(estimates), needed)
 
 

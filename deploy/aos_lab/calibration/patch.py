@@ -39,7 +39,7 @@ def proposed_numbers(estimate: DrawEstimate) -> tuple[float, ...]:
     if estimate.draw.kind == "Bernoulli":
         return (shares[1],)
     largest = shares.index(max(shares))
-    others = sum(each for number, each in enumerate(shares) if number != largest)
+    others = sum(share for number, share in enumerate(shares) if number != largest)
     shares[largest] = round(1 - others, _DIGITS)
     return tuple(shares)
 
@@ -62,7 +62,7 @@ def patch_of(
     for name, changes in sorted(edits.items()):
         lines = files[name].decode("utf-8").splitlines(keepends=True)
         changed = list(lines)
-        for span, old, value in sorted(changes, key=lambda each: -each[0].column):
+        for span, old, value in sorted(changes, key=lambda change: -change[0].column):
             line, start = changed[span.line - 1], span.column - 1
             if line[start : start + len(old)] != old:
                 left_out.append(f"{span}: {old} has to become {value} by hand")

@@ -66,7 +66,9 @@ def _missions(path: Path) -> Iterator[RecordedMission]:
     elif (path / "journal.db").is_file():
         yield _of_run(path)
     elif path.is_dir():
-        for below in sorted(each for each in path.iterdir() if each.is_dir() and not each.is_symlink()):
+        for below in sorted(
+            folder for folder in path.iterdir() if folder.is_dir() and not folder.is_symlink()
+        ):
             yield from _missions(below)
 
 
@@ -81,11 +83,11 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
         if not trial.fault:
             trials[trial.seed] = trial
     for seed, trial in sorted(trials.items()):
-        told: list[tuple[str, str, dict[str, Any]]] = [
+        recorded: list[tuple[str, str, dict[str, Any]]] = [
             (action, response, {}) for action, response in zip(trial.actions, trial.responses, strict=True)
         ]
         yield msgspec.structs.replace(
-            _mission(f"{from_here(path.parent)}, seed {seed}", told, trial.states), seed=seed
+            _mission(f"{from_here(path.parent)}, seed {seed}", recorded, trial.states), seed=seed
         )
 
 
@@ -95,21 +97,23 @@ def _of_run(run: Path) -> RecordedMission:
         rows = [msgspec.json.decode(row.payload, type=DecisionRecord) for row in journal.rows("decision")]
     finally:
         journal.close()
-    told: list[tuple[str, str, dict[str, Any]]] = []
+    recorded: list[tuple[str, str, dict[str, Any]]] = []
     for record in rows:
         if record.outcome is not None:
             is_seen = record.outcome.status == "observed"
-            told.append((record.action, record.outcome.response if is_seen else "", record.outcome.numbers))
+            recorded.append(
+                (record.action, record.outcome.response if is_seen else "", record.outcome.numbers)
+            )
     lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
-    return _mission(str(from_here(run)), told, lines)
+    return _mission(str(from_here(run)), recorded, lines)
 
 
 def _mission(
-    name: str, told: Iterable[tuple[str, str, dict[str, Any]]], lines: Iterable[str]
+    name: str, recorded: Iterable[tuple[str, str, dict[str, Any]]], lines: Iterable[str]
 ) -> RecordedMission:
     truths = dict(_truths(lines))
     steps: list[RecordedStep] = []
-    for number, (action, response, numbers) in enumerate(told, 1):
+    for number, (action, response, numbers) in enumerate(recorded, 1):
         if not response:
             return RecordedMission(name, tuple(steps), f"step {number} brought no observation")
         steps.append(RecordedStep(action, response, truths.get(number, ()), numbers))
@@ -126,7 +130,7 @@ def _truths(lines: Iterable[str]) -> Iterator[tuple[int, tuple[tuple[str, str], 
         if isinstance(state, dict):
             yield step, tuple((name, _text(value)) for name, value in state.items())
         else:
-            pairs = (each.partition("=") for each in state.strip().split(", "))
+            pairs = (pair.partition("=") for pair in state.strip().split(", "))
             yield step, tuple((name, value) for name, mark, value in pairs if mark)
 
 

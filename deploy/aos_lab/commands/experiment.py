@@ -91,10 +91,10 @@ def run(
     results: list[PartResult] = []
     with progress() as bar:
         for by, number in wanted.items():
-            for key, each in parts.items() if number else ():
+            for key, setup in parts.items() if number else ():
                 task = bar.add_task(f"{key}, {by}", total=number)
                 # Faults are the simulated world's; the model's world has none.
-                setting = msgspec.structs.replace(each, by=by, faults={} if by == "model" else each.faults)
+                setting = msgspec.structs.replace(setup, by=by, faults={} if by == "model" else setup.faults)
                 played = asyncio.run(
                     play_campaign(
                         setting,
@@ -107,7 +107,7 @@ def run(
                         on_progress=lambda text: typer.echo(text, err=True),
                     )
                 )
-                result = result_of(key, each, by, played, experiment)
+                result = result_of(key, setup, by, played, experiment)
                 if by == "model" and experiment.optimum:
                     optimum = _known_optimum(folder / by / key, played.digest, setting, path.parent)
                     result = msgspec.structs.replace(result, regret=regret_of(optimum, played.trials))
@@ -117,7 +117,7 @@ def run(
                         picture = str(target.relative_to(folder))
                         result = msgspec.structs.replace(result, picture=picture)
                 results.append(result)
-    told = Results(
+    whole = Results(
         name=path.stem,
         title=experiment.title,
         about=experiment.about,
@@ -125,16 +125,16 @@ def run(
         surroundings=surroundings(),
         parts=tuple(results),
     )
-    (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(told), indent=2))
-    pages = write_report(told, draw_plots(told, folder / "plots"), folder)
+    (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(whole), indent=2))
+    pages = write_report(whole, draw_plots(whole, folder / "plots"), folder)
     if as_json:
-        print_json(told)
+        print_json(whole)
         return
     for result in results:
         for verdict in result.verdicts:
-            seen = verdict.word if verdict.is_seen else verdict.word.upper()
+            word = verdict.word if verdict.is_seen else verdict.word.upper()
             print(
-                f"{seen:8} {result.name} ({result.by}): {verdict.says}: {verdict.held} of {verdict.missions}"
+                f"{word:8} {result.name} ({result.by}): {verdict.says}: {verdict.held} of {verdict.missions}"
             )
     print(f"the report is in {from_here(pages[0])} and {from_here(pages[1])}")
 
@@ -177,7 +177,7 @@ def statistics(
             task = bar.add_task(key, total=number)
             # No two scripts have the same seeds.
             begin = first_seed + sum(
-                each.missions * repeat for each in list(file.parts.values())[: len(seeds)]
+                setup.missions * repeat for setup in list(file.parts.values())[: len(seeds)]
             )
             played = asyncio.run(
                 play_campaign(
@@ -192,7 +192,7 @@ def statistics(
             seeds[key] = f"{begin} to {begin + number - 1}"
             broken[key] = sum(bool(trial.fault) for trial in played.trials)
             wanted = {trial.seed for trial in played.trials if not trial.fault}
-            recorded = [each for each in read_missions(folder / key) if each.seed in wanted]
+            recorded = [mission for mission in read_missions(folder / key) if mission.seed in wanted]
             missions += recorded
             steps += steps_of(key, recorded)
     calibrations: dict[str, Calibration] = {}
@@ -217,8 +217,8 @@ def statistics(
         print_json(found)
         return
     for step in found.steps:
-        told = ", ".join(f"{response} {share.value:.2f}" for response, share in step.responses.items())
-        print(f"{step.part} {step.number} {step.action}: {told}")
+        shares = ", ".join(f"{response} {share.value:.2f}" for response, share in step.responses.items())
+        print(f"{step.part} {step.number} {step.action}: {shares}")
     print(f"the report is in {from_here(folder / 'report.md')}")
 
 

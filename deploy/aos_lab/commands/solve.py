@@ -184,12 +184,12 @@ async def _solve(
     with ExitStack() as until_bounds:
         until_bounds.enter_context(waiting("computing first bounds"))
 
-        def told(bounds: Bounds) -> None:
+        def show(bounds: Bounds) -> None:
             until_bounds.close()
             on_progress(bounds)
 
         try:
-            return await solve_model(model, limits, cache_dir=cache_dir(), on_progress=told, stop=stop)
+            return await solve_model(model, limits, cache_dir=cache_dir(), on_progress=show, stop=stop)
         finally:
             loop.remove_signal_handler(signal.SIGINT)
 
@@ -255,8 +255,8 @@ def _print_size(target: _Target) -> None:
 def _print_left_out(names: tuple[str, ...]) -> None:
     if names:
         more = f" and {len(names) - _TOLD_NAMES} more" if len(names) > _TOLD_NAMES else ""
-        told = f"{', '.join(names[:_TOLD_NAMES])}{more}"
-        typer.echo(f"left out, as they change neither what is earned nor what is observed: {told}")
+        listing = f"{', '.join(names[:_TOLD_NAMES])}{more}"
+        typer.echo(f"left out, as they change neither what is earned nor what is observed: {listing}")
 
 
 def _outwards(bounds: Bounds) -> tuple[float, float]:

@@ -91,5 +91,5 @@ def run_tests(
                 missions = failed_missions(verdict, test_result.trials) if not verdict.is_seen else []
                 for line in missions[:SHOWN_MISSIONS]:
                     print(f"         {line}")
-    if not all(each.passed for each in tested.values()):
+    if not all(test.passed for test in tested.values()):
         raise typer.Exit(ExitCode.MISSION_FAILED)

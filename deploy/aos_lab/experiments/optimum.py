@@ -77,5 +77,5 @@ def regret_of(optimum: Optimum, trials: Sequence[Trial]) -> Regret | None:
         return None
     scale = max(values) - min(values)
     middle = (optimum.lower + optimum.upper) / 2
-    share = Interval(*((middle - each) / scale for each in (mean.value, mean.high, mean.low)))
+    share = Interval(*((middle - value) / scale for value in (mean.value, mean.high, mean.low)))
     return Regret(optimum=optimum, value=mean, scale=scale, share=share)

@@ -43,12 +43,12 @@ class Statistics(msgspec.Struct, frozen=True, kw_only=True):
 def steps_of(part: str, missions: Sequence[RecordedMission]) -> Iterator[ScriptedStep]:
     """Yields the steps of whole missions of the same script."""
     for number, step in enumerate(missions[0].steps if missions else ()):
-        told = Counter(mission.steps[number].response for mission in missions)
+        counts = Counter(mission.steps[number].response for mission in missions)
         yield ScriptedStep(
             part=part,
             number=number + 1,
             action=step.action,
-            responses={name: interval_of_share(hits, len(missions)) for name, hits in told.most_common()},
+            responses={name: interval_of_share(hits, len(missions)) for name, hits in counts.most_common()},
             became=dict(Counter(_became(mission, number) for mission in missions).most_common()),
         )
 
@@ -78,8 +78,8 @@ def markdown_statistics(statistics: Statistics) -> str:
 def _steps(statistics: Statistics) -> Iterator[str]:
     yield from head("script", "step", "action", "response", "what it changed in the world")
     for step in statistics.steps:
-        told = ", ".join(f"{name} {shown(share)}" for name, share in step.responses.items())
-        yield row(step.part, str(step.number), step.action, told, tally(step.became))
+        shares = ", ".join(f"{name} {shown(share)}" for name, share in step.responses.items())
+        yield row(step.part, str(step.number), step.action, shares, tally(step.became))
 
 
 def _numbers(calibration: Calibration) -> Iterator[str]:

@@ -138,12 +138,12 @@ class _Action:
     """The tables with one action chosen, ready to be looked up."""
 
     def __init__(self, model: FactoredModel, chosen: Mapping[str, int]) -> None:
-        seen = {state.after.name for state in model.states if state.is_seen}
+        seen_names = {state.after.name for state in model.states if state.is_seen}
         by_name = {v.name: v for s in model.states for v in (s.before, s.after)}
         self.transitions = [(table, table.given(chosen)) for table in _ordered(model.transitions)]
         self.sensing = [(table, table.given(chosen)) for table in _ordered(model.sensing)]
         self.rewards = [table.given(chosen) for table in model.rewards]
-        used = seen.union(*(factor.axes for _, factor in self.sensing)) & by_name.keys()
+        used = seen_names.union(*(factor.axes for _, factor in self.sensing)) & by_name.keys()
         self.sensing_code = _Code([variable for name, variable in by_name.items() if name in used])
 
 
@@ -155,8 +155,8 @@ class _Flattening:
         self._before = _Code([state.before for state in model.states])
         self._after = _Code([state.after for state in model.states])
         self._choice = _Code(model.actions)
-        self._seen = [state for state in model.states if state.is_seen]
-        self._sight = _Code([*(state.after for state in self._seen), *model.observations])
+        self._observed_states = [state for state in model.states if state.is_seen]
+        self._sight = _Code([*(state.after for state in self._observed_states), *model.observations])
         count = int(np.prod([len(variable.values) for variable in model.actions]))
         choices = [self._choice.decode(np.array([number])) for number in range(count)]
         self._actions = [_Action(model, {k: int(v[0]) for k, v in choice.items()}) for choice in choices]
@@ -197,10 +197,10 @@ class _Flattening:
         return frame
 
     def _starts(self, start: _Frame, states: Integers) -> tuple[StartBelief, ...]:
-        told = _Code([state.before for state in self._seen]).encode(start.columns, len(states))
+        codes = _Code([state.before for state in self._observed_states]).encode(start.columns, len(states))
         beliefs = []
-        for group in np.unique(told):
-            chosen = told == group
+        for group in np.unique(codes):
+            chosen = codes == group
             weight = float(start.probability[chosen].sum())
             beliefs.append(StartBelief(weight, states[chosen], start.probability[chosen] / weight))
         return tuple(beliefs)

@@ -41,8 +41,8 @@ def _dot_lines(graph: PolicyGraph) -> Iterator[str]:
         yield "  over [shape=point, width=0.15];"
     for number, node in enumerate(graph.nodes):
         for following in sorted(set(node.next.values())):
-            seen = sorted(o for o, target in node.next.items() if target == following)
-            label = "\n".join(model.observations[observation] for observation in seen)
+            observations = sorted(o for o, target in node.next.items() if target == following)
+            label = "\n".join(model.observations[observation] for observation in observations)
             target = "over" if following == OVER else f"n{following}"
             yield f"  n{number} -> {target} [label={_quoted(label)}];"
     yield "}"
@@ -102,16 +102,16 @@ def _header_lines(graph: PolicyGraph, prefix: str) -> Iterator[str]:
     yield ""
     yield from _array(f"{prefix}_node_action", "uint16_t", [str(node.action) for node in graph.nodes])
     yield ""
-    first, seen, following = [0], [], []
+    first, numbers, following = [0], [], []
     for node in graph.nodes:
         for observation, target in sorted(node.next.items()):
-            seen.append(str(observation))
+            numbers.append(str(observation))
             following.append(str(target) if target != OVER else f"{upper}_OVER")
-        first.append(len(seen))
+        first.append(len(numbers))
     yield "// The edges of a node, by ascending observation, begin at its place in the first array."
     yield from _array(f"{prefix}_first_edge", "uint32_t", [str(place) for place in first])
     yield ""
-    yield from _array(f"{prefix}_edge_observation", "uint16_t", seen or ["0"])
+    yield from _array(f"{prefix}_edge_observation", "uint16_t", numbers or ["0"])
     yield ""
     yield from _array(f"{prefix}_edge_node", "uint16_t", following or ["0"])
     yield ""

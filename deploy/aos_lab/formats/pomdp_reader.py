@@ -49,9 +49,9 @@ class _Reader:
 
     def read(self, statements: Sequence[Statement]) -> ExplicitModel | None:
         """None where what is needed to go on is missing."""
-        seen = {statement.keyword.text for statement in statements}
+        keywords = {statement.keyword.text for statement in statements}
         for kind in ("discount", "states", "actions", "observations"):
-            if kind not in seen:
+            if kind not in keywords:
                 self._findings.error("AOS105", f"there is no `{kind}:`", 1)
         for statement in statements:
             if statement.keyword.text in ("discount", "values", "states", "actions", "observations"):
@@ -191,9 +191,9 @@ class _Reader:
 
     def _reward(self, statement: Statement, chosen: list[Sequence[int]]) -> None:
         """A number, a row over observations, or a matrix over next states and observations."""
-        after, seen = self._all("states"), self._all("observations")
+        after, observations = self._all("states"), self._all("observations")
         numbers = [self._sign * self._number(word) for word in statement.words]
-        rest = [after, seen][len(chosen) - 2 :]
+        rest = [after, observations][len(chosen) - 2 :]
         wanted = int(np.prod([len(part) for part in rest], dtype=int))
         if len(numbers) != wanted:
             message = f"{len(numbers)} numbers where {wanted} are needed"
@@ -203,11 +203,11 @@ class _Reader:
         everywhere = [word.text == "*" for word in after_fields]
         whole_after = None if everywhere[:1] == [True] else (chosen[2] if after_fields else after)
         if len(chosen) == 4:
-            whole_seen = None if everywhere[1] else chosen[3]
-            self._rewards.add(chosen[0], chosen[1], whole_after, whole_seen, numbers[0])
+            whole_observations = None if everywhere[1] else chosen[3]
+            self._rewards.add(chosen[0], chosen[1], whole_after, whole_observations, numbers[0])
             return
         for place, number in enumerate(numbers):
-            row, column = divmod(place, len(seen))
+            row, column = divmod(place, len(observations))
             next_states = whole_after if after_fields else [row]
             self._rewards.add(chosen[0], chosen[1], next_states, [column], number)
 

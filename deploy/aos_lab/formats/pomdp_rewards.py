@@ -13,11 +13,13 @@ class _Rule(msgspec.Struct, frozen=True):
     """A reward for some next states and observations; None is all of them."""
 
     after: frozenset[int] | None
-    seen: frozenset[int] | None
+    observations: frozenset[int] | None
     reward: float
 
-    def fits(self, after: int, seen: int) -> bool:
-        return (self.after is None or after in self.after) and (self.seen is None or seen in self.seen)
+    def fits(self, after: int, observation: int) -> bool:
+        return (self.after is None or after in self.after) and (
+            self.observations is None or observation in self.observations
+        )
 
 
 class RewardRules:
@@ -31,17 +33,19 @@ class RewardRules:
         actions: Sequence[int],
         states: Sequence[int],
         after: Sequence[int] | None,
-        seen: Sequence[int] | None,
+        observations: Sequence[int] | None,
         reward: float,
     ) -> None:
         """A rule that overrides those before it."""
         rule = _Rule(
-            None if after is None else frozenset(after), None if seen is None else frozenset(seen), reward
+            None if after is None else frozenset(after),
+            None if observations is None else frozenset(observations),
+            reward,
         )
         for action in actions:
             for state in states:
                 rules = self._rules.setdefault((action, state), [])
-                if rule.after is None and rule.seen is None:
+                if rule.after is None and rule.observations is None:
                     rules.clear()
                 rules.append(rule)
 
@@ -56,11 +60,11 @@ class RewardRules:
         rules = self._rules.get((action, state), [])
         if not rules:
             return 0.0
-        if len(rules) == 1 and rules[0].after is None and rules[0].seen is None:
+        if len(rules) == 1 and rules[0].after is None and rules[0].observations is None:
             return rules[0].reward
         total = 0.0
         for after, probability in transitions.items():
-            for seen, chance in sensing(after).items():
-                fitting = (rule.reward for rule in reversed(rules) if rule.fits(after, seen))
+            for observation, chance in sensing(after).items():
+                fitting = (rule.reward for rule in reversed(rules) if rule.fits(after, observation))
                 total += probability * chance * next(fitting, 0.0)
         return total

@@ -58,7 +58,7 @@ class _Reader:
         before = {state.before.name: state.before for state in states}
         after = {state.after.name: state.after for state in states}
         chosen = {variable.name: variable for variable in actions}
-        seen = {variable.name: variable for variable in observations}
+        observed = {variable.name: variable for variable in observations}
         return FactoredModel(
             name=self._name,
             discount=self._discount(),
@@ -67,8 +67,10 @@ class _Reader:
             observations=observations,
             initial=self._tables("InitialStateBelief", before, before),
             transitions=self._tables("StateTransitionFunction", after, chosen | before | after),
-            sensing=self._tables("ObsFunction", seen, chosen | before | after | seen) if seen else (),
-            rewards=self._rewards(rewards, chosen | before | after | seen),
+            sensing=self._tables("ObsFunction", observed, chosen | before | after | observed)
+            if observed
+            else (),
+            rewards=self._rewards(rewards, chosen | before | after | observed),
         )
 
     def _section(self, tag: str) -> Element | None:

@@ -42,7 +42,7 @@ def observations(
     worlds: HiddenWorlds, responses: NDArray[np.int64], texts: list[str], numbers: Numbers
 ) -> Any:
     """The observations of all worlds: an array with a row for each, or a dict of such."""
-    told = as_bytes(texts) if worlds.has_texts else responses
+    given = as_bytes(texts) if worlds.has_texts else responses
     if not worlds.number_names:
-        return told
-    return {"response": told, "numbers": numbers.values, "reported": numbers.is_reported}
+        return given
+    return {"response": given, "numbers": numbers.values, "reported": numbers.is_reported}

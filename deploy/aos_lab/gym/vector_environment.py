@@ -55,7 +55,7 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
     ) -> tuple[Any, dict[str, Any]]:
         """New episodes everywhere; a list gives each world a seed of its own."""
         if isinstance(seed, list):
-            seeds = [int(np.random.default_rng(each).integers(MAX_SEED)) for each in seed]
+            seeds = [int(np.random.default_rng(number).integers(MAX_SEED)) for number in seed]
         else:
             super().reset(seed=seed)
             seeds = self.np_random.integers(MAX_SEED, size=self.num_envs).tolist()

@@ -49,7 +49,7 @@ class HiddenWorlds:
         self._loop = asyncio.new_event_loop()
         try:
             self._engine = self._run(_start(bundle))
-            told = self._run(self._engine.reset_worlds([0]))
+            reset = self._run(self._engine.reset_worlds([0]))
         except BaseException:
             self._loop.close()
             raise
@@ -57,8 +57,8 @@ class HiddenWorlds:
         self.actions = tuple(action.name for action in actions)
         self._columns = NumberColumns([action.skill for action in actions], self._engine.observed, array_room)
         self.number_names = self._columns.names
-        self.responses = told.observations
-        self.has_texts = told.has_texts
+        self.responses = reset.observations
+        self.has_texts = reset.has_texts
         self.discount = self._engine.description.discount
 
     def start(self, seeds: Sequence[int]) -> None:

@@ -68,7 +68,7 @@ async def play_campaign(
     digest = _digest(setting, deployment, world)
     records = out / "missions.jsonl"
     done = {trial.seed: trial for trial in _kept(records, digest)}
-    left = [seed for seed in seeds if seed not in done]
+    remaining = [seed for seed in seeds if seed not in done]
     for seed in seeds:
         if seed in done:
             on_trial()
@@ -80,7 +80,7 @@ async def play_campaign(
         on_trial()
 
     player: _Player
-    if left:
+    if remaining:
         await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)
         if on != HERE and setting.by == "model":
             missions = ModelMissions.of(deployment, world)
@@ -89,7 +89,7 @@ async def play_campaign(
         else:
             player = await _player(setting, deployment, world, out)
         try:
-            await _play_all(player, left, jobs or 1, keep)
+            await _play_all(player, remaining, jobs or 1, keep)
         finally:
             await player.close()
     return Played(tuple(done[seed] for seed in seeds), digest)

@@ -161,15 +161,15 @@ def judge(claim: Claim, trials: Sequence[Trial], by: str = "model") -> Verdict:
 
 def matches(pattern: str, step: str) -> bool:
     """Returns whether a pattern names a step, which is written as `action > response`."""
-    return any(_one_matches(each.strip(), step) for each in pattern.split(" | "))
+    return any(_one_matches(alternative.strip(), step) for alternative in pattern.split(" | "))
 
 
 def _one_matches(pattern: str, step: str) -> bool:
-    action, _, told = step.partition(" > ")
+    action, _, response = step.partition(" > ")
     wanted_action, has_response, wanted = pattern.partition(" > ")
     is_skill = "(" not in wanted_action and fnmatchcase(action.partition("(")[0], wanted_action)
     return (is_skill or fnmatchcase(action, wanted_action)) and (
-        not has_response or fnmatchcase(told, wanted)
+        not has_response or fnmatchcase(response, wanted)
     )
 
 
@@ -187,8 +187,8 @@ def _count(pattern: str, trial: Trial) -> int:
 
 
 def _is_order(patterns: Sequence[str], trial: Trial) -> bool:
-    left = iter(trial.steps)
-    return all(any(matches(pattern, step) for step in left) for pattern in patterns)
+    later = iter(trial.steps)
+    return all(any(matches(pattern, step) for step in later) for pattern in patterns)
 
 
 def _comes_before(before: Before, trial: Trial) -> bool:
@@ -222,7 +222,7 @@ def _somewhere_holds(pattern: str, trial: Trial) -> bool:
 
 
 def _holds(pattern: str, state: str | None) -> bool:
-    return state is not None and any(each.strip() in state for each in pattern.split(" | "))
+    return state is not None and any(alternative.strip() in state for alternative in pattern.split(" | "))
 
 
 def _last_holds(pattern: str, trial: Trial) -> bool:

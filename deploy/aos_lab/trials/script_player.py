@@ -73,8 +73,8 @@ class ScriptPlayer:
         fault = ""
         try:
             for step, action in enumerate(self._script, 1):
-                told, fields = await self._response(world, action)
-                responses.append(told)
+                response, fields = await self._response(world, action)
+                responses.append(response)
                 states.append(json.dumps(world.record(step, self._paths[action.skill], fields)))
         except AosError as error:
             fault = str(error)

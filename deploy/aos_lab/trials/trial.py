@@ -37,18 +37,18 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     def steps(self) -> list[str]:
         """Each action with what came back, as `pick > success`, or `pick > no observation`."""
         return [
-            f"{action} > {told or NOTHING_OBSERVED}"
-            for action, told in zip(self.actions, self.responses, strict=True)
+            f"{action} > {response or NOTHING_OBSERVED}"
+            for action, response in zip(self.actions, self.responses, strict=True)
         ]
 
     @property
     def truths(self) -> dict[int, str]:
         """The states by the number of their step, from 1; a model's last one says how its world has ended."""
-        told = {_step_of(state, number): state for number, state in enumerate(self.states, 1)}
-        if told and self.world_ending:
-            last = max(told)
-            told[last] += f", world_ending={self.world_ending}"
-        return told
+        states = {_step_of(state, number): state for number, state in enumerate(self.states, 1)}
+        if states and self.world_ending:
+            last = max(states)
+            states[last] += f", world_ending={self.world_ending}"
+        return states
 
 
 def _step_of(state: str, number: int) -> int:

@@ -83,7 +83,7 @@ def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:
         yield from (assignment.value for assignment in rule.assignments)
     yield from (field.value for field in mapping.activation.fields)
     for variable in mapping.local_variables:
-        yield from (each for each in (variable.initial_value, variable.code) if each is not None)
+        yield from (snippet for snippet in (variable.initial_value, variable.code) if snippet is not None)
 
 
 def _check_path(path: str, span: Span, findings: Findings) -> None:
@@ -196,7 +196,7 @@ def parsed(snippet: Snippet, mode: str, findings: Findings) -> ast.AST | None:
 def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
     """The first rule that holds wins: what stands behind an always-true rule never fires."""
     always: ResponseRule | None = None
-    seen: dict[str, ResponseRule] = {}
+    conditions: dict[str, ResponseRule] = {}
     for rule in rules:
         truth = _constant_truth(rule.condition)
         key = rule.condition.code if rule.condition is not None else "True"
@@ -206,12 +206,12 @@ def _check_order(rules: tuple[ResponseRule, ...], findings: Findings) -> None:
             findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
         elif truth is False:
             findings.warning("AOS118", f"the rule for {rule.response} never fires", span)
-        elif key in seen:
-            hint = f"The rule on line {_condition_span(seen[key]).line} has the same condition"
+        elif key in conditions:
+            hint = f"The rule on line {_condition_span(conditions[key]).line} has the same condition"
             findings.warning("AOS118", f"the rule for {rule.response} never fires", span, hint)
         if always is None and truth is True:
             always = rule
-        seen.setdefault(key, rule)
+        conditions.setdefault(key, rule)
 
 
 def _condition_span(rule: ResponseRule) -> Span:
@@ -243,15 +243,15 @@ def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, f
 
 def _check_passed_on(mapping: AbstractionMapping, model: SkillModel, findings: Findings) -> None:
     """AOS140 for each parameter of the skill that no local variable takes: the robot never hears of it."""
-    taken = {
+    passed = {
         variable.parameter_path.split(".")[0]
         for variable in mapping.local_variables
         if variable.source is LocalSource.PARAMETER
     }
-    if taken - {parameter.name for parameter in model.parameters}:
+    if passed - {parameter.name for parameter in model.parameters}:
         return  # A name that is told as unknown may have been meant for the missing one.
     for parameter in model.parameters:
-        if parameter.name not in taken:
+        if parameter.name not in passed:
             message = (
                 f"the abstraction mapping of {model.name} never passes on the parameter {parameter.name}"
             )

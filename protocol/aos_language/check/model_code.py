@@ -87,21 +87,27 @@ def read_block(block: Block) -> Cpp:
 
 def _enum_sizes(cpp: Cpp) -> dict[str, int]:
     """The enums that code declares, with how many values they have."""
-    values = [each.type for each in cpp.declarations if each.kind is DeclarationKind.ENUMERATOR]
-    enums = (each.name for each in cpp.declarations if each.kind is DeclarationKind.ENUM)
+    values = [
+        declaration.type for declaration in cpp.declarations if declaration.kind is DeclarationKind.ENUMERATOR
+    ]
+    enums = (declaration.name for declaration in cpp.declarations if declaration.kind is DeclarationKind.ENUM)
     return {name: values.count(name) for name in enums}
 
 
 def _temporary_enums(blocks: Iterable[tuple[Assignment, ...]]) -> dict[str, int]:
     """The enums that temporary variables declare, with how many values they have."""
     temporaries = (assignment.temporary for block in blocks for assignment in block)
-    return {each.enum_name: len(each.enum_values) for each in temporaries if each and each.enum_values}
+    return {
+        temporary.enum_name: len(temporary.enum_values)
+        for temporary in temporaries
+        if temporary and temporary.enum_values
+    }
 
 
 def _declared_names(pieces: Iterable[Block]) -> frozenset[str]:
     """Returns all names that the document's code declares: a name may be used in a later snippet of its
     section."""
-    return frozenset(each.name for piece in pieces for each in read_block(piece).declarations)
+    return frozenset(declaration.name for piece in pieces for declaration in read_block(piece).declarations)
 
 
 def _check_loops(block: tuple[Assignment, ...], scope: Scope, findings: Findings) -> None:
@@ -169,11 +175,11 @@ class _BlockCheck:
             self._check_unset(self._cpp)
 
     def _check_unset(self, cpp: Cpp) -> None:
-        for each in unset_reads(cpp, frozenset(self._scope.enums)):
-            report = self._findings.error if each.never else self._findings.warning
-            which = "has no value" if each.never else "may have no value"
-            hint = f"Declare it with one: `{each.type} {each.name} = ...;`"
-            report("AOS143", f"`{each.name}` {which} here", self._span(each.extent), hint)
+        for read in unset_reads(cpp, frozenset(self._scope.enums)):
+            report = self._findings.error if read.never else self._findings.warning
+            which = "has no value" if read.never else "may have no value"
+            hint = f"Declare it with one: `{read.type} {read.name} = ...;`"
+            report("AOS143", f"`{read.name}` {which} here", self._span(read.extent), hint)
 
     def _check_semicolons(self) -> None:
         for offset in self._cpp.missing_semicolons:
@@ -246,7 +252,7 @@ class _BlockCheck:
 
     def _check_drawing_function(self, mention: Mention, root: str) -> None:
         """The source of draws is given to a function where it is called, and only there."""
-        names = {each.name_extent.start for each in self._scope.shared.functions}
+        names = {function.name_extent.start for function in self._scope.shared.functions}
         if root in self._locals or (self._block.is_declarations and mention.root.start in names):
             return
         message = f"`{root}` draws, so it can only be called"

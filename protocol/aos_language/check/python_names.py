@@ -58,8 +58,10 @@ class PythonNames(msgspec.Struct, frozen=True):
     def of_constants(cls, mappings: Iterable[AbstractionMapping], scope: Scope) -> PythonNames:
         """The names of the code that makes low-level constants, which each mapping's module has a copy of."""
         of_each = [cls.of(mapping, None, scope) for mapping in mappings]
-        known = _names_of_constants(scope.low_level).union(_BUILT_IN_NAMES, *(each.known for each in of_each))
-        return cls(known, is_open=any(each.is_open for each in of_each))
+        known = _names_of_constants(scope.low_level).union(
+            _BUILT_IN_NAMES, *(names.known for names in of_each)
+        )
+        return cls(known, is_open=any(names.is_open for names in of_each))
 
     def of_rules(self, before: Iterable[ast.AST]) -> PythonNames:
         """Those of a rule: what says how the skill has ended, and what the rules `before` it have bound."""
@@ -89,7 +91,7 @@ def _names_of_constants(document: LowLevelDocument | None) -> frozenset[str]:
     code binds."""
     if document is None:
         return frozenset()
-    names = {each.name for each in document.types} | {each.name for each in document.constants}
+    names = {type.name for type in document.types} | {constant.name for constant in document.constants}
     for constant in document.constants:
         try:
             names |= _bound_names(ast.parse(constant.code.code))

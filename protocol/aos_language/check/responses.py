@@ -138,7 +138,9 @@ def _assigned_names(read: list[tuple[Block, Cpp]]) -> Iterator[tuple[Block, Ment
 
 def _own_names(model: SkillModel, read: list[tuple[Block, Cpp]]) -> tuple[set[str], set[str]]:
     """The values of the enums that the dynamic model declares, and the names of its variables."""
-    temporaries = [each.temporary for each in model.dynamic_model if each.temporary is not None]
+    temporaries = [
+        assignment.temporary for assignment in model.dynamic_model if assignment.temporary is not None
+    ]
     values = {value for temporary in temporaries for value in temporary.enum_values}
     variables = {temporary.name for temporary in temporaries}
     for _, cpp in read:

@@ -28,19 +28,19 @@ def check_shared_code(environment: Environment, scope: Scope, findings: Findings
         span = snippet.locate(misuse.extent.line, misuse.extent.column)
         findings.error("AOS145", misuse.message, span, misuse.hint)
     of_types = {*scope.enums, *scope.compounds, *scope.enum_values, *scope.low_level_names}
-    functions = {each.name for each in shared.functions}
+    functions = {function.name for function in shared.functions}
     first: dict[str, SharedName] = {}
-    for each in (*shared.names, *shared.functions):
-        span = snippet.locate(each.name_extent.line, each.name_extent.column)
-        other = first.setdefault(each.name, each) if each.name else each
-        if each.name in CPP_KEYWORDS or each.name in SPECIAL_NAMES:
-            findings.error("AOS126", f"`{each.name}` means something else", span, "Choose another name")
-        elif each.name in of_types:
-            message = f"`{each.name}` is already the name of a type, an enum value or a low-level value"
+    for item in (*shared.names, *shared.functions):
+        span = snippet.locate(item.name_extent.line, item.name_extent.column)
+        other = first.setdefault(item.name, item) if item.name else item
+        if item.name in CPP_KEYWORDS or item.name in SPECIAL_NAMES:
+            findings.error("AOS126", f"`{item.name}` means something else", span, "Choose another name")
+        elif item.name in of_types:
+            message = f"`{item.name}` is already the name of a type, an enum value or a low-level value"
             findings.error("AOS126", message, span, "Choose another name")
-        elif other is not each and not (each.name in functions and other in shared.functions):
+        elif other is not item and not (item.name in functions and other in shared.functions):
             place = snippet.locate(other.name_extent.line, other.name_extent.column)
-            findings.error("AOS126", f"a second `{each.name}`", span, f"The first is at {place}")
+            findings.error("AOS126", f"a second `{item.name}`", span, f"The first is at {place}")
 
 
 def check_shared_names_are_used(
@@ -58,14 +58,14 @@ def check_shared_names_are_used(
             words.update(_WORD.findall(block.snippet.code))
     for kind in (*environment.compounds, *environment.variables):
         types = [field.type for field in getattr(kind, "fields", ())] or [getattr(kind, "type", "")]
-        words.update(word for each in types for word in _WORD.findall(each))
+        words.update(word for text in types for word in _WORD.findall(text))
     declared = (*shared.names, *shared.functions)
-    for each in declared:
-        others = shared.cpp.code[: each.extent.start] + shared.cpp.code[each.extent.end :]
-        together = [other.name for other in declared if other.extent == each.extent]
+    for item in declared:
+        others = shared.cpp.code[: item.extent.start] + shared.cpp.code[item.extent.end :]
+        together = [other.name for other in declared if other.extent == item.extent]
         named = words.union(_WORD.findall(others))
-        if not each.name or not named.isdisjoint(together) or together[0] != each.name:
+        if not item.name or not named.isdisjoint(together) or together[0] != item.name:
             continue
-        span = snippet.locate(each.name_extent.line, each.name_extent.column)
-        message = f"no code uses the shared {each.kind} {each.name}"
+        span = snippet.locate(item.name_extent.line, item.name_extent.column)
+        message = f"no code uses the shared {item.kind} {item.name}"
         findings.warning("AOS133", message, span, "Leave it out, or use it")

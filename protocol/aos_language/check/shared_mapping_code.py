@@ -33,7 +33,7 @@ def check_shared_mapping_code(
     for node, message in _keeping(tree, names):
         span = snippet.locate(node.lineno, column_of(snippet, node.lineno, node.col_offset))
         findings.error("AOS121", message, span, "Each activation begins anew: pass it on, and give it back")
-    used = {name for each in mappings for name in _words(each)}
+    used = {name for mapping in mappings for name in _words(mapping)}
     for statement in tree.body:
         for name in sorted(top_level_names(ast.Module([statement], []))):
             span = snippet.locate(

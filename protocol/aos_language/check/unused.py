@@ -27,8 +27,10 @@ def check_unused_variables(
     defaults = {id(variable.default_code) for variable in environment.variables}
     words = _words(block.snippet for block in blocks if id(block.snippet) not in defaults)
     looped = _looped_types(environment, models)
-    of_default = [_words((code,) if (code := each.default_code) else ()) for each in environment.variables]
-    defaults_with = Counter(word for each in of_default for word in each)
+    of_default = [
+        _words((code,) if (code := variable.default_code) else ()) for variable in environment.variables
+    ]
+    defaults_with = Counter(word for default_words in of_default for word in default_words)
     for variable, own in zip(environment.variables, of_default, strict=True):
         used = (variable.name, f"{variable.type}Objects", f"{variable.type}ObjectsForActions")
         is_used = any(word in words or defaults_with[word] > (word in own) for word in used)

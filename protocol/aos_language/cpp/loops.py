@@ -116,11 +116,11 @@ class _Reading:
         if node.type not in _LOOPS or not _names(node) & self._scope.drawing or _counts(node):
             return None
         head = self._head(node)
-        seen = _visible(node, self._scope.variables, self._before_it.lambdas)
-        if head is None or seen is None:
+        visible = _visible(node, self._scope.variables, self._before_it.lambdas)
+        if head is None or visible is None:
             return None
         mentioned = _names(node) | self._scope.captured
-        variables = seen - self._scope.lambdas
+        variables = visible - self._scope.lambdas
         return DrawingLoop(
             self._offset(node.start_byte),
             self._offset(node.end_byte),
@@ -159,20 +159,20 @@ def _visible(
     loop: tree_sitter.Node, around: frozenset[str], lambdas: frozenset[str]
 ) -> frozenset[str] | None:
     """The variables that may change and that a loop's condition sees; None where its text does not tell."""
-    seen: list[tuple[str, bool]] = []
+    visible: list[tuple[str, bool]] = []
     initializer = loop.child_by_field_name("initializer")
     if initializer is not None:
-        seen += _declared(initializer)
+        visible += _declared(initializer)
     child, parent = loop, loop.parent
     while parent is not None:
         if parent.type == "function_definition":
-            seen += _parameters(parent)
+            visible += _parameters(parent)
             break
         if parent.type == "lambda_expression":
             captures = parent.child_by_field_name("captures")
             if captures is None or _text(captures).replace(" ", "") != "[&]":
                 return None
-            seen += _parameters(parent)
+            visible += _parameters(parent)
         for sibling in parent.children:
             if sibling == child:
                 break
@@ -180,14 +180,14 @@ def _visible(
                 part.type == "function_declarator" for part in sibling.children_by_field_name("declarator")
             ):
                 return None
-            seen += _declared(sibling)
+            visible += _declared(sibling)
         if parent.type == "for_range_loop":
-            seen += _names_of_declarator(parent.child_by_field_name("declarator"))
+            visible += _names_of_declarator(parent.child_by_field_name("declarator"))
         child, parent = parent, parent.parent
-    names = [name for name, _ in seen]
+    names = [name for name, _ in visible]
     if len(names) != len(set(names)) or not (around | lambdas).isdisjoint(names):
         return None  # One hides another, which may change all the same.
-    return around | {name for name, is_constant in seen if not is_constant}
+    return around | {name for name, is_constant in visible if not is_constant}
 
 
 def _is_in_function(loop: tree_sitter.Node) -> bool:

@@ -69,34 +69,34 @@ class SharedCode(msgspec.Struct, frozen=True):
     @property
     def drawing(self) -> frozenset[str]:
         """The functions that draw."""
-        return frozenset(each.name for each in self.functions if each.draws)
+        return frozenset(function.name for function in self.functions if function.draws)
 
     @property
     def reading(self) -> frozenset[str]:
         """The functions of which a call changes nothing and gives a plain value."""
-        changing = {each.name for each in self.functions if not each.only_reads}
-        return frozenset(each.name for each in self.functions) - changing
+        changing = {function.name for function in self.functions if not function.only_reads}
+        return frozenset(function.name for function in self.functions) - changing
 
     @property
     def changing(self) -> frozenset[str]:
         """The other functions."""
-        return frozenset(each.name for each in self.functions) - self.reading
+        return frozenset(function.name for function in self.functions) - self.reading
 
     @property
     def all_names(self) -> frozenset[str]:
         """The names of constants, functions, types and enum values; of text that is none, every word."""
         if self.cpp.faults:
             return frozenset(re.findall(r"[A-Za-z_]\w*", self.cpp.code))
-        return frozenset(each.name for each in (*self.names, *self.functions) if each.name)
+        return frozenset(item.name for item in (*self.names, *self.functions) if item.name)
 
     @property
     def whole_numbers(self) -> dict[str, str]:
         """The constants that are whole numbers, as they are written."""
-        constants = {each.name for each in self.names if each.kind == "constant"}
+        constants = {name.name for name in self.names if name.kind == "constant"}
         values = {
-            each.name: self.cpp.code[each.initial.start : each.initial.end]
-            for each in self.cpp.declarations
-            if each.name in constants and each.initial is not None
+            declaration.name: self.cpp.code[declaration.initial.start : declaration.initial.end]
+            for declaration in self.cpp.declarations
+            if declaration.name in constants and declaration.initial is not None
         }
         return {name: value for name, value in values.items() if value.isdecimal()}
 
@@ -104,15 +104,15 @@ class SharedCode(msgspec.Struct, frozen=True):
         """The bodies of the functions, each at its lines and columns with blanks around it."""
         code = self.cpp.code
         blank = "".join(character if character == "\n" else " " for character in code)
-        for each in self.functions:
-            yield blank[: each.body - 1] + code[each.body - 1 : each.extent.end]
+        for function in self.functions:
+            yield blank[: function.body - 1] + code[function.body - 1 : function.extent.end]
 
     def without(self, *, late: bool) -> str:
         """The text with the declarations of one kind blanked, so that lines and columns stay."""
         characters = list(self.cpp.code)
-        for each in (*self.names, *self.functions):
-            if each.is_late == late:
-                for index in range(each.extent.start, each.extent.end):
+        for item in (*self.names, *self.functions):
+            if item.is_late == late:
+                for index in range(item.extent.start, item.extent.end):
                     if characters[index] != "\n":
                         characters[index] = " "
         return "".join(characters)
@@ -156,13 +156,15 @@ class _Reading:
         for node in root.named_children:
             self._declaration(node)
         drawing = self._closure({name for name, words in self._words.items() if words & _SOURCES})
-        plain = {each.name for each in self._functions if each.only_reads}
-        changing = self._closure({each.name for each in self._functions} - plain) | drawing
+        plain = {function.name for function in self._functions if function.only_reads}
+        changing = self._closure({function.name for function in self._functions} - plain) | drawing
         found = [
             msgspec.structs.replace(
-                each, draws=each.name in drawing, only_reads=each.only_reads and each.name not in changing
+                function,
+                draws=function.name in drawing,
+                only_reads=function.only_reads and function.name not in changing,
             )
-            for each in self._functions
+            for function in self._functions
         ]
         return SharedCode(self._cpp, tuple(self._names), tuple(found), tuple(self._misuses))
 
@@ -240,9 +242,11 @@ class _Reading:
         self._names.append(SharedName(_text(name), kind, extent, self._extent(name), is_late))
 
     def _function(self, node: tree_sitter.Node) -> None:
-        function = next(each for each in _below(node) if each.type == "function_definition")
+        function = next(part for part in _below(node) if part.type == "function_definition")
         declarators = [*_declarators(function.child_by_field_name("declarator"))]
-        header = next((each for each in declarators if each.type == "function_declarator"), None)
+        header = next(
+            (declarator for declarator in declarators if declarator.type == "function_declarator"), None
+        )
         body = function.child_by_field_name("body")
         name = header.child_by_field_name("declarator") if header is not None else None
         parameters = header.child_by_field_name("parameters") if header is not None else None
@@ -255,13 +259,13 @@ class _Reading:
         for source in (part for part in _below(parameters) if _text(part) in _SOURCES):
             message = f"`{_text(source)}` is no parameter: a function that draws has it by itself"
             self._misuse(source, message, "Leave the parameter out, and call the function without it")
-        declared = [each for each in parameters.named_children if each.type != "comment"]
+        declared = [parameter for parameter in parameters.named_children if parameter.type != "comment"]
         is_void = len(declared) == 1 and _text(declared[0]) == "void"
         self._words.setdefault(_text(name), set()).update(_identifiers(body), _identifiers(parameters))
         written = _text(function)[: _text(function).index(_text(name))]
         is_plain = node.type == "function_definition" and _OTHER_TYPES.search(written) is None
         has_result = re.search(r"\bvoid\b", written) is None
-        only_reads = is_plain and has_result and all(_only_read(each) for each in declared)
+        only_reads = is_plain and has_result and all(_only_read(parameter) for parameter in declared)
         self._functions.append(
             SharedFunction(
                 _text(name),
@@ -273,7 +277,7 @@ class _Reading:
                 self._offset(body.start_byte) + 1,
                 bool(declared) and not is_void,
                 only_reads=only_reads,
-                takes=() if is_void else tuple(_parameter_name(each) for each in declared),
+                takes=() if is_void else tuple(_parameter_name(parameter) for parameter in declared),
             )
         )
 

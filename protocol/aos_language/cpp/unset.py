@@ -158,7 +158,7 @@ class _Walk(Evaluation):
         is_endless = condition is None or _is_true(condition)
         state = merged(breaks if is_endless else [after, *breaks], named)
         self.declared = hidden
-        state.unset = {name: each for name, each in state.unset.items() if name in outer}
+        state.unset = {name: unset for name, unset in state.unset.items() if name in outer}
         return state
 
     def _for_range(self, node: tree_sitter.Node, state: State) -> State:

@@ -48,5 +48,5 @@ def _identifiers(root: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
         elif node.type == "identifier":
             yield node
         elif node.type in _VALUES:
-            parts = [each for each in node.named_children if each.type != "comment"]
+            parts = [part for part in node.named_children if part.type != "comment"]
             waiting += [parts[at] for at in reversed(_VALUES[node.type]) if at < len(parts)]

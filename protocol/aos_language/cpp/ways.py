@@ -41,9 +41,7 @@ def merged(states: Iterable[State], under: frozenset[str] = frozenset()) -> Stat
     unset = {}
     for name in {name for state in going for name in state.unset}:
         ways = [state.unset[name] for state in going if name in state.unset]
-        names = frozenset[str]().union(*(each.under for each in ways))
+        names = frozenset[str]().union(*(way.under for way in ways))
         is_set = len(ways) < len(going)
-        unset[name] = Ways(
-            not is_set and all(each.never for each in ways), names | under if is_set else names
-        )
+        unset[name] = Ways(not is_set and all(way.never for way in ways), names | under if is_set else names)
     return State(unset)

@@ -64,7 +64,7 @@ def dedented(snippet: Snippet) -> Snippet:
     cut_lines = [line[width:] if line.strip() else "" for line, width in zip(lines, widths, strict=True)]
     origins = tuple(snippet.locate(number, width + 1) for number, width in enumerate(widths, 1))
     escapes = [(at, index - widths[at - 1], size) for at, index, size in snippet.escapes]
-    return Snippet("\n".join(cut_lines), origins, tuple(each for each in escapes if each[1] > 0))
+    return Snippet("\n".join(cut_lines), origins, tuple(escape for escape in escapes if escape[1] > 0))
 
 
 def _is_code(line: str) -> bool:

@@ -79,7 +79,7 @@ def skills_of_files(files: Mapping[str, bytes]) -> dict[str, str]:
     written = {name: data for name, data in files.items() if PurePath(name).suffix.lower() == ".json"}
     kinds = (DocumentKind.SKILL, DocumentKind.MAPPING)
     documents = read_documents(written, Findings()) if written else {}
-    return skills | {name: each.name for name, each in documents.items() if each.kind in kinds}
+    return skills | {name: document.name for name, document in documents.items() if document.kind in kinds}
 
 
 def _read_file(name: str, data: bytes) -> ReadFile:

@@ -138,8 +138,10 @@ def _imports(record: Record) -> tuple[Import, ...]:
         item.finish()
         if names:
             # Several names in one text are what Python's `import a, b` has.
-            each = tuple(part.strip() for name in names for part in name.text.split(",") if part.strip())
-            imports.append(Import(module.text if module else "", each, item.span))
+            names_of_item = tuple(
+                part.strip() for name in names for part in name.text.split(",") if part.strip()
+            )
+            imports.append(Import(module.text if module else "", names_of_item, item.span))
         else:
             record.findings.error("AOS105", 'an import lacks "Import"', item.span)
     return tuple(imports)

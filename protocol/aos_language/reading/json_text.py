@@ -158,7 +158,7 @@ class _Reader:
         start = self._at
         self._at += 1
         members: list[tuple[JsonString, JsonValue]] = []
-        seen: dict[str, JsonString] = {}
+        keys: dict[str, JsonString] = {}
         while not self._closes("}", start):
             if self._text[self._at] != '"':
                 raise _Unreadable(f"expected a key in double quotes, found {self._found()}", self._at)
@@ -168,10 +168,10 @@ class _Reader:
                 raise _Unreadable(f'expected ":" after "{key.text}", found {self._found()}', self._at)
             self._at += 1
             value = self.value(depth + 1)
-            if key.text in seen:
-                self._twice(key, seen[key.text])
+            if key.text in keys:
+                self._twice(key, keys[key.text])
             else:
-                seen[key.text] = key
+                keys[key.text] = key
                 members.append((key, value))
             self._comma("}", start)
         return JsonObject(tuple(members), start)

@@ -194,7 +194,7 @@ class _Scanner:
         A name stands alone in Python where it is an expression, which is one line.
         """
         assert self._current is not None
-        is_first = not any(each.text.strip() for each in (self._current.value, *self._current.lines))
+        is_first = not any(text.text.strip() for text in (self._current.value, *self._current.lines))
         if not rest:
             return "_" in word and not (self._current.body is Body.PYTHON and is_first)
         first = rest.split()[0]

@@ -197,7 +197,7 @@ def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
             **_given(FromStringLocalVariable=mapping.response_variable),
         },
         "ModuleActivation": {kind: service, **_given(MaxDuration=activation.max_duration_s)},
-        "LocalVariablesInitialization": [_local_variable(each) for each in mapping.local_variables],
+        "LocalVariablesInitialization": [_local_variable(variable) for variable in mapping.local_variables],
     }
 
 

@@ -116,7 +116,7 @@ async def run_activation(
         status = "unknown" if activation.was_called else "failed"
     except AosError as error:
         fault, status = error, _STATUS.get(error.code, "failed")
-    told = fault or observation.failure
+    cause = fault or observation.failure
     return Outcome(
         request.id,
         request.skill,
@@ -125,7 +125,7 @@ async def run_activation(
         observation.local_variables,
         started_ns,
         around.clock.now_ns(),
-        None if told is None else _fault_of(told),
+        None if cause is None else _fault_of(cause),
         observation.assigned,
         observation.numbers,
     )
@@ -167,8 +167,8 @@ class _Activation:
             for variable in self._mapping.local_variables
             if variable.source is LocalSource.TOPIC
         }
-        self._seen: dict[str, int] = {}
-        self._has_seen = asyncio.Event()
+        self._last_numbers: dict[str, int] = {}
+        self._has_received = asyncio.Event()
         self._fault: AosError | None = None
         self.was_called = False
 
@@ -336,8 +336,8 @@ class _Activation:
                     self._fault = error
                     _log.warning("%s goes on, but its mapping failed: %s", self._request.skill, error)
             for key, message in batch:
-                self._seen[key] = message.number
-            self._has_seen.set()
+                self._last_numbers[key] = message.number
+            self._has_received.set()
 
     async def _catch_up(self, result: SkillResult) -> None:
         """Waits until every message that the adapter had sent when the call ended has been evaluated."""
@@ -351,12 +351,12 @@ class _Activation:
         self._published_before.update(published)
         try:
             async with asyncio.timeout(CATCH_UP_S):
-                while any(self._seen.get(key, 0) < number for key, number in sent.items()):
-                    self._has_seen.clear()
-                    await self._has_seen.wait()
+                while any(self._last_numbers.get(key, 0) < number for key, number in sent.items()):
+                    self._has_received.clear()
+                    await self._has_received.wait()
         except TimeoutError:
             for key, number in sent.items():
-                _log.info("%s: message %d did not come, seen %d", key, number, self._seen.get(key, 0))
+                _log.info("%s: message %d did not come, seen %d", key, number, self._last_numbers.get(key, 0))
 
 
 def _timed_out(path: str, limit_s: float) -> SkillError:

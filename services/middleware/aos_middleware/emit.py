@@ -145,5 +145,5 @@ def _refusal(mapping: AbstractionMapping, diagnostics: list[Diagnostic]) -> Docu
         f"the abstraction mapping of {mapping.name} cannot be used",
         code="AOS121",
         hint="Mend the places named with this error",
-        diagnostics=tuple(sorted(diagnostics, key=lambda each: each.span)),
+        diagnostics=tuple(sorted(diagnostics, key=lambda diagnostic: diagnostic.span)),
     )

@@ -122,7 +122,7 @@ class Mappings:
 
     async def _adopt(self, announced: ProjectRevision) -> None:
         emitted = emit_project(announced.project)
-        mappings = {each.skill: self._same_or_new(each) for each in emitted}
+        mappings = {mapping.skill: self._same_or_new(mapping) for mapping in emitted}
         outdated = self._evaluators()
         if outdated:
             await _load(set(mappings.values()) - outdated)
@@ -156,10 +156,10 @@ class Mappings:
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             for path in self._folder.glob("*.py"):
-                if path.name not in {each.file_name for each in emitted}:
+                if path.name not in {mapping.file_name for mapping in emitted}:
                     path.unlink()
-            for each in emitted:
-                (self._folder / each.file_name).write_text(each.python, encoding="utf-8")
+            for mapping in emitted:
+                (self._folder / mapping.file_name).write_text(mapping.python, encoding="utf-8")
         except OSError as error:
             _log.warning("the generated modules are not in %s: %s", self._folder, error)
 

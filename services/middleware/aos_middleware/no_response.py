@@ -34,13 +34,13 @@ def no_response(
 
 def _of_derived(mapping: AbstractionMapping, result: Mapping[str, Any]) -> tuple[str, str]:
     known = [rule.response for rule in mapping.rules]
-    told = result.get(_FIELD)
-    if told is None:
+    response = result.get(_FIELD)
+    if response is None:
         has = f"it has {quoted(result)}" if result else "it is empty"
         message = f"the result of {mapping.activation.path} has no `{_FIELD}`: {has}"
         one_of = f", one of {quoted(known)}" if known else ""
         hint = f"Have the adapter answer with it{one_of}, or write the abstraction mapping {mapping.name}.am"
         return message, hint
     path, name = mapping.activation.path, mapping.name
-    message = f"{path} answered with the response {told!r}, which {name} does not know"
-    return message, did_you_mean(str(told), known) or f"The skill document knows {quoted(known)}"
+    message = f"{path} answered with the response {response!r}, which {name} does not know"
+    return message, did_you_mean(str(response), known) or f"The skill document knows {quoted(known)}"

@@ -98,9 +98,9 @@ def read_expression(snippet: Snippet) -> PythonCode | Diagnostic:
     tree = _parse(f"(\n{text}\n)", lines, snippet, lines_before=1)
     # What closes the first bracket and opens another passes in one kind of brackets only.
     other = _parse(f"[\n{text}\n]", lines, snippet, lines_before=1)
-    for each in (tree, other):
-        if isinstance(each, Diagnostic):
-            return each
+    for part in (tree, other):
+        if isinstance(part, Diagnostic):
+            return part
     assert isinstance(tree, ast.Module)
     if len(tree.body) != 1 or not isinstance(tree.body[0], ast.Expr):
         return _fault("one expression is expected", snippet.span)
@@ -223,7 +223,7 @@ def _always_returns(statements: list[ast.stmt]) -> bool:
             return _always_returns(body)
         case ast.Try(body=body, handlers=handlers, orelse=orelse, finalbody=final):
             return _always_returns(final) or (
-                _always_returns(orelse or body) and all(_always_returns(each.body) for each in handlers)
+                _always_returns(orelse or body) and all(_always_returns(handler.body) for handler in handlers)
             )
         case _:
             return False

@@ -156,7 +156,9 @@ class Sections:
         by_topic: list[str] = []
         for topic, variables in topics.items():
             by_topic.append(f"    {literal(topic)}: {{")
-            by_topic += [f"        {literal(each.name)}: {_function_name(each)}," for each in variables]
+            by_topic += [
+                f"        {literal(variable.name)}: {_function_name(variable)}," for variable in variables
+            ]
             by_topic.append("    },")
         constants = [f"    {literal(name)}: {name}," for name in low_level_names]
         tables = (("TOPICS", by_topic), ("RESPONSE", response), ("CONSTANTS", constants))
@@ -226,7 +228,7 @@ class Sections:
         if isinstance(code, Diagnostic):
             self.diagnostics.append(code)
             return []
-        if code is None or not any(each.reads & code.assigns for each in self._codes):
+        if code is None or not any(snippet.reads & code.assigns for snippet in self._codes):
             return []
         self._codes.append(code)
         return self.marks.body(code, 0)
@@ -236,17 +238,17 @@ class Sections:
         if self._low_level is None or not self._meets_constants():
             return []
         types = []
-        for each in self._low_level.types:
-            fields = "".join(f", {literal(field.name)}" for field in each.fields)
-            line = f"{each.name} = low_level_type({literal(each.name)}{fields})"
-            types.append(self.marks.line(line, LineOrigin.of_span(each.span)))
+        for type in self._low_level.types:
+            fields = "".join(f", {literal(field.name)}" for field in type.fields)
+            line = f"{type.name} = low_level_type({literal(type.name)}{fields})"
+            types.append(self.marks.line(line, LineOrigin.of_span(type.span)))
         return types
 
     def constants(self) -> dict[str, list[str]]:
         """The statements that make each low-level constant, where this mapping can meet one."""
         if self._low_level is None or not self._meets_constants():
             return {}
-        classes = {each.name for each in self._low_level.types}
+        classes = {type.name for type in self._low_level.types}
         constants = {}
         for constant in self._low_level.constants:
             code = self._kept(read_body(constant.code))
@@ -281,21 +283,21 @@ class Sections:
         known = {*self._variables, *dir(builtins), *(name for code in self._codes for name in code.assigns)}
         known.update(name for name, _ in self._low_level_names())
         star = ""
-        for each in self._imports():
-            names = self._import_names(each)
+        for imported in self._imports():
+            names = self._import_names(imported)
             if names is None:
                 continue
             known.update(names)
-            text = ", ".join(each.names)
-            origin = LineOrigin.of_span(each.span)
-            if not each.module:
+            text = ", ".join(imported.names)
+            origin = LineOrigin.of_span(imported.span)
+            if not imported.module:
                 whole[text] = self.marks.line(f"import {text}", origin)
                 continue
-            stand_ins = [_stand_in(name, each.module) for name in names]
-            load = self.marks.line(f"    from {each.module} import {text}", origin)
-            parts[f"{each.module} {text}"] = ImportPart(load, tuple(stand_ins) or ("pass",))
+            stand_ins = [_stand_in(name, imported.module) for name in names]
+            load = self.marks.line(f"    from {imported.module} import {text}", origin)
+            parts[f"{imported.module} {text}"] = ImportPart(load, tuple(stand_ins) or ("pass",))
             if not names:
-                star = star or each.module
+                star = star or imported.module
         called = sorted({name for code in self._codes for name in code.calls} - known) if star else []
         by_star = [
             ImportPart(name, (f"{name} = stand_in({literal(name)}, {literal(star)})",)) for name in called
@@ -307,10 +309,10 @@ class Sections:
         for variable in self._variables.values():
             yield from variable.imports
 
-    def _import_names(self, each: Import) -> list[str] | None:
+    def _import_names(self, imported: Import) -> list[str] | None:
         """The names an import brings, none for `*`; None if it is not one."""
-        names = ", ".join(each.names)
-        text = f"from {each.module} import {names}" if each.module else f"import {names}"
+        names = ", ".join(imported.names)
+        text = f"from {imported.module} import {names}" if imported.module else f"import {names}"
         try:
             match ast.parse(text).body:
                 case [ast.Import(names=aliases)] | [ast.ImportFrom(level=0, names=aliases)]:
@@ -318,32 +320,32 @@ class Sections:
                 case _:
                     raise SyntaxError
         except (SyntaxError, ValueError):
-            self._mistake("AOS121", f"{text!r} is not an import", each.span)
+            self._mistake("AOS121", f"{text!r} is not an import", imported.span)
             return None
         for name in brought:
             if name in RESERVED_LOCAL_NAMES or name in self._function_names():
-                self._mistake("AOS126", f"the import of {name} hides a generated function", each.span)
+                self._mistake("AOS126", f"the import of {name} hides a generated function", imported.span)
         return [name for name in brought if name != "*"]
 
     # --- checks --------------------------------------------------------------------------------------
 
     def _check_names(self) -> None:
-        seen: set[str] = set()
+        known: set[str] = set()
         for variable in self._mapping.local_variables:
             name = variable.name
             if not _is_usable(name):
                 self._mistake("AOS126", f"{name!r} cannot be the name of a local variable", variable.span)
-            elif name in seen:
+            elif name in known:
                 self._mistake("AOS126", f"two local variables are called {name}", variable.span)
-            seen.add(name)
+            known.add(name)
         for name, span in self._low_level_names():
             if not _is_usable(name):
                 self._mistake("AOS126", f"{name!r} cannot be the name of a low-level value", span)
 
     def _low_level_names(self) -> Iterator[tuple[str, Span]]:
         if self._low_level is not None:
-            yield from ((each.name, each.span) for each in self._low_level.types)
-            yield from ((each.name, each.span) for each in self._low_level.constants)
+            yield from ((type.name, type.span) for type in self._low_level.types)
+            yield from ((constant.name, constant.span) for constant in self._low_level.constants)
 
     def _function_names(self) -> set[str]:
         return {_function_name(variable) for variable in self._variables.values()}

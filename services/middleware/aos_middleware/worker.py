@@ -217,21 +217,21 @@ class _Printed(io.TextIOBase):
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
-        self._left_bytes = _MAX_PRINTED_BYTES
+        self._remaining_bytes = _MAX_PRINTED_BYTES
 
     def writable(self) -> bool:
         return True
 
     def write(self, text: str) -> int:
-        if self._left_bytes > 0:
+        if self._remaining_bytes > 0:
             printed = text.encode(errors="backslashreplace")
-            self._left_bytes -= len(printed)
+            self._remaining_bytes -= len(printed)
             try:
                 os.write(self._descriptor, printed)
-                if self._left_bytes <= 0:
+                if self._remaining_bytes <= 0:
                     os.write(self._descriptor, b"\n(the rest is left out)\n")
             except OSError:
-                self._left_bytes = 0
+                self._remaining_bytes = 0
         return len(text)
 
 

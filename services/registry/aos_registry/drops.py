@@ -62,9 +62,9 @@ class DroppedBundles:
         report = await self._report(path)
         if report is None:
             return
-        if not report.is_accepted and {each.code for each in report.diagnostics if each.is_error} & {
-            *LACKING
-        }:
+        if not report.is_accepted and {
+            diagnostic.code for diagnostic in report.diagnostics if diagnostic.is_error
+        } & {*LACKING}:
             report = msgspec.structs.replace(report, is_waiting=True)
             self._waiting[path] = report
         if not (is_again and was_waiting is not None and _says_the_same(report, was_waiting)):

@@ -84,7 +84,7 @@ class Intake:
         if current is None:
             hint = did_you_mean(project, self.revisions) or f"It holds {quoted(sorted(self.revisions))}"
             raise DocumentError(f"the catalogue holds no project {project}", code="AOS110", hint=hint)
-        names = [each.name for each in known.project.skills] if known is not None else []
+        names = [item.name for item in known.project.skills] if known is not None else []
         if not skill:
             number = self._catalogue.remove(project, self._clock.now_ns())
             self.revisions.pop(project, None)
@@ -92,7 +92,7 @@ class Intake:
         if known is None or skill not in names:
             hint = did_you_mean(skill, names) or f"It has {quoted(names)}"
             raise DocumentError(f"{project} has no skill {skill}", code="AOS110", hint=hint)
-        gone = next(each for each in known.project.skills if each.name == skill)
+        gone = next(item for item in known.project.skills if item.name == skill)
         homes = {gone.model.span.file, gone.mapping.span.file}
         files = {name: data for name, data in current.files.items() if name not in homes}
         loaded = load_files(files, name=project)

@@ -57,7 +57,7 @@ class _Registry:
         self._intake = Intake(catalogue, service.clock, self._check_model)
         self._turn = asyncio.Lock()
         folder = _made(Path(self._settings.watch or Path(self._settings.run_dir) / "drop"))
-        self._dropped = DroppedBundles(folder, self._settings.quiet_s, self._taken, self._tell_report)
+        self._dropped = DroppedBundles(folder, self._settings.quiet_s, self._take_in, self._tell_report)
 
     async def run(self) -> None:
         for report in self._intake.recall():
@@ -74,7 +74,7 @@ class _Registry:
     # --- answers ---------------------------------------------------------------------------------------
 
     async def _answer_push(self, bundle: PushBundle, _: str) -> BundleReport:
-        report = await self._taken(bundle.files, bundle.source)
+        report = await self._take_in(bundle.files, bundle.source)
         self._tell_report(report)
         return report
 
@@ -123,7 +123,7 @@ class _Registry:
         self._bus.tell(self._keys.bundle_report, report)
         _log_report(report)
 
-    async def _taken(self, files: Mapping[str, bytes], source: str) -> BundleReport:
+    async def _take_in(self, files: Mapping[str, bytes], source: str) -> BundleReport:
         async with self._turn:
             report, is_new = await self._intake.push(files, source)
             if is_new:

@@ -97,7 +97,7 @@ class PythonAdapter:
                 if inspect.isclass(found):
                     found = self._object(place, name, found)
         except AttributeError as error:
-            known = ", ".join(each for each in vars(module) if not each.startswith("_"))
+            known = ", ".join(other for other in vars(module) if not other.startswith("_"))
             raise DeployError(
                 f"{path} is bound to {target}, and {place} has no {name}", hint=f"It has {known or 'nothing'}"
             ) from error
@@ -173,8 +173,8 @@ class PythonAdapter:
             await asyncio.wait({self._task})
 
     async def _close_all(self) -> None:
-        for each in self._objects.values():
-            close = getattr(each, "close", None)
+        for object in self._objects.values():
+            close = getattr(object, "close", None)
             if callable(close):
                 closed = close()
                 if inspect.isawaitable(closed):
@@ -211,7 +211,7 @@ def _takes_call(function: Callable[..., Any]) -> bool:
     except (TypeError, ValueError):
         return True
     kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    return any(each.kind in (*kinds, inspect.Parameter.VAR_POSITIONAL) for each in parameters)
+    return any(parameter.kind in (*kinds, inspect.Parameter.VAR_POSITIONAL) for parameter in parameters)
 
 
 def _fitting(function: Callable[..., Any], call: Call) -> dict[str, Any]:

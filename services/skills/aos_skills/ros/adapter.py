@@ -143,10 +143,10 @@ class RosAdapter:
         missing = [way.name for way in self._ways.values() if not self.node.kind_of(way.name)]
         if not missing:
             return
-        told = f"no node serves {', '.join(missing)}; served are {', '.join(self.node.served()) or 'none'}"
-        if told != self._told_missing:
-            self._told_missing = told
-            _log.warning("%s", told)
+        text = f"no node serves {', '.join(missing)}; served are {', '.join(self.node.served()) or 'none'}"
+        if text != self._told_missing:
+            self._told_missing = text
+            _log.warning("%s", text)
 
     async def _listen_to_what_is_there(self) -> None:
         renamed: dict[str, str] = self.host.options.get("topics", {})

@@ -163,8 +163,8 @@ class ExactValues(msgspec.Struct, frozen=True):
     @property
     def values(self) -> list[ActionValue]:
         return [
-            ActionValue(each.action, each.q, 0, 0.0, each.q - self.error, each.q + self.error)
-            for each in self.actions
+            ActionValue(value.action, value.q, 0, 0.0, value.q - self.error, value.q + self.error)
+            for value in self.actions
         ]
 
 

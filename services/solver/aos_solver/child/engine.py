@@ -299,9 +299,9 @@ class Engine:
         if not update.has_other_numbers:
             return update
         given = {**(numbers or {}), **(local_variables or {})}
-        told = ", ".join(f"{number.name} = {given.get(number.name, 'nothing')}" for number in observed)
+        given_text = ", ".join(f"{number.name} = {given.get(number.name, 'nothing')}" for number in observed)
         remark = (
-            f"the numbers of {action} do not count ({told}): "
+            f"the numbers of {action} do not count ({given_text}): "
             f"the model reports others with the response {response}"
         )
         log.warning("%s", remark)

@@ -24,7 +24,7 @@ def _single_numbers(
     for name, number in enumerate(observed):
         value = numbers.get(number.name)
         values = value if number.is_array and isinstance(value, list | tuple) else [value]
-        yield from ((name, index, each) for index, each in enumerate(values) if each is not None)
+        yield from ((name, index, element) for index, element in enumerate(values) if element is not None)
 
 
 def numbers_by_name(

@@ -16,12 +16,12 @@ _CHUNK_BYTES = 65536
 
 async def pass_on(printed: asyncio.StreamReader, out: BinaryIO) -> None:
     """Copies until the end. Past the limit all is read and dropped, so that the model never waits."""
-    left = PRINT_LIMIT_BYTES
+    remaining_bytes = PRINT_LIMIT_BYTES
     while chunk := await printed.read(_CHUNK_BYTES):
-        if left <= 0:
+        if remaining_bytes <= 0:
             continue
-        out.write(chunk[:left])
-        left -= len(chunk)
-        if left <= 0:
+        out.write(chunk[:remaining_bytes])
+        remaining_bytes -= len(chunk)
+        if remaining_bytes <= 0:
             out.write(b"\naos: model code printed more than 1 MB; the rest is left out\n")
         out.flush()

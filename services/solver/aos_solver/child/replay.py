@@ -70,11 +70,11 @@ class _Found(msgspec.Struct, frozen=True):
 
 
 def _moved(fault: CodeFaultError, found: _Found) -> AosError:
-    (told,) = fault.diagnostics
+    (original,) = fault.diagnostics
     hint = "Look at this statement"
     # Of code that does not come to an end the state is known now.
-    message = found.message if found.message.startswith(told.message) else told.message
-    diagnostic = msgspec.structs.replace(told, span=found.span, message=message, hint=hint)
+    message = found.message if found.message.startswith(original.message) else original.message
+    diagnostic = msgspec.structs.replace(original, span=found.span, message=message, hint=hint)
     text = f"{found.span}: {message}"
     return error_from_code(fault.code, text, hint=hint, diagnostics=(diagnostic,))
 

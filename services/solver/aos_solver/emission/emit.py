@@ -107,7 +107,9 @@ def emit(program: Program) -> EmittedModel:
         observed={skill.name: skill.observed for skill in program.skills if skill.observed},
         choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
         names=program.shared_names | {value for enum in program.enums for value in enum.values},
-        bounds=tuple(Bound(each.never.snippet.code, each.probability) for each in program.constraints),
+        bounds=tuple(
+            Bound(constraint.never.snippet.code, constraint.probability) for constraint in program.constraints
+        ),
     )
 
 
@@ -271,14 +273,16 @@ def _put_inline(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> N
 
 
 def _own_names(program: Program) -> dict[str, str]:
-    taken = {enum.name for enum in program.enums} | {compound.name for compound in program.compounds}
-    taken |= {variable.name for variable in program.variables}
-    taken |= program.shared_names
-    taken |= {value for enum in program.enums for value in enum.values} | set(program.low_level_constants)
+    used_names = {enum.name for enum in program.enums} | {compound.name for compound in program.compounds}
+    used_names |= {variable.name for variable in program.variables}
+    used_names |= program.shared_names
+    used_names |= {value for enum in program.enums for value in enum.values} | set(
+        program.low_level_constants
+    )
     names = {}
     for name in _OWN_NAMES:
         free = name
-        while free in taken:
+        while free in used_names:
             free += "_"
         names[name] = free
     return names
@@ -318,7 +322,7 @@ def _members_of(objects: ObjectList, state: str) -> list[str]:
 def _has_named_arrays(program: Program) -> bool:
     types = [field.type for compound in program.compounds for field in compound.fields]
     types += [variable.type for variable in program.variables]
-    return any("aos::Named<" in each for each in types)
+    return any("aos::Named<" in type for type in types)
 
 
 def _state_digest(program: Program) -> str:

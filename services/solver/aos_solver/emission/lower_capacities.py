@@ -74,11 +74,11 @@ class Capacities:
             code = strip_comments(cpp.code)
             loops = math.prod(_product(bound) for bound in _LOOP_BOUND.findall(self._in_numbers(code)))
             aliases = dict(_aliases(cpp))
-            filled = [each for call in cpp.calls if self._fills(call) for each in call.arguments]
+            filled = [argument for call in cpp.calls if self._fills(call) for argument in call.arguments]
             for mention in cpp.mentions:
                 path = (*aliases.get(mention.path[0], mention.path[:1]), *mention.path[1:])
                 self._take_mention(msgspec.structs.replace(mention, path=path), code, loops)
-                if any(each.start <= mention.extent.start < each.end for each in filled):
+                if any(argument.start <= mention.extent.start < argument.end for argument in filled):
                     self._grow((path[_last_name(path)], path[_last_name(path) + 1 :].count("[]")), loops)
 
     def _in_numbers(self, code: str) -> str:

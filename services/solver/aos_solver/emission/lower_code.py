@@ -106,7 +106,7 @@ class Pieces:
         self, snippet: Snippet, shared: SharedCode, rewriting: Rewriting, *, late: bool
     ) -> Piece | None:
         """The shared code that is `late`, or stands before the compound types; None for nothing."""
-        if not any(each.is_late == late for each in (*shared.names, *shared.functions)):
+        if not any(item.is_late == late for item in (*shared.names, *shared.functions)):
             return None
         cpp = read_cpp_declarations(shared.without(late=not late))
         functions = shared.functions if late else ()
@@ -267,11 +267,11 @@ def _loops_of(assignments: tuple[Assignment, ...], scope: Scope) -> _LoopsByCode
             scope = scope.with_variables([assignment.temporary.name])
         for loops in (assignment.over_previous, assignment.over_next):
             inside = scope
-            for each in loops:
-                inside = inside.with_variables([each.item])
-                if each.body is not None:
-                    read = loops_of(read_cpp(each.body.code), inside)
-                    found[id(each.body)] = LoopsOfPiece(read.loops, read.unset)
+            for loop in loops:
+                inside = inside.with_variables([loop.item])
+                if loop.body is not None:
+                    read = loops_of(read_cpp(loop.body.code), inside)
+                    found[id(loop.body)] = LoopsOfPiece(read.loops, read.unset)
         if assignment.code is not None:
             read = loops_of(read_cpp(assignment.code.code), scope)
             found[id(assignment.code)] = LoopsOfPiece(read.loops, read.unset)
@@ -288,7 +288,7 @@ def _looped_copies(phase: Phase, assignments: tuple[Assignment, ...]) -> frozens
 def _local_containers(snippets: Iterable[Cpp]) -> frozenset[str]:
     """The vectors and arrays that a section's code declares."""
     declarations = (declaration for cpp in snippets for declaration in cpp.declarations)
-    return frozenset(each.name for each in declarations if _CONTAINER.match(each.type))
+    return frozenset(declaration.name for declaration in declarations if _CONTAINER.match(declaration.type))
 
 
 def _local_enums(snippets: Iterable[Cpp]) -> dict[str, EnumValues]:

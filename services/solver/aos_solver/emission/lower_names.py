@@ -52,9 +52,9 @@ def check_names(project: Project, findings: Findings) -> None:
 def _shared_names(environment: Environment) -> Iterator[tuple[str, Span]]:
     if (snippet := environment.shared_code) is not None:
         shared = shared_code_of(environment)
-        for each in (*shared.names, *shared.functions):
-            if each.name:
-                yield each.name, snippet.locate(each.name_extent.line, each.name_extent.column)
+        for item in (*shared.names, *shared.functions):
+            if item.name:
+                yield item.name, snippet.locate(item.name_extent.line, item.name_extent.column)
 
 
 def _type_names(environment: Environment) -> Iterator[tuple[str, Span]]:

@@ -17,12 +17,18 @@ def looked_through(cpp: Cpp, shared: SharedCode) -> str:
     own = {declaration.name for declaration in cpp.declarations}
     edits: dict[Extent, str] = {}
     for call in cpp.calls:
-        functions = [each for each in shared.functions if call.name == (each.name,) and each.name not in own]
+        functions = [
+            function
+            for function in shared.functions
+            if call.name == (function.name,) and function.name not in own
+        ]
         for index, argument in enumerate(call.arguments if functions else ()):
             state = cpp.code[argument.start : argument.end]
-            read = [_members(each, index, shared) for each in functions if each.name in shared.reading]
+            read = [
+                _members(function, index, shared) for function in functions if function.name in shared.reading
+            ]
             if state in STATES and len(read) == len(functions) and None not in read:
-                names = sorted(set().union(*(each or () for each in read)))
+                names = sorted(set().union(*(members or () for members in read)))
                 edits[argument] = f"({' + '.join(f'{state}.{name}' for name in names) or '0'})"
     return cpp.replace(edits.items()) if edits else cpp.code
 

@@ -77,11 +77,11 @@ class Changes:
         found: dict[int, set[str]] = {}
         own = {declaration.name for declaration in cpp.declarations}
         for call in cpp.calls:
-            functions = [each for each in self._shared.functions if call.name == (each.name,)]
+            functions = [function for function in self._shared.functions if call.name == (function.name,)]
             for index, argument in enumerate(call.arguments if own.isdisjoint(call.name) else ()):
-                changed = [self._changed_in(each, index) for each in functions]
+                changed = [self._changed_in(function, index) for function in functions]
                 if changed and None not in changed:
-                    found[argument.start] = set().union(*(each or () for each in changed))
+                    found[argument.start] = set().union(*(names or () for names in changed))
         whole = {mention.extent.start for mention in cpp.mentions if len(mention.path) == 1}
         return {start: names for start, names in found.items() if start in whole}
 

@@ -117,9 +117,9 @@ def _before_loops(of_loops: LoopsOfPiece) -> Iterator[tuple[Extent | int, str]]:
         yield offset, "{}"
     for index, loop in enumerate(of_loops.loops, 1):
         yield loop.start, f"{{ aos::DrawingLoop aos_loop_{index}{{AOS, {of_loops.first + index - 1}}}; "
-        told = ", ".join(f"std::tie({', '.join(names)})" for names in (loop.mentioned, loop.others))
+        ties = ", ".join(f"std::tie({', '.join(names)})" for names in (loop.mentioned, loop.others))
         head = "head_in_function" if loop.is_in_function else "head"
-        yield loop.head, f"aos_loop_{index}.{head}({told}), ("
+        yield loop.head, f"aos_loop_{index}.{head}({ties}), ("
 
 
 def _after_loops(loops: Sequence[DrawingLoop]) -> Iterator[tuple[Extent | int, str]]:

@@ -42,7 +42,7 @@ class TracedModel(msgspec.Struct, frozen=True):
     def has_later_statements(self, piece: int) -> bool:
         """Returns whether a statement that runs with the piece stands on another line than the piece's
         first."""
-        if any(each.is_declarations for each in self.emitted.pieces):
+        if any(other.is_declarations for other in self.emitted.pieces):
             return True
         first = self.emitted.snippets[piece - 1]
         places = zip(self.pieces, self.emitted.snippets, strict=True)

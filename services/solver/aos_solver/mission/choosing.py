@@ -79,19 +79,19 @@ class Chooser:
             return Ended(Ending.TOO_RISKY, self._budget.remark(risks))
         while True:
             set_aside = self._set_aside()
-            left = [number for number, action in enumerate(actions) if action.skill not in set_aside]
-            if not set(left) - forbidden:
+            possible = [number for number, action in enumerate(actions) if action.skill not in set_aside]
+            if not set(possible) - forbidden:
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(set_aside))
             unavailable = self._around.unavailable
-            barred = [n for n in left if actions[n].skill in unavailable or n in forbidden]
-            if len(barred) == len(left):
+            barred = [n for n in possible if actions[n].skill in unavailable or n in forbidden]
+            if len(barred) == len(possible):
                 why = "; ".join(sorted({*unavailable.values(), *set_aside.values()}))
                 risky = ", and all others are too risky" if forbidden else ""
                 return Held(f"the mission holds, for no skill can be run: {why}{risky}")
             retried = self._failures.to_retry
             if retried is not None and model.digest == retried.model_digest:
                 index = [action.name for action in actions].index(retried.action)
-                if index in left and index not in barred:
+                if index in possible and index not in barred:
                     return Choice(await self._repeated(engine, retried, index), risks, forbidden, set_aside)
             plan, is_cautious = await self._plan(engine, step, belief, barred, set_aside)
             if actions[plan.index].skill in self._around.unavailable:

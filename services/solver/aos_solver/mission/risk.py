@@ -25,7 +25,7 @@ class RiskBudget:
 
     def __init__(self, bounds: Sequence[Bound]) -> None:
         self._bounds = tuple(bounds)
-        self._left = [bound.probability for bound in bounds]
+        self._remaining = [bound.probability for bound in bounds]
 
     def __bool__(self) -> bool:
         """Returns whether there is any constraint."""
@@ -36,38 +36,41 @@ class RiskBudget:
         return frozenset(
             number
             for number, probabilities in enumerate(risks.actions)
-            if any(risk > left + _ROUNDING for risk, left in zip(probabilities, self._left, strict=True))
+            if any(
+                risk > remaining + _ROUNDING
+                for risk, remaining in zip(probabilities, self._remaining, strict=True)
+            )
         )
 
     def spend(
-        self, risks: Risks, index: int, told: Sequence[int] | None = None
+        self, risks: Risks, index: int, actions: Sequence[int] | None = None
     ) -> tuple[ConstraintRisk, ...]:
         """Takes what the action of this number risks from the budget, and says how the decision stands.
 
         The risks of the actions with the numbers `told` are told, by default of all.
         """
-        told = range(len(risks.actions)) if told is None else told
+        actions = range(len(risks.actions)) if actions is None else actions
         spent = tuple(
             ConstraintRisk(
                 never=bound.never,
                 probability=bound.probability,
-                left=left,
+                left=remaining,
                 risk=risk,
-                risks=tuple(risks.actions[each][number] for each in told),
+                risks=tuple(risks.actions[action][number] for action in actions),
                 is_sampled=risks.is_sampled,
             )
-            for number, (bound, left, risk) in enumerate(
-                zip(self._bounds, self._left, risks.actions[index], strict=True)
+            for number, (bound, remaining, risk) in enumerate(
+                zip(self._bounds, self._remaining, risks.actions[index], strict=True)
             )
         )
-        self._left = [max(each.left - each.risk, 0.0) for each in spent]
+        self._remaining = [max(constraint.left - constraint.risk, 0.0) for constraint in spent]
         return spent
 
     def remark(self, risks: Risks) -> str:
         """Says why no action can be chosen."""
         refused = []
-        for number, (bound, left) in enumerate(zip(self._bounds, self._left, strict=True)):
+        for number, (bound, remaining) in enumerate(zip(self._bounds, self._remaining, strict=True)):
             least = min(probabilities[number] for probabilities in risks.actions)
-            left_text = f"{left:.3g} is left of {bound.probability:g}"
+            left_text = f"{remaining:.3g} is left of {bound.probability:g}"
             refused.append(f"never {bound.never}: {left_text}, and the least risk is {least:.3g}")
         return f"every action risks more than is allowed ({'; '.join(refused)})"

@@ -38,10 +38,10 @@ def top_seen(
     eye = (x + EYE_AHEAD_M * cos, y + EYE_AHEAD_M * sin, table_top_m + EYE_ABOVE_M)
     at = (x + LOOKS_AHEAD_M * cos, y + LOOKS_AHEAD_M * sin, table_top_m)
     colors, points = _photograph(scene, eye, at)
-    seen = points[is_it(colors)]
-    if len(seen) == 0:
+    points_of_it = points[is_it(colors)]
+    if len(points_of_it) == 0:
         return None
-    upper = seen[seen[:, 2] > np.quantile(seen[:, 2], HIGHEST) - TOP_M]
+    upper = points_of_it[points_of_it[:, 2] > np.quantile(points_of_it[:, 2], HIGHEST) - TOP_M]
     middle = upper.mean(axis=0)
     return float(middle[0]), float(middle[1]), float(middle[2])
 

@@ -43,11 +43,11 @@ def follow(
         x, y, yaw = drive.odometry
         near = corners[progress : progress + 20]
         progress += min(range(len(near)), key=lambda index: math.dist(near[index], (x, y)))
-        left = corners[progress:]
+        ahead = corners[progress:]
         if math.dist((x, y), corners[-1]) < ARRIVED_M:
             ending = Following.ARRIVED
             break
-        if not is_free(left):
+        if not is_free(ahead):
             ending = Following.BLOCKED
             break
         if math.dist((x, y), tried_from) > STUCK_WITHIN_M:
@@ -55,7 +55,7 @@ def follow(
         elif scene.time_s - since_s > STUCK_AFTER_S:
             ending = Following.STUCK
             break
-        target = next((point for point in left if math.dist(point, (x, y)) > AHEAD_M), left[-1])
+        target = next((point for point in ahead if math.dist(point, (x, y)) > AHEAD_M), ahead[-1])
         error = math.remainder(math.atan2(target[1] - y, target[0] - x) - yaw, 2 * math.pi)
         turn = max(-MAX_TURN_RAD_S, min(MAX_TURN_RAD_S, 3.0 * error))
         is_turning = abs(error) > TURN_FIRST_RAD

@@ -60,14 +60,14 @@ class PlanarBase:
         speed = 0.0
         while self._scene.time_s < deadline_s:
             at_x, at_y, _ = self.place
-            left = math.hypot(x - at_x, y - at_y)
-            if left < 0.004:
+            distance_m = math.hypot(x - at_x, y - at_y)
+            if distance_m < 0.004:
                 self.stop()
                 self._scene.wait(0.1)
                 return True
             faster = speed + DRIVE_ACCELERATION_M_S2 * STEP_S
-            speed = min(faster, DRIVE_SPEED_M_S, math.sqrt(2 * DRIVE_ACCELERATION_M_S2 * left))
-            self._push((speed * (x - at_x) / left, speed * (y - at_y) / left, 0.0))
+            speed = min(faster, DRIVE_SPEED_M_S, math.sqrt(2 * DRIVE_ACCELERATION_M_S2 * distance_m))
+            self._push((speed * (x - at_x) / distance_m, speed * (y - at_y) / distance_m, 0.0))
             self._scene.step()
         self.stop()
         return False

@@ -84,7 +84,7 @@ class TurtleBot3:
             self._ranges = self.lidar.turn()
         return self._ranges
 
-    def seen(self) -> npt.NDArray[np.float64]:
+    def seen_points(self) -> npt.NDArray[np.float64]:
         """The points that the rays of that turn ended on, one a row, x and y in metres.
 
         From where the robot was then: while it turns, a fifth of a second makes half a metre at the far end.

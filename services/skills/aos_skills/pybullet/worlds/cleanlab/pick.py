@@ -23,9 +23,9 @@ def pick(world: CleanLab, fields: dict[str, Any]) -> dict[str, Any]:
     robot, faults, noise = world.robot, world.file.faults, world.faults.noise
     x, y, yaw = robot.base.place
     at_x, at_y = x + AHEAD_M * math.cos(yaw), y + AHEAD_M * math.sin(yaw)
-    seen = place_of_cup(world)
-    if seen is not None:
-        at_x, at_y = seen
+    place = place_of_cup(world)
+    if place is not None:
+        at_x, at_y = place
     if world.faults.draw("the cup is seen elsewhere", faults.misplaced):
         at_x, at_y = at_x - MISPLACED_BY_M * math.cos(yaw), at_y - MISPLACED_BY_M * math.sin(yaw)
     at_x, at_y = at_x + noise.gauss(0, faults.pose_noise_m), at_y + noise.gauss(0, faults.pose_noise_m)

@@ -16,8 +16,8 @@ MIN_RED = 0.005
 
 def place_of_cup(world: CleanLab) -> tuple[float, float] | None:
     """The middle of what is red in a picture of the table, in metres; None where too little is."""
-    seen = top_seen(world.scene, world.robot.base.place, TABLE_TOP_M, _is_cup)
-    return seen[:2] if seen is not None else None
+    top = top_seen(world.scene, world.robot.base.place, TABLE_TOP_M, _is_cup)
+    return top[:2] if top is not None else None
 
 
 def _is_cup(colors: Colors) -> npt.NDArray[np.bool_]:

@@ -59,8 +59,8 @@ def main() -> None:
     if options.json:
         sys.stdout.write(json.dumps({"pictures": options.pictures, "right": right, "wrong": wrong}) + "\n")
         return
-    for each in wrong:
-        sys.stdout.write(f"seed {each['seed']}: {each['board']} was read as {each['read']}\n")
+    for mistake in wrong:
+        sys.stdout.write(f"seed {mistake['seed']}: {mistake['board']} was read as {mistake['read']}\n")
     sys.stdout.write(f"{right} of {options.pictures} read right, {time.monotonic() - started:.0f} s\n")
 
 

@@ -35,22 +35,22 @@ def navigate(world: Turtlebot, fields: dict[str, Any]) -> dict[str, Any]:
 def _arrives(world: Turtlebot, goal: Point) -> bool:
     robot, floor_map = world.robot, world.floor_map
     floor_map.forget()
-    seen: npt.NDArray[np.float64] = np.empty((0, 2))
+    gathered: npt.NDArray[np.float64] = np.empty((0, 2))
     looked_s = -1.0
 
-    def is_free(left: list[Point]) -> bool:
-        nonlocal seen, looked_s
+    def is_free(way_ahead: list[Point]) -> bool:
+        nonlocal gathered, looked_s
         if world.scene.time_s - looked_s < 0.2:
             return True
         looked_s = world.scene.time_s
-        points = robot.seen()
+        points = robot.seen_points()
         new = points[floor_map.distance(points) > UNMAPPED_M]
         # Cells hold one point each, so that standing still does not gather thousands.
-        seen = np.unique(np.round(np.concatenate([seen, new]) / 0.03) * 0.03, axis=0)
+        gathered = np.unique(np.round(np.concatenate([gathered, new]) / 0.03) * 0.03, axis=0)
         if len(new) == 0:
             return True
         floor_map.add(np.unique(np.round(new / 0.03) * 0.03, axis=0))
-        ahead = [point for point in left if math.dist(point, robot.place[:2]) > LEAVE_M]
+        ahead = [point for point in way_ahead if math.dist(point, robot.place[:2]) > LEAVE_M]
         return not ahead or floor_map.is_free(np.array(ahead))
 
     for _ in range(MAX_PLANS):

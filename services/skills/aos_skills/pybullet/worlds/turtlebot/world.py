@@ -37,7 +37,10 @@ class Turtlebot(World):
         self.faults = Faults(seed)
         scene.box((file.half_x + 1, file.half_y + 1, 0.05), (0, 0, -0.05), _FLOOR)
         walls = self._walls()
-        mapped = [*walls, *((each.x, each.y, each.half_x, each.half_y) for each in file.obstacles)]
+        mapped = [
+            *walls,
+            *((obstacle.x, obstacle.y, obstacle.half_x, obstacle.half_y) for obstacle in file.obstacles),
+        ]
         for number, (x, y, half_x, half_y) in enumerate(mapped):
             color = _WALL if number < len(walls) else _BLOCK
             scene.box((half_x, half_y, HEIGHT_HALF_M), (x, y, HEIGHT_HALF_M), color)
