@@ -245,7 +245,7 @@ def _put_block(lines: _Lines, parts: list[str], pieces: tuple[Piece, ...]) -> No
 
 
 def _has_long_literals(piece: Piece) -> bool:
-    """Whether a literal may go over lines, whose blanks would then belong to it."""
+    """Returns whether a literal may go over lines, whose blanks would then belong to it."""
     return 'R"' in piece.text or "\\\n" in piece.text
 
 
