@@ -203,8 +203,8 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "aos_runtime.adapters.settings.AdapterSettings.cancel_s", "s", "its process ends",
         ),
         Row(
-            "an adapter is started again",
-            "aos_deploy.adapter_kinds.Kind.restarts", "times", "the mission ends",
+            "an adapter or a service is started within 60 s",
+            "aos_deploy.restarts.STARTS", "times", "the mission ends",
         ),
     ),
     "Robots that speak ROS": (

@@ -32,6 +32,7 @@ def small(
     start_s: float = 20.0,
     stop_s: float = 5.0,
     is_adapter: bool = False,
+    is_restarted: bool = False,
 ) -> Program:
     """A service that behaves as its mood says; see `small_service`."""
     return Program(
@@ -41,17 +42,18 @@ def small(
         start_s=start_s,
         stop_s=stop_s,
         is_adapter=is_adapter,
+        is_restarted=is_restarted,
     )
 
 
-def command(*words: str, restarts: int = 0) -> Program:
+def command(*words: str, is_restarted: bool = False) -> Program:
     """An adapter `robot` that is a program of the user's own."""
     return Program(
         name="robot",
         command=words,
         folder=str(TESTS),
         paths=("/sense",),
-        restarts=restarts,
+        is_restarted=is_restarted,
         is_adapter=True,
     )
 

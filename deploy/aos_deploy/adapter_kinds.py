@@ -23,7 +23,7 @@ class Kind(msgspec.Struct, frozen=True, kw_only=True):
     `adapter` is `module:Class`, empty where no adapter class of Python runs. The value of the kind's own word
     in the deploy file becomes the option `value`. `options` are those it knows, None for any. Its process may
     take `start_s` to get ready, its paths `ready_s` from then on, and `stop_s` to end. When it ends by itself
-    it is started again `restarts` times. It imports the module `needs`, which comes with the `extra` of our
+    it is started again if `is_restarted`. It imports the module `needs`, which comes with the `extra` of our
     package.
     """
 
@@ -33,7 +33,7 @@ class Kind(msgspec.Struct, frozen=True, kw_only=True):
     start_s: float = 20.0
     ready_s: float = 30.0
     stop_s: float = 5.0
-    restarts: int = 3
+    is_restarted: bool = True
     needs: str = ""
     extra: Extra = ""
 
@@ -49,7 +49,7 @@ _KINDS = {
         start_s=60.0,
         ready_s=1.0,  # It serves its paths before it says that it is ready.
         stop_s=20.0,  # It makes the mission's picture while it stops.
-        restarts=0,  # Its world would begin anew.
+        is_restarted=False,  # Its world would begin anew.
         needs="pybullet",
         extra="sim",
     ),

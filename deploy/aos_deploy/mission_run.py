@@ -35,6 +35,7 @@ from aos_protocol.messages import (
     SkillProgress,
     StartMission,
 )
+from aos_runtime.asking import ask_until_answered
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
@@ -137,8 +138,13 @@ class MissionRun:
             write_record()  # Now all processes have an id.
             self._services_ready_s = self._elapsed_s()
         await until_skills_can_run(supervisor, self._deployment)
-        await supervisor.bus.ask(
-            supervisor.keys.start_mission, StartMission(), MissionState, timeout_s=_BUILD_TIMEOUT_S
+        await ask_until_answered(
+            supervisor.bus,
+            supervisor.keys.start_mission,
+            StartMission(),
+            MissionState,
+            server=supervisor.keys.live("solver"),
+            timeout_s=_BUILD_TIMEOUT_S,
         )
 
     async def _push_bundles(self, supervisor: Supervisor) -> None:
@@ -150,10 +156,12 @@ class MissionRun:
         """Brings a bundle into the registry; DocumentError with all diagnostics if it is refused."""
         files = await asyncio.to_thread(files_of_bundle, bundle, self._deployment.file.leave_out)
         self._own_pushes.add(str(bundle))
-        report = await supervisor.bus.ask(
+        report = await ask_until_answered(
+            supervisor.bus,
             supervisor.keys.push_bundle,
             PushBundle(files, str(bundle)),
             BundleReport,
+            server=supervisor.keys.live("registry"),
             timeout_s=_BUILD_TIMEOUT_S,
         )
         found = tuple(_with_folder(diagnostic, bundle) for diagnostic in report.diagnostics)
@@ -180,7 +188,7 @@ class MissionRun:
 
     async def _follow_mission(self, supervisor: Supervisor) -> None:
         client = AosClient(supervisor.bus, self._deployment.file.robot)
-        async for event in client.follow():
+        async for event in client.follow(away_s=None):
             if isinstance(event, BundleReport) and event.source in self._own_pushes:
                 # Told already, with the way to the files; another push of the same is news.
                 self._own_pushes.remove(event.source)

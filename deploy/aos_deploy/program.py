@@ -23,11 +23,12 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     """A service to be supervised.
 
     `settings` are what it is told beyond robot, endpoint and run directory. It is ready when its liveliness
-    token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL. Once it was ready it
-    is started again up to `restarts` times when it ends by itself. With a `command` it is a program of the
-    user's own: it gets its settings in the environment, is ready when it serves one of the `paths` that are
-    bound to it, and may be started again before that, too. The word `python` stands for the Python that this
-    runs in. With a `host` it runs there, in a `folder` of that host. Others may go on without an adapter.
+    token is seen; `start_s` bounds that, `stop_s` the time between SIGTERM and SIGKILL. Where it
+    `is_restarted`, it is started again when it ends by itself after it was ready, as `restarts.py` says.
+    With a `command` it is a program of the user's own: it gets its settings in the environment, is ready
+    when it serves one of the `paths` that are bound to it, and may be started again before that, too. The
+    word `python` stands for the Python that this runs in. With a `host` it runs there, in a `folder` of
+    that host. Others may go on without an adapter.
 
     A program with an `on_exit` is none of the bus: the adapters start once it is `ready`, and `on_exit` says
     what follows when it ends by itself.
@@ -38,7 +39,7 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     settings: dict[str, Any] = {}
     start_s: float = 20.0
     stop_s: float = 3.0
-    restarts: int = 0
+    is_restarted: bool = False
     command: tuple[str, ...] = ()
     folder: str | None = None
     host: str = ""
@@ -56,13 +57,18 @@ class Program(msgspec.Struct, frozen=True, kw_only=True):
     def ending_s(self) -> float:
         """The time that the process may take to end: a command, then what it leaves behind, are asked
         first."""
-        return 2 * self.stop_s + 1.0 if self.command else self.stop_s
+        return 2 * self.stop_s + 1.0 if self.is_guarded else self.stop_s
+
+    @property
+    def is_guarded(self) -> bool:
+        """Says whether it runs behind a guard, which asks it to end when `aos-up` is killed."""
+        return bool(self.command) or self.is_adapter
 
     def argv(self, settings: Path) -> list[str]:
         """The command line."""
-        if self.command:
-            return guarded(words_of(self.command), Limits(grace_s=self.stop_s))
-        return [sys.executable, "-m", self.module, str(settings)]
+        own = [sys.executable, "-m", self.module, str(settings)]
+        words = words_of(self.command) if self.command else own
+        return guarded(words, Limits(grace_s=self.stop_s)) if self.is_guarded else words
 
 
 def words_of(command: tuple[str, ...]) -> list[str]:
@@ -80,8 +86,8 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
     adapters = [_adapter(deployment, plan) for plan in deployment.adapters if plan.is_process]
     middleware = project | activation | _played(deployment)
     return (
-        Program(name="registry", module="aos_registry", settings=registry),
-        Program(name="middleware", module="aos_middleware", settings=middleware),
+        Program(name="registry", module="aos_registry", settings=registry, is_restarted=True),
+        Program(name="middleware", module="aos_middleware", settings=middleware, is_restarted=True),
         *(_own(deployment, name, part) for name, part in file.programs.items()),
         *adapters,
         Program(name="solver", module="aos_solver", settings=_solver_settings(deployment), stop_s=5.0),
@@ -94,7 +100,7 @@ def _own(deployment: Deployment, name: str, part: ProgramPart) -> Program:
         name=name,
         start_s=part.start_s,
         stop_s=part.stop_s,
-        restarts=3 if part.on_exit == "restart" else 0,
+        is_restarted=part.on_exit == "restart",
         command=part.command,
         folder=part.folder if part.host else str(deployment.path.parent),
         host=part.host,
@@ -131,7 +137,7 @@ def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:
         settings=settings,
         start_s=kind.start_s,
         stop_s=kind.stop_s,
-        restarts=kind.restarts,
+        is_restarted=kind.is_restarted,
         command=tuple(plan.options["command"]) if plan.is_command else (),
         folder=_folder(deployment, plan) if plan.is_command else None,
         host=options.get("host", "") if plan.is_command else "",

@@ -6,7 +6,8 @@ they need not wait for it. Readiness is then awaited in the order of the program
 service, the first path that a command serves. They are stopped in the reverse order, the router last.
 
 A service that ends before it is told to ends the supervision with the fault it left, unless its program says
-that it may be started again. `_watch` is the only place that sees a service end.
+that it may be started again. One that is frozen is killed. `_watch` is the only place that sees a service
+end.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from aos_deploy.process_end import end_of, look_at_log, status_text
 from aos_deploy.process_start import start_process
 from aos_deploy.program import Program
 from aos_deploy.program_ready import check_port_is_free, until_seen_ready
+from aos_deploy.restarts import STARTS, WITHIN_S, Restarts
 from aos_deploy.run_directory import ProcessEnd, RunDirectory
 from aos_protocol.errors import AosError, DeployError
 from aos_protocol.keys import Keys, Serving
@@ -38,15 +40,18 @@ __all__ = ["ROUTER", "Supervisor", "supervised"]
 STARTED_AGAIN, GIVEN_UP, IGNORED, THE_RUN_ENDS = "it is started again", "given up", "ignored", "the run ends"
 """The consequences of a process that ends by itself."""
 
-ROUTER = Program(name="router", module="aos_runtime.router", start_s=ROUTER_S)
+ROUTER = Program(name="router", module="aos_runtime.router", start_s=ROUTER_S, is_restarted=True)
+
+FROZEN_S = 5.0
+"""A process of ours that is silent for so long, after it was ready, is killed."""
 
 _CANCEL_TIMEOUT_S = 2.5
 _HOST_S = 2.0
 """A program on another host may take this much longer to end than one here."""
 _MISTAKES = (2, 126, NOT_STARTED)
 """Statuses that programs and shells have for a command line that is wrong, which stays wrong."""
-_RESTART_S = 0.2
-"""The time before the first restart of a program; each further one waits twice as long."""
+_HOPELESS = ("AOS1", "AOS7", "AOS8")
+"""How the codes of faults begin that the next start would find again."""
 
 
 class _Running:
@@ -56,11 +61,12 @@ class _Running:
 
     def __init__(self, program: Program) -> None:
         self.program = program
-        self.starts = 1
+        self.restarts = Restarts()
         self.started_s = 0.0
         self.ready = asyncio.Event()
         self.is_ready = False
         self.seeking: asyncio.Task[None] | None = None
+        self.silence: asyncio.Task[None] | None = None
 
 
 @asynccontextmanager
@@ -195,6 +201,7 @@ class Supervisor:
     async def _launch(self, running: _Running) -> None:
         program = running.program
         running.started_s = self._clock.monotonic_s()
+        running.restarts.start(running.started_s)
         log = self._run.log(program.name)
         log_start = log.stat().st_size if log.exists() else 0
         running.child = await start_process(program, self._base, self._run)
@@ -221,9 +228,11 @@ class Supervisor:
         self._is_ready(running)
 
     async def _follow_presence(self, bus: Bus) -> None:
-        keys = self.keys
+        keys, router = self.keys, self._running[ROUTER.name]
         async with merged(bus.presence(keys.all_live), bus.presence(keys.all_serve)) as changes:
             async for key, is_alive in changes:
+                if is_alive and not router.is_ready:
+                    self._is_ready(router)  # It was started again, and others are heard through it.
                 serving = keys.serving_of(key)
                 if serving is not None:
                     (self._serving.add if is_alive else self._serving.discard)(serving.path)
@@ -232,6 +241,8 @@ class Supervisor:
                     running = self._running.get(keys.service_of(key))
                 if running is not None and is_alive and not running.is_ready:
                     self._is_ready(running)
+                elif running is not None and not is_alive and serving is None:
+                    self._is_silent(running)
 
     def _command_behind(self, serving: Serving) -> _Running | None:
         """The command that serves a path, by its name in the token or by what is bound to it."""
@@ -242,7 +253,27 @@ class Supervisor:
                 return running
         return None
 
+    def _is_silent(self, running: _Running) -> None:
+        """A service has left the bus: it ends, or it is frozen."""
+        running.is_ready = False
+        if running.program.is_restarted and running.silence is None:
+            running.silence = self._beside(self._kill_if_frozen(running))
+
+    async def _kill_if_frozen(self, running: _Running) -> None:
+        child, router = running.child, self._running[ROUTER.name]
+        await asyncio.sleep(FROZEN_S)
+        # Without a router nobody is heard, and with a new one not at once.
+        if self._clock.monotonic_s() - router.started_s < 2 * FROZEN_S:
+            await asyncio.sleep(FROZEN_S)
+        running.silence = None
+        if running.child is child and child.returncode is None and router.is_ready:
+            self._changed(running.program.name, "frozen", f"silent for {FROZEN_S:g} s; it is killed")
+            child.kill()
+
     def _is_ready(self, running: _Running, state: str = "ready") -> None:
+        if running.silence is not None:
+            running.silence.cancel()
+            running.silence = None
         running.is_ready = True
         running.ready.set()
         self._changed(running.program.name, state)
@@ -268,13 +299,12 @@ class Supervisor:
                 raise self._end_of(running, status)
             if then != STARTED_AGAIN:
                 return
-            await asyncio.sleep(_RESTART_S * 2 ** (running.starts - 1))
+            await asyncio.sleep(running.restarts.delay_s(self._clock.monotonic_s()))
             if self._is_stopping:
                 return
-            running.starts += 1
             self._run.forget_fault(program.name)
             await self._launch(running)
-            self._changed(program.name, "starting", f"for the {running.starts}. time")
+            self._changed(program.name, "starting", f"for the {running.restarts.count}. time")
 
     def _what_follows(self, running: _Running, status: int) -> str:
         """Returns the consequence of a program that ended by itself."""
@@ -283,11 +313,18 @@ class Supervisor:
             return IGNORED
         # Before it was ready, only what the next start may find otherwise is tried again.
         is_mistake = status in _MISTAKES or self._run.fault(program.name) is not None
-        may_start_again = was_ready or (program.command and not is_mistake)
-        if may_start_again and running.starts <= program.restarts:
+        may_succeed = (
+            not self._is_hopeless(program) if was_ready else bool(program.command) and not is_mistake
+        )
+        has_starts = program.is_restarted and running.restarts.are_left(self._clock.monotonic_s())
+        if may_succeed and has_starts:
             return STARTED_AGAIN
         # What an adapter served is unavailable; the mission goes on with the rest.
         return GIVEN_UP if was_ready and self._has_other_adapters(running) else THE_RUN_ENDS
+
+    def _is_hopeless(self, program: Program) -> bool:
+        fault = self._run.fault(program.name)
+        return fault is not None and not program.is_adapter and fault.code.startswith(_HOPELESS)
 
     def _has_other_adapters(self, running: _Running) -> bool:
         others = (other for other in self._running.values() if other is not running)
@@ -296,7 +333,10 @@ class Supervisor:
         )
 
     def _end_of(self, running: _Running, status: int) -> AosError:
-        return end_of(running.program, self._run, status, was_ready=running.ready.is_set())
+        error = end_of(running.program, self._run, status, was_ready=running.ready.is_set())
+        if running.restarts.count >= STARTS:
+            error.message += f", and was started {STARTS} times within {WITHIN_S:g} s"
+        return error
 
     def look_at_log(self, name: str) -> str:
         """Returns the place of a service's log, and its last lines."""
@@ -322,7 +362,7 @@ class Supervisor:
         """Ends every process at once; what they have started ends with them."""
         self._is_stopping = True
         for running in self._running.values():
-            (running.child.end_at_once if running.program.command else running.child.kill)()
+            (running.child.end_at_once if running.program.is_guarded else running.child.kill)()
 
     async def _stop_one(self, name: str) -> None:
         running = self._running.get(name)

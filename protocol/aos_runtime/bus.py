@@ -42,6 +42,7 @@ anew."""
 _LATE_S = 0.5
 """A question ends this long after Zenoh's own deadline by ours, in case Zenoh says nothing."""
 
+_LINK_S = 0.05
 _UNANSWERED_S = 1.0
 """An open question asks this often whether its key is served still, and waits this long for an answer under
 way whose giver has left."""
@@ -290,6 +291,16 @@ class Bus:
             return partial(self._end, subscription, subscriber)
 
         return Subscription(declare, 1000)
+
+    @property
+    def is_routed(self) -> bool:
+        """Says whether a router is there. The session finds back to one that is started again by itself."""
+        return not self._is_closed and bool(self._session.info.routers_zid())
+
+    async def has_lost_router(self) -> bool:
+        """Says of a question whose answer was lost whether the router has gone, and not who was asked."""
+        await asyncio.sleep(_LINK_S)  # The session hears of its link a moment later.
+        return not self.is_routed
 
     def _check_open(self) -> None:
         if self._is_closed:

@@ -23,6 +23,9 @@ ADAPTER_LEASE_S = 0.8
 """The same for an adapter, whose skills are to be unavailable within a second. Losing one for a moment costs
 less than losing a service: its call is unknown, and the mission goes on."""
 
+_RETRY = {"period_init_ms": 50, "period_max_ms": 400, "period_increase_factor": 2}
+"""How a client seeks a router that has gone."""
+
 _ENDPOINT = re.compile(r"(tcp|udp|tls|quic|ws|unixsock-stream)/\S+")
 
 _COMMON: dict[str, Any] = {
@@ -38,7 +41,7 @@ def client_config(endpoint: str, *, lease_s: float = LEASE_S, stamps: bool = Fal
     The router takes the client for gone when it is silent for `lease_s`. Publishers that keep a history for
     late comers need `stamps`, a time on all that is sent.
     """
-    connect = {"endpoints": [_checked(endpoint)], "timeout_ms": 0}
+    connect = {"endpoints": [_checked(endpoint)], "timeout_ms": 0, "retry": _RETRY}
     return _config({"mode": "client", "connect": connect, "timestamping": {"enabled": stamps}}, lease_s)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from typing import Any
 
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys
@@ -21,11 +22,15 @@ from aos_protocol.messages import (
     MissionState,
 )
 from aos_runtime.bus import Bus
-from aos_runtime.subscription import merged
+from aos_runtime.older_python import timeout
+from aos_runtime.subscription import Subscription, merged
 
 __all__ = ["AosClient", "DecisionFeed"]
 
 _HISTORY_TIMEOUT_S = 5.0
+
+SOLVER_AWAY_S = 15.0
+"""A solver that is started again is back within this time."""
 
 
 class AosClient:
@@ -55,15 +60,21 @@ class AosClient:
         """Every decision record from the first, each once and in order, until the mission ends.
 
         Who joins late gets what was before, and a gap in the stream is filled from the solver's history. If
-        the solver is not there yet, waits for it; ends when it goes.
+        the solver is not there yet, waits for it; ends when it has gone for good.
         """
         async for event in self.follow():
             if isinstance(event, DecisionRecord):
                 yield event
 
-    async def follow(self) -> AsyncIterator[DecisionRecord | MissionState | BundleReport]:
+    async def follow(
+        self, *, away_s: float | None = SOLVER_AWAY_S
+    ) -> AsyncIterator[DecisionRecord | MissionState | BundleReport]:
         """Yields what `decisions` yields, each change of the mission's state, and what becomes of dropped
-        bundles."""
+        bundles.
+
+        The stream goes on with a solver that is started again. It ends when the solver was away for `away_s`,
+        or never where that is None.
+        """
         keys = self.keys
         feed = DecisionFeed()
         stream = merged(
@@ -72,12 +83,15 @@ class AosClient:
             self.bus.listen(keys.bundle_report, BundleReport),
             self.bus.presence(keys.live("solver")),
         )
+        may_wait_s = None
         async with stream:
-            async for _, event in stream:
+            while (event := await _next(stream, may_wait_s)) is not None:
+                if isinstance(event, bool):
+                    may_wait_s = None if event else away_s
                 state = await self._state_if_there() if event is True else None
                 if isinstance(event, MissionState):
                     state = event
-                is_over = event is False or (state is not None and state.phase == "ended")
+                is_over = state is not None and state.phase == "ended"
                 ready = feed.take(event) if isinstance(event, DecisionRecord) else []
                 if feed.has_gap or event is True or is_over:
                     ready += feed.take_history(await self._history(feed.next_sequence))
@@ -104,6 +118,16 @@ class AosClient:
             return await self.mission_state()
         except BusError:
             return None
+
+
+async def _next(stream: Subscription[Any], timeout_s: float | None) -> Any:
+    """Returns the next event; None when the stream has ended, or nothing comes in time."""
+    try:
+        async with timeout(timeout_s):
+            _, event = await anext(stream)
+    except (StopAsyncIteration, TimeoutError):
+        return None
+    return event
 
 
 class DecisionFeed:

@@ -243,6 +243,19 @@ async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, fun
     assert (await robot.call("/drive", 2, x=0)).fields == {"success": True}
 
 
+async def test_what_moves_is_stopped_when_the_middleware_was_away_for_too_long(robot: Robot) -> None:
+    middleware = robot.keys.live("middleware")
+    await robot.bus.announce(middleware)
+    await robot.start(wait="robot.py:wait", drive="robot.py:drive")
+    async with robot.bus.listen(robot.keys.progress("/wait"), SkillProgress) as progress:
+        running = asyncio.create_task(robot.refusal("/wait", 1))
+        await anext(progress)
+    robot.bus.withdraw(middleware)
+    refusal = await running
+    assert (refusal.code, "the middleware has gone" in str(refusal)) == ("AOS507", True)
+    assert (await robot.call("/drive", 2, x=0)).fields == {"success": True}, "a call by hand needs none"
+
+
 async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown(robot: Robot) -> None:
     await robot.start(skill="robot.py:hang")
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)

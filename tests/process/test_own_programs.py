@@ -142,10 +142,8 @@ async def test_a_program_that_goes_into_the_background_is_told_to_stay(system: S
 async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(
     system: System, on_exit: str, then: str
 ) -> None:
-    restarts = 3 if on_exit == "restart" else 0
-    nav = own(
-        "sh", "-c", "echo up; sleep 1000", ready=ReadyPart(line="up"), on_exit=on_exit, restarts=restarts
-    )
+    endless = ("sh", "-c", "echo up; sleep 1000")
+    nav = own(*endless, ready=ReadyPart(line="up"), on_exit=on_exit, is_restarted=on_exit == "restart")
 
     async def work() -> None:
         async with asyncio.timeout(HANG_S), system.up(nav, ADAPTER) as supervisor:

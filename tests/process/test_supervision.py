@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import re
+import signal
 from collections.abc import Callable
 
 import pytest
@@ -11,7 +13,8 @@ from processes import HANG_S, descendants, has_listener, is_running, kill, until
 from supervised_system import System, command, small
 
 from aos_deploy.program import Program
-from aos_protocol.errors import DeployError, DocumentError
+from aos_deploy.restarts import STARTS
+from aos_protocol.errors import AosError, DeployError, DocumentError
 
 NAMES = ("registry", "middleware", "skills", "solver")
 
@@ -86,14 +89,55 @@ async def test_a_program_that_cannot_run_is_told(system: System) -> None:
     assert "No module named no_such_package" in error.hint
 
 
-@pytest.mark.parametrize("victim", ["router", *NAMES])
-async def test_the_death_of_any_process_ends_the_system(
+@pytest.mark.parametrize("victim", NAMES)
+async def test_the_death_of_a_service_that_is_not_started_again_ends_the_system(
     system: System, programs: Callable[..., tuple[Program, ...]], victim: str
 ) -> None:
     error = await system.error(*programs(), victim=victim)
     assert error.message == f"{victim} ended unexpectedly: killed by SIGKILL"
     assert error.code == "AOS804"
     assert not any(is_running(pid) for pid in system.pids)
+
+
+async def test_a_service_that_dies_is_started_again_and_ready_again(system: System) -> None:
+    async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
+        await supervisor.until_ready()
+        kill(supervisor.pids["solver"])
+        await system.until("solver", "ready", times=2)
+    (end,) = system.ends
+    assert (end.name, end.how, end.then) == ("solver", "killed by SIGKILL", "it is started again")
+
+
+async def test_a_router_that_dies_is_started_again_and_all_find_back_to_it(system: System) -> None:
+    async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
+        await supervisor.until_ready()
+        pid = supervisor.pids["solver"]
+        kill(supervisor.pids["router"])
+        await system.until("router", "ready", times=2)
+        await system.until("solver", "ready", times=2)
+        assert supervisor.pids["solver"] == pid, "the service was not started again"
+
+
+async def test_a_frozen_service_is_killed_and_started_again(system: System) -> None:
+    async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
+        await supervisor.until_ready()
+        os.kill(supervisor.pids["solver"], signal.SIGSTOP)
+        await system.until("solver", "frozen")
+        await system.until("solver", "ready", times=2)
+
+
+async def test_a_service_that_ends_again_and_again_ends_the_system_with_the_count(system: System) -> None:
+    async def work() -> None:
+        async with asyncio.timeout(HANG_S), system.up(small("solver", is_restarted=True)) as supervisor:
+            await supervisor.until_ready()
+            for times in range(1, STARTS + 1):
+                await system.until("solver", "ready", times=times)
+                kill(supervisor.pids["solver"])
+            await asyncio.Event().wait()
+
+    with pytest.raises(AosError, match="killed by SIGKILL, and was started 5 times within 60 s") as raised:
+        await work()
+    assert raised.value.code == "AOS804"
 
 
 async def test_a_service_that_ignores_sigterm_is_killed(system: System) -> None:
@@ -151,7 +195,7 @@ async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_ser
 async def test_a_command_that_starts_again_is_ready_again(system: System) -> None:
     async with (
         asyncio.timeout(HANG_S),
-        system.up(command("python", "small_command.py", restarts=1)) as supervisor,
+        system.up(command("python", "small_command.py", is_restarted=True)) as supervisor,
     ):
         await system.until("robot", "ready")
         kill(supervisor.pids["robot"])
@@ -161,15 +205,15 @@ async def test_a_command_that_starts_again_is_ready_again(system: System) -> Non
 
 
 async def test_a_command_that_ends_before_it_serves_is_tried_again(system: System) -> None:
-    error = await system.error(command("sh", "-c", "echo no camera; exit 4", restarts=1))
-    assert system.order("ended") == ["robot", "robot", "router"]
+    error = await system.error(command("sh", "-c", "echo no camera; exit 4", is_restarted=True))
+    assert system.order("ended") == ["robot"] * 5 + ["router"]
     assert error.code == "AOS802"
-    assert error.message == "robot ended unexpectedly: exit status 4"
+    assert error.message == "robot ended unexpectedly: exit status 4, and was started 5 times within 60 s"
     assert "no camera" in error.hint
 
 
 async def test_a_command_that_cannot_be_started_is_not_tried_again(system: System) -> None:
-    error = await system.error(command("./no_such_program", restarts=3))
+    error = await system.error(command("./no_such_program", is_restarted=True))
     assert system.order("ended") == ["robot", "router"]
     assert error.code == "AOS802"
     assert "cannot start ./no_such_program: No such file or directory" in error.hint

@@ -116,8 +116,8 @@ programs:
     ]
     sim, nav = programs[2:4]
     assert (sim.command, sim.folder, sim.ready) == (("python", "sim.py"), str(folder), ReadyPart(port=5555))
-    assert (sim.start_s, sim.stop_s, sim.on_exit, sim.restarts) == (5, 7, "restart", 3)
-    assert (nav.host, nav.folder, nav.on_exit, nav.restarts) == ("robot@arm", "/opt/nav", "fault", 0)
+    assert (sim.start_s, sim.stop_s, sim.on_exit, sim.is_restarted) == (5, 7, "restart", True)
+    assert (nav.host, nav.folder, nav.on_exit, nav.is_restarted) == ("robot@arm", "/opt/nav", "fault", False)
     assert [each.name for each in programs_of_deployment(without_a_robot(deployment))] == [
         "registry",
         "middleware",

@@ -38,6 +38,7 @@ from aos_runtime.adapters.sendable import sendable
 from aos_runtime.adapters.settings import AdapterSettings, Binding
 from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
+from aos_runtime.older_python import timeout
 
 __all__ = ["Host", "load_adapter", "serve_adapter"]
 
@@ -46,6 +47,9 @@ PROGRESS_EVERY_S = 0.05
 
 MAX_UNSENT_MESSAGES = 10_000
 """The oldest topic messages give way where more than these wait to be sent."""
+
+MIDDLEWARE_AWAY_S = 2.0
+"""What moves is stopped when nobody could hear of it for so long."""
 
 _ASK_TIMEOUT_S = 5.0
 _LAST_WORDS_S = 2.0
@@ -219,7 +223,24 @@ class Host:
         self._adapter = load_adapter(self._settings.adapter, self)
         await self._adapter.start()
         await self._service.ready()
-        await self._failed
+        watching = asyncio.create_task(self._watch_middleware())
+        try:
+            await self._failed
+        finally:
+            watching.cancel()
+
+    async def _watch_middleware(self) -> None:
+        """Stops what moves when the middleware, or the bus, was away for too long."""
+        async with self._service.bus.presence(self._service.keys.live("middleware")) as presence:
+            is_there = True  # A call by hand needs none.
+            while True:
+                try:
+                    async with timeout(None if is_there else MIDDLEWARE_AWAY_S):
+                        _, is_there = await anext(presence)
+                except TimeoutError:
+                    is_there = True  # What runs is stopped once.
+                    if self._running is not None:
+                        await self._stop(self._running, "the middleware has gone")
 
     async def close(self) -> None:
         # Whoever stops the process cancels what `run` waits for, which is no failure.

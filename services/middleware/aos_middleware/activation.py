@@ -34,6 +34,7 @@ from aos_protocol.messages import (
     Stray,
     TopicMessage,
 )
+from aos_runtime.asking import AWAY_S
 from aos_runtime.bus import Bus, Subscription
 from aos_runtime.clock import Clock
 from aos_runtime.subscription import merged
@@ -104,12 +105,9 @@ async def run_activation(
     observation = _Observation()
     fault: AosError | None = None
     status = "observed"
-    activation = _Activation(request, evaluator, around)
+    activation = _Activation(request, evaluator, around, is_taken_up)
     try:
         observation = await activation.run()
-        if is_taken_up and activation.reads_topics:
-            observation = _Observation()
-            raise _missed_topics(request)
     except MappingFault as error:
         fault, observation = error, _Observation(local_variables=error.local_variables)
         # A skill that was called may have done its work: its mapping has failed, not the robot.
@@ -145,7 +143,7 @@ def _fault_of(error: AosError) -> Fault:
 
 def _missed_topics(request: Activate) -> SkillError:
     return SkillError(
-        f"the middleware was started anew while {request.skill} ran, and what its topics told is missing",
+        f"middleware or router were started again while {request.skill} ran, and its topics were missed",
         code="AOS504",
         hint="The skill has ended; let the robot sense what became of it",
     )
@@ -154,7 +152,9 @@ def _missed_topics(request: Activate) -> SkillError:
 class _Activation:
     """The steps of one activation and what they share: the deadline, and which messages were seen."""
 
-    def __init__(self, request: Activate, evaluator: Evaluator, around: Surroundings) -> None:
+    def __init__(
+        self, request: Activate, evaluator: Evaluator, around: Surroundings, is_taken_up: bool
+    ) -> None:
         self._request = request
         self._evaluator = evaluator
         self._around = around
@@ -171,11 +171,7 @@ class _Activation:
         self._has_received = asyncio.Event()
         self._fault: AosError | None = None
         self.was_called = False
-
-    @property
-    def reads_topics(self) -> bool:
-        """Says whether the observation depends on messages that were sent during the call."""
-        return bool(self._topic_of)
+        self._has_missed = is_taken_up
 
     async def run(self) -> _Observation:
         """Calls the skill with its fields and returns what is observed."""
@@ -190,6 +186,8 @@ class _Activation:
             return await self._observed_failure(error)
         if result.response:
             return _Observation(result.response, numbers=result.numbers)
+        if self._has_missed and self._topic_of:
+            raise _missed_topics(self._request)
         observed = await self._evaluator.finish(result.fields)
         if observed.response is None:
             raise no_response(self._mapping, result.fields, observed.local_variables)
@@ -270,13 +268,7 @@ class _Activation:
         call = SkillCall(request.id, path, fields, limit_s, request.skill, request.parameters, request.epoch)
         has_ended = False
         try:
-            result = await self._bus.ask(
-                self._keys.call(path),
-                call,
-                SkillResult,
-                timeout_s=limit_s + _REPLY_GRACE_S,
-                on_stray=self._note_stray,
-            )
+            result = await self._answer(path, call)
             has_ended = result.id == request.id
         except LateAnswerError as error:
             has_ended = await self._cancel(f"{request.skill} did not end within {limit_s:g} s")
@@ -302,6 +294,22 @@ class _Activation:
                 hint="Mend the adapter: a result has the id of its call",
             )
         return result
+
+    async def _answer(self, path: str, call: SkillCall) -> SkillResult:
+        """Returns the adapter's answer; the call is asked for again where the router has gone."""
+        limit_s = call.deadline_s + _REPLY_GRACE_S
+        while True:
+            try:
+                return await self._bus.ask(
+                    self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
+                )
+            except (LostAnswerError, NobodyAnswersError):
+                if not await self._bus.has_lost_router():
+                    raise
+                self._has_missed = True
+                if not await self._around.served.is_back(path, AWAY_S):
+                    raise
+                _log.info("%s is asked again, since the router was away", path)
 
     async def _cancel(self, reason: str) -> bool:
         """Has the skill stopped; whether its adapter says that it has."""

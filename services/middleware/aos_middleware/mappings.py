@@ -7,6 +7,7 @@ responses are those of that revision's mappings. A mapping that did not change i
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 from collections.abc import Callable
 from pathlib import Path
@@ -67,6 +68,7 @@ class Mappings:
         self._refused = 0
         self._announced = 0
         self._adopting = asyncio.Lock()
+        self._has_first = asyncio.Event()
 
     @property
     def state(self) -> MappingState:
@@ -106,6 +108,12 @@ class Mappings:
             except AosError as error:
                 self._refuse(announced.revision, error)
 
+    async def until_first(self, timeout_s: float) -> None:
+        """Returns once a revision is in use or refused, or in time."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(timeout_s):
+                await self._has_first.wait()
+
     async def close(self) -> None:
         """Ends all workers."""
         for evaluator in self._evaluators():
@@ -130,6 +138,7 @@ class Mappings:
         self._kept = dict(sorted(self._kept.items())[-_KEPT:])
         self._write(emitted)
         _log.info("revision %d: mappings of %s", announced.revision, ", ".join(sorted(mappings)))
+        self._has_first.set()
         self._on_change()
         for evaluator in outdated - self._evaluators():
             async with evaluator.in_use:
@@ -140,6 +149,7 @@ class Mappings:
         _log.error("revision %d is not used: %s", revision, error)
         for diagnostic in error.diagnostics:
             _log.error("%s: %s", diagnostic.span, diagnostic.message)
+        self._has_first.set()
         self._on_change()
 
     def _same_or_new(self, emitted: EmittedMapping) -> Evaluator:

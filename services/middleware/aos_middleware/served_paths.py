@@ -27,10 +27,13 @@ class ServedPaths:
         self._changed = asyncio.Event()
         self._servers: dict[str, list[Serving]] = {}
         self._announced: Counter[str] = Counter()
+        self._has_heard = asyncio.Event()
 
     async def follow(self) -> None:
         """Follows the tokens until the bus closes."""
         async with self._bus.presence(self._keys.all_serve) as changes:
+            if not changes.has_items:
+                self._has_heard.set()
             async for key, is_alive in changes:
                 serving = self._keys.serving_of(key)
                 if serving is None:
@@ -42,7 +45,12 @@ class ServedPaths:
                 _log.info("%s %s %s", serving.adapter, verb, serving.path)
                 self._changed.set()
                 if not changes.has_items:
+                    self._has_heard.set()
                     self._on_change()
+
+    async def until_heard(self) -> None:
+        """Returns once everybody who was there before is known."""
+        await self._has_heard.wait()
 
     def servers(self, path: str) -> list[Serving]:
         """Returns the adapters that answer calls of a path now."""
@@ -71,6 +79,17 @@ class ServedPaths:
         try:
             async with asyncio.timeout(within_s):
                 while self.servers(path):
+                    self._changed.clear()
+                    await self._changed.wait()
+        except TimeoutError:
+            return False
+        return True
+
+    async def is_back(self, path: str, within_s: float) -> bool:
+        """Says whether somebody serves a path, now or within some time."""
+        try:
+            async with asyncio.timeout(within_s):
+                while not self.servers(path):
                     self._changed.clear()
                     await self._changed.wait()
         except TimeoutError:

@@ -38,6 +38,9 @@ __all__ = ["serve"]
 
 ASK_TIMEOUT_S = 5.0
 
+FIRST_MAPPINGS_S = 20.0
+"""How long an activation waits for the first mappings of a middleware that was started again."""
+
 _log = logging.getLogger("aos.middleware")
 
 
@@ -145,6 +148,8 @@ class _Middleware:
         known = self._ledger.outcome(request.id)
         if known is not None:
             return known
+        await self._mappings.until_first(FIRST_MAPPINGS_S)
+        await self._served.until_heard()
         evaluator = self._mappings.evaluator(request.skill, request.revision)
         if request.skill in self._running_skills:
             raise SkillError(

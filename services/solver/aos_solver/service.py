@@ -34,6 +34,7 @@ from aos_protocol.messages import (
     ResumeMission,
     StartMission,
 )
+from aos_runtime.asking import ask_until_answered
 from aos_runtime.journal import Journal
 from aos_runtime.lifecycle import Service
 from aos_runtime.reported_state import state_when
@@ -271,10 +272,12 @@ class _Solver:
         self._bus.tell(self._keys.mission_state, state)
 
     async def activate(self, request: Activate, action: str) -> Outcome:
-        return await self._bus.ask(
+        return await ask_until_answered(
+            self._bus,
             self._keys.activate(request.skill),
             request,
             Outcome,
+            server=self._keys.live("middleware"),
             timeout_s=request.deadline_s + ACTIVATION_MARGIN_S,
         )
 

@@ -1,0 +1,37 @@
+"""When a process that has ended is started again: the one table for services, adapters and programs."""
+
+from __future__ import annotations
+
+from collections import deque
+
+__all__ = ["STARTS", "WITHIN_S", "Restarts"]
+
+STARTS = 5
+"""A process is started so many times within WITHIN_S at most."""
+
+WITHIN_S = 60.0
+
+_FIRST_S = 0.2
+_LONGEST_S = 5.0
+
+
+class Restarts:
+    """The starts of one process, by a monotonic clock in seconds."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._recent: deque[float] = deque(maxlen=STARTS)
+
+    def start(self, now_s: float) -> None:
+        """Takes note of a start."""
+        self.count += 1
+        self._recent.append(now_s)
+
+    def are_left(self, now_s: float) -> bool:
+        """Says whether the process may be started again."""
+        return len(self._recent) < STARTS or now_s - self._recent[0] > WITHIN_S
+
+    def delay_s(self, now_s: float) -> float:
+        """Returns how long the next start waits: 0.2 s after the first, then twice as long each time."""
+        recent = sum(now_s - at_s <= WITHIN_S for at_s in self._recent)
+        return min(_FIRST_S * 2.0 ** max(recent - 1, 0), _LONGEST_S)
