@@ -21,6 +21,7 @@ _COMMANDS = {
     "aos_deploy.commands.up": ("up",),
     "aos_deploy.commands.decisions": ("decisions",),
     "aos_deploy.commands.runs": ("runs",),
+    "aos_deploy.commands.check": ("check",),
     "aos_deploy.commands.skill": ("skill", "resume"),
     "aos_deploy.commands.documents": ("lint", "inspect"),
     "aos_deploy.commands.bundle": ("bundle",),

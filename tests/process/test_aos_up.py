@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import pytest
 from processes import HANG_S, descendants, has_listener, is_running, until_ended
 
+from aos_deploy.history_check.files import violations_of_run
 from aos_deploy.run_end import account_of
 from aos_runtime.journal import Journal
 
@@ -178,6 +179,12 @@ def test_the_run_directory_keeps_the_mission(mission: Mission) -> None:
     assert list((mission.run / "faults").iterdir()) == []
 
 
+def test_the_history_of_a_mission_breaks_no_rule(mission: Mission) -> None:
+    checked = subprocess.run([BIN / "aos", "check", mission.run, "--json"], capture_output=True, text=True)
+    assert json.loads(checked.stdout)["violations"] == []
+    assert checked.returncode == 0
+
+
 def test_who_joins_late_has_every_decision(mission: Mission) -> None:
     with Journal.read(mission.run / "journal.db") as journal:
         journaled = [json.loads(row.payload) for row in journal.rows("decision")]
@@ -225,6 +232,7 @@ async def test_nothing_is_left_when_aos_up_is_killed(deploy_file: Path, scratch:
         os.kill(running.process.pid, signal.SIGKILL)
         running.process.wait()
     await until_ended(running.pids)
+    assert violations_of_run(latest(deploy_file)) == []
     assert not has_listener(port_of(latest(deploy_file)))
     assert not files_left(scratch)
 

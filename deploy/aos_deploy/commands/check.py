@@ -1,0 +1,50 @@
+"""`aos check`: the history of a run against the rules that every history holds to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from aos_deploy.exit_codes import ExitCode
+from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.rules import RULES
+from aos_deploy.living_runs import chosen_run
+from aos_deploy.options import AsJson, Runs
+from aos_deploy.printing import count, from_here, print_json
+from aos_protocol.errors import DeployError
+
+__all__ = ["register"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos check runs/latest")(check)
+
+
+def check(
+    run: Annotated[Path | None, typer.Argument(metavar="RUN", help="A run directory; else the last")] = None,
+    runs: Runs = None,
+    as_json: AsJson = False,
+) -> None:
+    """Check that journal and ledgers of a run tell a history that can be.
+
+    An id moved at most once, each decision follows its journalled belief, each outcome belongs to its
+    intention, and so on. The exit code is 1 where a row breaks a rule.
+    """
+    directory = chosen_run(run, runs)
+    if directory.is_running:
+        raise DeployError(f"{from_here(directory.path)} goes on", hint="Check it when it has ended")
+    found = violations_of_run(directory.path)
+    if as_json:
+        print_json({"run": str(from_here(directory.path)), "rules": RULES, "violations": found})
+    else:
+        for violation in found:
+            where = f"{violation.file}:{violation.row}" if violation.row else violation.file
+            typer.echo(f"{where}: {violation.rule}: {violation.text}")
+        broken = ", ".join(sorted({violation.rule for violation in found}))
+        told = f"{count(len(found), 'violation')} of {broken}" if found else f"all {len(RULES)} rules hold"
+        typer.echo(f"{from_here(directory.path)}: {told}")
+    if found:
+        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)

@@ -1,0 +1,168 @@
+"""The rules for a mission's journal: one pass over its rows."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import msgspec
+
+from aos_deploy.verdict import Account
+from aos_protocol.messages import Activate, ActivationId, BeliefSummary, DecisionRecord, MissionState, Outcome
+from aos_runtime.fence import meaning
+from aos_runtime.journal import JournalRow
+
+__all__ = ["KINDS", "Found", "Intention", "JournalRules", "digest"]
+
+KINDS: dict[str, type[Any]] = {
+    "decision": DecisionRecord,
+    "mission": MissionState,
+    "intended": Activate,
+    "outcome": Outcome,
+}
+"""The kinds of rows that the rules are about."""
+
+Found = Callable[[str, str], None]
+"""Takes a rule and what is wrong with the row that is looked at."""
+
+
+class Intention(NamedTuple):
+    """The meaning of an id; the digest of its outcome once it is there, and the row where it was observed."""
+
+    meaning: str
+    outcome: bytes | None = None
+    observed_row: int = 0
+
+
+class JournalRules:
+    """Takes the journal's rows in their order. `mission` is the name that all of them have.
+
+    For the ledgers it keeps the `intentions` by id, and by the clock of the machine the mission's end and the
+    times during which it held.
+    """
+
+    def __init__(self, run: str) -> None:
+        self.mission = run
+        self.account = Account()
+        self.intentions: dict[ActivationId, Intention] = {}
+        self.end_ns: int | None = None
+        self._holds: list[tuple[int, int]] = []
+        self._held_since_ns: int | None = None
+        self._sequence = 0
+        self._step = 0
+        self._epoch = 0
+        self._pending: DecisionRecord | None = None
+        self._open: Activate | None = None
+        self._outcome: Outcome | None = None
+        self._belief: tuple[str, BeliefSummary] | None = None
+
+    def was_holding(self, stamp_ns: int) -> bool:
+        """Says whether the mission held at this time."""
+        is_after = self._held_since_ns is not None and stamp_ns > self._held_since_ns
+        return is_after or any(begin_ns < stamp_ns < end_ns for begin_ns, end_ns in self._holds)
+
+    def take(self, row: JournalRow, message: Any, found: Found) -> None:
+        """One row with its message, which is of one of KINDS; what is wrong is told to `found`."""
+        if self.end_ns is not None and not _is_end(message):
+            found("over", f"a row of the kind {row.kind} after the mission's end")
+        if isinstance(message, MissionState):
+            self._take_state(row, message, found)
+            return
+        if self._held_since_ns is not None and not isinstance(message, Outcome):
+            found("hold", f"a row of the kind {row.kind} while the mission holds")
+        if isinstance(message, Activate):
+            self._take_intention(message, found)
+        elif isinstance(message, Outcome):
+            self._take_outcome(row, message, found)
+        elif message.outcome is None:
+            self._take_decision(message, found)
+        else:
+            self._take_observation(message, found)
+
+    def _take_state(self, row: JournalRow, state: MissionState, found: Found) -> None:
+        self._check_epoch(state.epoch, found)
+        self.account.take(state)
+        if self._held_since_ns is not None:
+            self._holds.append((self._held_since_ns, row.stamp_ns))
+        self._held_since_ns = row.stamp_ns if state.phase == "holding" else None
+        if _is_end(state) and self.end_ns is None:
+            self.end_ns = row.stamp_ns
+
+    def _take_record(self, record: DecisionRecord, found: Found) -> None:
+        self._check_epoch(record.epoch, found)
+        if record.sequence != self._sequence:
+            found("sequence", f"the record {record.sequence} in place of {self._sequence}")
+        if record.mission != self.mission and self._sequence > 0:
+            found("steps", f"a record of the mission {record.mission}, not of {self.mission}")
+        self.mission = record.mission
+        self._sequence = record.sequence + 1
+        self.account.take(record)
+
+    def _take_decision(self, decision: DecisionRecord, found: Found) -> None:
+        self._take_record(decision, found)
+        if self._pending is not None:
+            found("steps", f"step {decision.step} is decided before step {self._pending.step} is observed")
+        elif decision.step != self._step + 1:
+            found("steps", f"step {decision.step} follows step {self._step}")
+        # Another model has another belief: its hand-over is no matter of the history.
+        digest, belief = self._belief or ("", None)
+        if digest == decision.model_digest and decision.belief != belief:
+            found("belief", f"step {decision.step} is decided with another belief than was observed")
+        self._step, self._pending, self._open, self._outcome = decision.step, decision, None, None
+
+    def _take_observation(self, record: DecisionRecord, found: Found) -> None:
+        self._take_record(record, found)
+        pending = self._pending
+        if pending is None or _decided(record) != _decided(pending):
+            found("steps", f"what is observed at step {record.step} was not decided before it")
+        if self._outcome is None or record.outcome != self._outcome:
+            found("outcome", f"the record of step {record.step} has another outcome than the row before it")
+        self._belief = (record.model_digest, record.belief)
+        self._step, self._pending, self._outcome = record.step, None, None
+
+    def _take_intention(self, intended: Activate, found: Found) -> None:
+        self._check_epoch(intended.epoch, found)
+        pending = self._pending
+        if pending is None or _wanted(intended) != (pending.mission, *_decided(pending)[:3]):
+            found("intention", f"{intended.skill} of {intended.id} is not what was decided before it")
+        known = self.intentions.setdefault(intended.id, Intention(meaning(intended)))
+        if known.meaning != meaning(intended):
+            found("id", f"{intended.id} stood for another skill or other parameters before")
+        self._open = intended
+
+    def _take_outcome(self, row: JournalRow, outcome: Outcome, found: Found) -> None:
+        open = self._open
+        if open is None or (outcome.id, outcome.skill) != (open.id, open.skill):
+            found(
+                "outcome", f"the outcome of {outcome.skill} of {outcome.id} belongs to no intention before it"
+            )
+        else:
+            known = self.intentions[open.id]
+            if known.outcome not in (None, digest(outcome)):
+                found("outcome", f"{outcome.id} has two different outcomes")
+            observed_row = row.seq if outcome.status == "observed" else 0
+            self.intentions[open.id] = known._replace(outcome=digest(outcome), observed_row=observed_row)
+        self._open, self._outcome = None, outcome
+
+    def _check_epoch(self, epoch: int, found: Found) -> None:
+        if epoch < self._epoch:
+            found("epochs", f"epoch {epoch} after epoch {self._epoch}")
+        self._epoch = max(epoch, self._epoch)
+
+
+def digest(outcome: Outcome) -> bytes:
+    """A short form of an outcome that tells it from others."""
+    return hashlib.blake2b(msgspec.json.encode(outcome, order="deterministic"), digest_size=16).digest()
+
+
+def _is_end(message: Any) -> bool:
+    return isinstance(message, MissionState) and message.phase == "ended"
+
+
+def _decided(record: DecisionRecord) -> tuple[int, str, dict[str, Any], str]:
+    return record.step, record.skill, record.parameters, record.action
+
+
+def _wanted(intended: Activate) -> tuple[str, int, str, dict[str, Any]]:
+    return intended.id.mission, intended.id.step, intended.skill, intended.parameters

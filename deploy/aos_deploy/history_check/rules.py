@@ -1,0 +1,33 @@
+"""The rules that every history of a run has to hold to, and their violations."""
+
+from __future__ import annotations
+
+import msgspec
+
+__all__ = ["RULES", "Violation"]
+
+RULES = {
+    "rows": "the rows of each file are numbered from 1 without a gap, and each can be read",
+    "sequence": "the sequence numbers of the decision records count from 0 without a gap",
+    "steps": "decisions and observations take turns, of the same action, and steps count from 1",
+    "belief": "a decision is made with the belief of the observed record before it",
+    "epochs": "the epoch of a mission never falls",
+    "intention": "an intention is that of the decision before it",
+    "outcome": "an outcome belongs to the intention before it, and is the one that the middleware has stored",
+    "id": "an id stands for one skill with its parameters, and nothing moves that was not intended",
+    "motion": "an id moves at most once",
+    "ends": "what ends was started before, and ends once",
+    "hold": "nothing starts while the mission holds",
+    "over": "nothing follows the end of the mission",
+    "verdict": "the summary has the verdict of the journal",
+}
+"""Each rule by its name."""
+
+
+class Violation(msgspec.Struct, frozen=True):
+    """A row that breaks a rule: `file` is its name in the run directory, `row` its number, 0 for the file."""
+
+    rule: str
+    file: str
+    row: int
+    text: str

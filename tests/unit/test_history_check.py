@@ -1,0 +1,339 @@
+"""The check of a run's history: each rule is broken in a history that otherwise holds, and is caught."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import pytest
+
+from aos_deploy.history_check.check import violations
+from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.rules import RULES
+from aos_deploy.verdict import Account, Verdict
+from aos_protocol.messages import (
+    Activate,
+    ActivationId,
+    BeliefSummary,
+    DecisionRecord,
+    Message,
+    MissionState,
+    Outcome,
+    SkillCall,
+    SkillResult,
+)
+from aos_runtime.journal import Journal, JournalRow
+
+MISSION = "run"
+STEPS = 3
+
+replace = msgspec.structs.replace
+
+
+def belief(step: int) -> BeliefSummary:
+    """The belief after a step."""
+    return BeliefSummary((), 0.0, step / 10, 0.0, 1, True)
+
+
+def decided(step: int) -> DecisionRecord:
+    return DecisionRecord(
+        sequence=2 * step - 2,
+        stamp_ns=0,
+        mission=MISSION,
+        epoch=1,
+        step=step,
+        action=f"go(to={step})",
+        skill="go",
+        parameters={"to": step},
+        model_digest="d",
+        revision=1,
+        seed=1,
+        simulations=1,
+        horizon=1,
+        planning_s=0.0,
+        actions=(),
+        predicted=(),
+        belief=belief(step - 1),
+    )
+
+
+def outcome(step: int) -> Outcome:
+    return Outcome(ActivationId(MISSION, step), "go", "observed", "arrived")
+
+
+def observed(step: int) -> DecisionRecord:
+    return replace(decided(step), sequence=2 * step - 1, belief=belief(step), outcome=outcome(step))
+
+
+def intended(step: int) -> Activate:
+    return Activate(ActivationId(MISSION, step), "go", {"to": step}, 10.0, 1)
+
+
+def call(step: int) -> SkillCall:
+    return SkillCall(ActivationId(MISSION, step), "/go", {"x": 1.0}, 10.0, "go", {"to": step})
+
+
+def state(phase: str, step: int, ending: str = "") -> MissionState:
+    return MissionState(MISSION, phase, step, 0.0, ending, revision=1, epoch=1)
+
+
+class Entry(NamedTuple):
+    """A row before it has a number."""
+
+    stamp_ns: int
+    kind: str
+    payload: Message
+
+
+class History:
+    """A mission of three steps that held before the third; tests change its rows."""
+
+    def __init__(self) -> None:
+        self.journal: list[Entry] = []
+        self.middleware: list[Entry] = []
+        self.robot: list[Entry] = []
+        self.other: list[Entry] = [
+            Entry(5, "started", SkillCall(ActivationId("by-hand", 7), "/look", {}, 1.0)),
+            Entry(6, "ended", SkillResult(ActivationId("by-hand", 7), {})),
+        ]
+        self.summary: Verdict | None = None
+        for step in range(1, STEPS + 1):
+            self._add_step(step)
+        self._write(1000, "mission", state("ended", STEPS, "goal"))
+
+    def _add_step(self, step: int) -> None:
+        now = 100 * step
+        if step == STEPS:
+            self._write(now - 20, "mission", state("holding", step - 1))
+        self._write(now, "mission", state("planning", step - 1))
+        self._write(now + 10, "decision", decided(step))
+        self._write(now + 20, "intended", intended(step))
+        self.middleware.append(Entry(now + 30, "started", intended(step)))
+        self.robot.append(Entry(now + 40, "started", call(step)))
+        self.robot.append(Entry(now + 50, "ended", SkillResult(ActivationId(MISSION, step), {})))
+        self.middleware.append(Entry(now + 60, "ended", outcome(step)))
+        self._write(now + 70, "outcome", outcome(step))
+        self._write(now + 80, "decision", observed(step))
+
+    def _write(self, stamp_ns: int, kind: str, payload: Message) -> None:
+        self.journal.append(Entry(stamp_ns, kind, payload))
+
+    def place(self, kind: str, number: int, entries: list[Entry] | None = None) -> int:
+        """The place of the row that is the `number`th of its kind, from 0."""
+        entries = self.journal if entries is None else entries
+        return [place for place, entry in enumerate(entries) if entry.kind == kind][number]
+
+    def change(self, kind: str, number: int, entries: list[Entry] | None = None, **changes: Any) -> None:
+        """Changes fields of the message in a row."""
+        entries = self.journal if entries is None else entries
+        place = self.place(kind, number, entries)
+        entries[place] = entries[place]._replace(payload=replace(entries[place].payload, **changes))
+
+    def broken_rules(self) -> set[str]:
+        """The names of the rules that are broken."""
+        files = {"adapter-robot.db": rows(self.robot), "adapter-other.db": rows(self.other)}
+        found = violations(MISSION, rows(self.journal), rows(self.middleware), files, self.summary)
+        assert all(violation.text for violation in found)
+        return {violation.rule for violation in found}
+
+
+def rows(entries: list[Entry]) -> list[JournalRow]:
+    return [
+        JournalRow(number, entry.stamp_ns, entry.kind, msgspec.json.encode(entry.payload))
+        for number, entry in enumerate(entries, 1)
+    ]
+
+
+def test_a_history_that_can_be_breaks_no_rule() -> None:
+    assert History().broken_rules() == set()
+
+
+def test_a_mission_that_was_killed_at_any_row_breaks_no_rule() -> None:
+    """The ledgers of a killed run are those of the time when it was killed."""
+    whole = History()
+    for end in range(len(whole.journal)):
+        history = History()
+        del history.journal[end:]
+        last_ns = history.journal[-1].stamp_ns if history.journal else 0
+        for ledger in (history.middleware, history.robot):
+            ledger[:] = [entry for entry in ledger if entry.stamp_ns <= last_ns]
+        assert history.broken_rules() == set(), end
+
+
+def test_a_new_solver_asks_again_with_the_same_id_and_a_new_middleware_takes_it_up() -> None:
+    history = History()
+    again = history.place("intended", 1) + 1
+    history.journal.insert(again, Entry(225, "intended", replace(intended(2), epoch=2)))
+    for entries in (history.journal[again + 1 :],):
+        later = [
+            entry._replace(payload=replace(entry.payload, epoch=2))
+            if hasattr(entry.payload, "epoch")
+            else entry
+            for entry in entries
+        ]
+        history.journal[again + 1 :] = later
+    taken_up = Entry(235, "started", replace(intended(2), epoch=2))
+    history.middleware.insert(history.place("started", 1, history.middleware) + 1, taken_up)
+    history.change("started", 2, history.robot, epoch=2)
+    history.change("started", 3, history.middleware, epoch=2)
+    assert history.broken_rules() == set()
+
+
+def _damaged_row(history: History) -> None:
+    history.journal[4] = Entry(0, "decision", state("planning", 1))
+
+
+def _sequence_with_a_gap(history: History) -> None:
+    history.change("decision", 5, sequence=6)
+
+
+def _step_decided_twice(history: History) -> None:
+    history.change("decision", 1, outcome=None)
+
+
+def _other_belief(history: History) -> None:
+    history.change("decision", 2, belief=belief(3))
+
+
+def _epoch_that_falls(history: History) -> None:
+    history.change("decision", 0, epoch=2)
+
+
+def _call_of_an_older_epoch(history: History) -> None:
+    history.change("started", 0, history.robot, epoch=2)
+
+
+def _intention_of_something_else(history: History) -> None:
+    history.change("intended", 1, skill="stay")
+
+
+def _intention_without_a_decision(history: History) -> None:
+    history.journal.insert(history.place("outcome", 0) + 2, history.journal[history.place("intended", 1)])
+
+
+def _outcome_of_another_step(history: History) -> None:
+    history.change("outcome", 1, id=ActivationId(MISSION, 1))
+
+
+def _outcome_that_changed_on_its_way(history: History) -> None:
+    history.change("ended", 1, history.middleware, response="lost")
+
+
+def _outcome_that_nobody_has_brought(history: History) -> None:
+    del history.middleware[history.place("ended", 1, history.middleware)]
+
+
+def _record_of_another_outcome(history: History) -> None:
+    history.change("decision", 3, outcome=replace(outcome(2), response="lost"))
+
+
+def _motion_with_other_parameters(history: History) -> None:
+    history.change("started", 1, history.robot, parameters={"to": 9})
+
+
+def _motion_that_nobody_intended(history: History) -> None:
+    history.other.append(Entry(120, "started", call(4)))
+
+
+def _motion_twice(history: History) -> None:
+    history.robot.insert(2, history.robot[0])
+
+
+def _motion_in_two_adapters(history: History) -> None:
+    history.other.append(history.robot[0])
+
+
+def _motion_by_hand_twice(history: History) -> None:
+    history.other.append(history.other[0])
+
+
+def _end_without_a_start(history: History) -> None:
+    history.robot.insert(0, Entry(1, "ended", SkillResult(ActivationId(MISSION, 3), {})))
+
+
+def _decision_while_it_holds(history: History) -> None:
+    place = history.place("decision", 4)
+    history.journal[place - 1], history.journal[place] = history.journal[place], history.journal[place - 1]
+
+
+def _motion_while_it_holds(history: History) -> None:
+    place = history.place("started", 1, history.robot)
+    history.robot[place] = history.robot[place]._replace(stamp_ns=290)
+
+
+def _row_after_the_end(history: History) -> None:
+    history.journal.append(Entry(1100, "mission", state("planning", 3)))
+
+
+def _motion_after_the_end(history: History) -> None:
+    place = history.place("started", 2, history.robot)
+    history.robot[place] = history.robot[place]._replace(stamp_ns=1001)
+
+
+def _summary_that_differs(history: History) -> None:
+    verdict = Account().verdict()
+    history.summary = replace(verdict, ending="fault")
+
+
+BREAKS: dict[Callable[[History], None], str] = {
+    _damaged_row: "rows",
+    _sequence_with_a_gap: "sequence",
+    _step_decided_twice: "steps",
+    _other_belief: "belief",
+    _epoch_that_falls: "epochs",
+    _call_of_an_older_epoch: "epochs",
+    _intention_of_something_else: "intention",
+    _intention_without_a_decision: "intention",
+    _outcome_of_another_step: "outcome",
+    _outcome_that_changed_on_its_way: "outcome",
+    _outcome_that_nobody_has_brought: "outcome",
+    _record_of_another_outcome: "outcome",
+    _motion_with_other_parameters: "id",
+    _motion_that_nobody_intended: "id",
+    _motion_twice: "motion",
+    _motion_in_two_adapters: "motion",
+    _motion_by_hand_twice: "motion",
+    _end_without_a_start: "ends",
+    _decision_while_it_holds: "hold",
+    _motion_while_it_holds: "hold",
+    _row_after_the_end: "over",
+    _motion_after_the_end: "over",
+    _summary_that_differs: "verdict",
+}
+
+
+@pytest.mark.parametrize(("spoil", "rule"), BREAKS.items(), ids=lambda each: getattr(each, "__name__", each))
+def test_a_history_that_cannot_be_is_caught(spoil: Callable[[History], None], rule: str) -> None:
+    history = History()
+    spoil(history)
+    assert rule in history.broken_rules()
+
+
+def test_each_rule_is_broken_by_some_history() -> None:
+    assert set(BREAKS.values()) == RULES.keys()
+
+
+def test_the_page_has_each_rule(root: Path) -> None:
+    page = (root / "docs" / "reliability.md").read_text()
+    assert all(f"| `{name}` | {sentence} |" in page for name, sentence in RULES.items())
+
+
+def test_a_removed_row_is_caught() -> None:
+    history = History()
+    found = violations(MISSION, [row for row in rows(history.journal) if row.seq != 4])
+    assert found[0].rule == "rows"
+    assert found[0].row == 5
+
+
+def test_a_journal_that_cannot_be_read_is_a_violation(tmp_path: Path) -> None:
+    with Journal.open(tmp_path / "journal.db") as journal:
+        for entry in History().journal:
+            journal.append(entry.kind, entry.payload)
+    assert violations_of_run(tmp_path) == []
+    whole = (tmp_path / "journal.db").read_bytes()
+    (tmp_path / "journal.db").write_bytes(whole.replace(b'"go"', b'"g\xff"'))
+    assert [violation.rule for violation in violations_of_run(tmp_path)] == ["rows"]
+    (tmp_path / "journal.db").unlink()
+    assert [(violation.rule, violation.row) for violation in violations_of_run(tmp_path)] == [("rows", 0)]
