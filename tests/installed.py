@@ -57,8 +57,8 @@ class Installation:
 def built_wheel(root: Path, folder: Path, part: str = ".") -> Path:
     """The wheel of a checkout's files, or of a part of it, built in a copy: the checkout stays as it is."""
     source = folder / "source"
-    left = shutil.ignore_patterns(".*", "build", "runs", "*.egg-info", "__pycache__")
-    shutil.copytree(root, source, ignore=left)
+    ignored = shutil.ignore_patterns(".*", "build", "runs", "*.egg-info", "__pycache__")
+    shutil.copytree(root, source, ignore=ignored)
     pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check"]
     subprocess.run(
         [*pip, "--no-deps", "--no-build-isolation", "--no-index", "--wheel-dir", folder, source / part],

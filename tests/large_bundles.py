@@ -45,9 +45,9 @@ def many_variables(count: int) -> dict[str, str]:
     set_one = [
         f"if (at == {number}) state__.v{number} = {_VALUES[kind]};" for number, kind in enumerate(kinds)
     ]
-    seen = "__moduleResponse = AOS.Bernoulli(0.9) == (state.v0 == 1) ? one : two;"
+    response = "__moduleResponse = AOS.Bernoulli(0.9) == (state.v0 == 1) ? one : two;"
     initial = "initial_belief:\nstate.v0 = AOS.Bernoulli(0.5) ? 1 : 2;"
-    return _bundle([*declared, initial], [*set_one, seen])
+    return _bundle([*declared, initial], [*set_one, response])
 
 
 def long_array(size: int, drawn: int = 1) -> dict[str, str]:
@@ -56,8 +56,8 @@ def long_array(size: int, drawn: int = 1) -> dict[str, str]:
     initial = (
         f"initial_belief:\nfor (int i = 0; i < {drawn}; i++) state.grid[i] = AOS.Bernoulli(0.5) ? 1 : 0;"
     )
-    seen = "__moduleResponse = AOS.Bernoulli(0.9) == (state.grid[0] == 1) ? one : two;"
-    return _bundle([declared, initial], [f"state__.grid[at + {size // 2}] += 1;", seen])
+    response = "__moduleResponse = AOS.Bernoulli(0.9) == (state.grid[0] == 1) ? one : two;"
+    return _bundle([declared, initial], [f"state__.grid[at + {size // 2}] += 1;", response])
 
 
 def _bundle(environment: list[str], dynamic_model: list[str]) -> dict[str, str]:

@@ -119,16 +119,16 @@ def one_lint(name: str, bundle: Path, scratch: Path) -> float:
     """Its processor time in seconds."""
     for model in (scratch / "cache").glob("model-*"):
         shutil.rmtree(model)
-    told = scratch / "told"
+    errors_file = scratch / "told"
     command = [str(Path(sys.executable).with_name("aos")), "lint", str(bundle)]
     environment = {**os.environ, "AOS_CACHE_DIR": str(scratch / "cache"), "NO_COLOR": "1"}
     began_s = time.monotonic()
-    with told.open("wb") as out:
+    with errors_file.open("wb") as out:
         to_file = [(os.POSIX_SPAWN_DUP2, out.fileno(), 1), (os.POSIX_SPAWN_DUP2, out.fileno(), 2)]
         process = os.posix_spawn(command[0], command, environment, file_actions=to_file)
         _, _, usage = os.wait4(process, 0)
     spent_s, real_s = usage.ru_utime + usage.ru_stime, time.monotonic() - began_s
-    first = next((line for line in told.read_text().splitlines() if not line.startswith("aos: ")), "")
+    first = next((line for line in errors_file.read_text().splitlines() if not line.startswith("aos: ")), "")
     sys.stdout.write(f"{spent_s:6.2f} s {real_s:6.2f} s  {name:32}  {first[:90]}\n")
     return spent_s
 

@@ -37,8 +37,8 @@ def observed(
 ) -> Observed:
     """The outcome of a whole activation that raises nothing."""
     fields(mapping, parameters)
-    taken = mapping.answer(Take(list(messages)))
-    assert not isinstance(taken, Raised), taken
+    fault = mapping.answer(Take(list(messages)))
+    assert not isinstance(fault, Raised), fault
     answer = mapping.answer(Finish(result))
     assert isinstance(answer, Observed), answer
     return answer

@@ -45,15 +45,17 @@ class Verdict(msgspec.Struct, frozen=True):
     @property
     def has_line(self) -> bool:
         place = self.mistake.place
-        return any((each.span.file, each.span.line) == (place.file, place.line) for each in self._of_code)
+        return any(
+            (finding.span.file, finding.span.line) == (place.file, place.line) for finding in self._of_code
+        )
 
     @property
     def has_column(self) -> bool:
-        return any(each.span == self.mistake.place for each in self._of_code)
+        return any(finding.span == self.mistake.place for finding in self._of_code)
 
     @property
     def _of_code(self) -> list[Diagnostic]:
-        return [each for each in self.found if each.code == self.mistake.code]
+        return [finding for finding in self.found if finding.code == self.mistake.code]
 
 
 def mistakes() -> Iterator[Mistake]:
@@ -61,16 +63,18 @@ def mistakes() -> Iterator[Mistake]:
     table = tomllib.loads((ROOT / "tests/data/bad/mistakes.toml").read_text(encoding="utf-8"))
     for bundle, entry in table.items():
         files = _bundle(bundle)
-        for number, each in enumerate(entry["mistakes"], 1):
-            text = files[each["in"]].decode()
-            assert each["find"] in text, f"{bundle} {number}: {each['find']!r} is not in {each['in']}"
-            marked = text.replace(each["find"], each["put"], 1)
+        for number, mistake in enumerate(entry["mistakes"], 1):
+            text = files[mistake["in"]].decode()
+            assert mistake["find"] in text, (
+                f"{bundle} {number}: {mistake['find']!r} is not in {mistake['in']}"
+            )
+            marked = text.replace(mistake["find"], mistake["put"], 1)
             before, mark, after = marked.partition(MARK)
             assert mark, f"{bundle} {number} has no mark"
             line, column = before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1
-            changed = files | {each["in"]: (before + after).encode()}
-            title = f"{bundle} {number}: {each['put'].strip()}"
-            yield Mistake(title, changed, each["code"], Span(each["in"], line, column))
+            changed = files | {mistake["in"]: (before + after).encode()}
+            title = f"{bundle} {number}: {mistake['put'].strip()}"
+            yield Mistake(title, changed, mistake["code"], Span(mistake["in"], line, column))
 
 
 def judged(mistake: Mistake) -> Verdict:
@@ -98,7 +102,10 @@ def main() -> int:
     columns = sum(verdict.has_column for verdict in verdicts)
     for verdict in verdicts:
         if not verdict.has_column:
-            said = "; ".join(f"{each.span} {each.code} {each.message}" for each in verdict.found) or "nothing"
+            said = (
+                "; ".join(f"{finding.span} {finding.code} {finding.message}" for finding in verdict.found)
+                or "nothing"
+            )
             due = f"{verdict.mistake.place} {verdict.mistake.code}"
             sys.stderr.write(f"{verdict.mistake.title}\n  due: {due}\n  said: {said}\n")
     figures = {"mistakes": len(verdicts), "right_line": lines, "right_column": columns}

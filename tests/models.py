@@ -23,7 +23,7 @@ async def built_bundle(bundle: Path, cache_dir: Path) -> BuiltModel:
 
 async def built_bundles(bundles: Sequence[Path], cache_dir: Path) -> BuiltModel:
     """The compiled model of several; documents of a later one stand in place of those with the same name."""
-    files = {each.name: each.read_text() for bundle in bundles for each in sorted(bundle.iterdir())}
+    files = {file.name: file.read_text() for bundle in bundles for file in sorted(bundle.iterdir())}
     return await built_text(files, cache_dir)
 
 

@@ -49,7 +49,7 @@ def mission(deploy_file: Path, seed: int) -> dict[str, Any]:
     show = [BIN / "aos", "decisions", "--run", run, "--json", "--no-follow"]
     records = [json.loads(line) for line in subprocess.check_output(show, text=True).splitlines()]
     outcomes = [record["outcome"] for record in records if record.get("outcome")]
-    running_s = sum(each["ended_ns"] - each["started_ns"] for each in outcomes) / 1e9
+    running_s = sum(outcome["ended_ns"] - outcome["started_ns"] for outcome in outcomes) / 1e9
     return {
         "seed": seed,
         "ending": summary["ending"],
@@ -58,7 +58,7 @@ def mission(deploy_file: Path, seed: int) -> dict[str, Any]:
             for action, response in zip(summary["actions"], summary["responses"], strict=True)
         ],
         "truth": {key: value for key, value in world[-1].items() if key not in NOT_SHOWN},
-        "faults": [fault for each in world for fault in each["drawn_faults"]],
+        "faults": [fault for entry in world for fault in entry["drawn_faults"]],
         "simulated_s": world[-1]["time_s"],
         "speed": round(world[-1]["time_s"] / running_s, 1),
     }

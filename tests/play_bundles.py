@@ -66,7 +66,9 @@ async def play_bundle(folder: Path, *, steps: int, seed: int) -> Played:
 
 async def _play(loaded: LoadedBundle, played: Played, steps: int, seed: int) -> None:
     if loaded.project is None or has_errors(loaded.diagnostics):
-        played.fault = next((str(each.message) for each in loaded.diagnostics if each.is_error), "no project")
+        played.fault = next(
+            (str(finding.message) for finding in loaded.diagnostics if finding.is_error), "no project"
+        )
         return
     start = time.perf_counter()
     built = await build_project(loaded.project, cache_dir(), lambda _: None)

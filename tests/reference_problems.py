@@ -108,8 +108,8 @@ class RockSample(Model[Survey]):
                 yield 1, state, -100, "sampled"
                 return
             rock = self.rocks.index((x, y))
-            left = (*good[:rock], False, *good[rock + 1 :])
-            yield 1, ((x, y), left), 10 if good[rock] else -10, "sampled"
+            rocks = (*good[:rock], False, *good[rock + 1 :])
+            yield 1, ((x, y), rocks), 10 if good[rock] else -10, "sampled"
         elif action.startswith("check"):
             rock = int(action.removeprefix("check(rock=").removesuffix(")"))
             distance = hypot(x - self.rocks[rock][0], y - self.rocks[rock][1])

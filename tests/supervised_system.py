@@ -105,7 +105,7 @@ class System:
 
     async def until(self, service: str, state: str, times: int = 1) -> None:
         """Returns when a service has come into a state so many times."""
-        while sum((each.service, each.state) == (service, state) for each in self.events) < times:
+        while sum((event.service, event.state) == (service, state) for event in self.events) < times:
             self._news.clear()
             await self._news.wait()
 

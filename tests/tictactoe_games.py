@@ -57,16 +57,16 @@ async def game(
 async def play(bundle: str, games: int, opponent: str, dry_centre: float) -> None:
     """Plays, and prints each different game once, and how they ended."""
     endings: Counter[str] = Counter()
-    seen: Counter[tuple[str, str]] = Counter()
+    counts: Counter[tuple[str, str]] = Counter()
     chance = random.Random(f"{bundle} {opponent}")
     async with engine_of_bundle(BUNDLES / bundle, 1) as engine:
         for number in range(games):
             ending, moves = await game(engine, opponent, chance, number + 1, dry_centre)
             endings[ending] += 1
-            seen[ending, moves] += 1
+            counts[ending, moves] += 1
             sys.stderr.write(f"\r{number + 1} of {games} games")
     sys.stderr.write("\n")
-    for (ending, moves), times in seen.most_common():
+    for (ending, moves), times in counts.most_common():
         print(f"{times:4} {ending:5} {moves}")
     print(f"{bundle}, {games} games against a {opponent} player: {dict(endings)}")
 

@@ -65,8 +65,8 @@ class Wrong(msgspec.Struct, frozen=True):
 def wrong_robots() -> Iterator[Wrong]:
     """Every claim of every shipped experiment, with its robot if it has one."""
     yaml = YAML(typ="safe", pure=True)
-    told = yaml.load((Path(__file__).parent / "wrong_robots.yaml").read_text(encoding="utf-8"))
-    robots = msgspec.convert(told, dict[str, dict[str, dict[str, WrongRobot]]])
+    entries = yaml.load((Path(__file__).parent / "wrong_robots.yaml").read_text(encoding="utf-8"))
+    robots = msgspec.convert(entries, dict[str, dict[str, dict[str, WrongRobot]]])
     for path in sorted(shipped("deploy/experiments").glob("*.yaml")):
         experiment = read_experiment(path)
         for name, part in experiment.parts.items():

@@ -78,10 +78,10 @@ async def measure_faults(runs: int, only: list[str] | None) -> int:
         if only and name not in only:
             continue
         async with harness(project_of({"skill": fault.mapping})) as made:
-            longest_s, seen, growth_kb = await _run(made, name, fault, runs)
-        is_good = seen.keys() <= set(fault.statuses) and longest_s <= TIMEOUT_S + MARGIN_S
+            longest_s, statuses, growth_kb = await _run(made, name, fault, runs)
+        is_good = statuses.keys() <= set(fault.statuses) and longest_s <= TIMEOUT_S + MARGIN_S
         missed += not (is_good and growth_kb <= MAX_GROWTH_KB)
-        print(f"{name} | {runs} | {seen} | {longest_s:.2f} | {growth_kb:+d}", flush=True)
+        print(f"{name} | {runs} | {statuses} | {longest_s:.2f} | {growth_kb:+d}", flush=True)
     return int(missed > 0)
 
 
@@ -93,7 +93,7 @@ async def _run(made: Harness, name: str, fault: Fault, runs: int) -> tuple[float
         await _serve_wrongly(made.bus, made, name)
     await made.until_available(skills=1)
     await made.activate("skill", 1)
-    longest_s, seen, before_kb = 0.0, dict[str, int](), 0
+    longest_s, statuses, before_kb = 0.0, dict[str, int](), 0
     for step in range(2, runs + 2):
         if fault.dies:
             await child.wait()
@@ -102,10 +102,10 @@ async def _run(made: Harness, name: str, fault: Fault, runs: int) -> tuple[float
         started_s = time.monotonic()
         outcome: Outcome = await made.activate("skill", step)
         longest_s = max(longest_s, time.monotonic() - started_s)
-        seen[outcome.status] = seen.get(outcome.status, 0) + 1
+        statuses[outcome.status] = statuses.get(outcome.status, 0) + 1
         if step == min(10, runs):
             before_kb = _memory_kb(made)
-    return longest_s, seen, _memory_kb(made) - before_kb
+    return longest_s, statuses, _memory_kb(made) - before_kb
 
 
 def _memory_kb(made: Harness) -> int:

@@ -81,7 +81,7 @@ def _simulated(bundle: Path, seeds: int, simulations: int, steps: int) -> list[f
 def _difference(one: list[float], other: list[float]) -> float:
     """Returns the difference of two means, in standard errors of the difference."""
     difference = statistics.fmean(one) - statistics.fmean(other)
-    variance = sum(statistics.variance(each) / len(each) for each in (one, other) if len(each) > 1)
+    variance = sum(statistics.variance(values) / len(values) for values in (one, other) if len(values) > 1)
     if abs(difference) < 1e-9:
         return 0.0
     return difference / math.sqrt(variance) if variance > 0 else math.inf

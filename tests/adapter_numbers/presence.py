@@ -31,7 +31,9 @@ async def measure_presence(runs: int) -> int:
             gone, back, good = await _leave(made, death, runs)
         missed = missed or max(gone) > MAX_S or good < runs
         print(
-            f"{name:28}", *(f"{statistics.median(each):.3f}  {max(each):.3f}" for each in (gone, back)), good
+            f"{name:28}",
+            *(f"{statistics.median(times_s):.3f}  {max(times_s):.3f}" for times_s in (gone, back)),
+            good,
         )
     return int(missed)
 

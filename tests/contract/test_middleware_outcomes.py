@@ -50,14 +50,14 @@ async def test_a_skill_with_a_skill_document_alone_is_called_and_observed(system
     parameters = {"place": {"place": "Corridor", "x": 4.0, "y": 0.0, "yaw": 0.5}}
     outcomes = [await system.activate("see", step, parameters=parameters) for step in (1, 2, 3)]
     assert system.adapter.calls[0].fields == parameters
-    assert [(each.status, each.response) for each in outcomes] == [
+    assert [(outcome.status, outcome.response) for outcome in outcomes] == [
         ("observed", "seen"), ("unknown", ""), ("unknown", ""),
     ]  # fmt: skip
-    told = [each.fault for each in outcomes]
-    assert told[1] is not None
-    assert told[2] is not None
-    assert told[1].message.endswith("the result of /see has no `response`: it has `success`")
-    assert (told[2].code, told[2].hint) == ("AOS402", "Did you mean `seen`?")
+    faults = [outcome.fault for outcome in outcomes]
+    assert faults[1] is not None
+    assert faults[2] is not None
+    assert faults[1].message.endswith("the result of /see has no `response`: it has `success`")
+    assert (faults[2].code, faults[2].hint) == ("AOS402", "Did you mean `seen`?")
 
 
 async def test_only_messages_of_the_activation_count_and_all_of_them(system: System) -> None:

@@ -110,12 +110,12 @@ async def test_a_repeat_during_the_activation_waits_for_its_outcome(system: Syst
 
 @pytest.mark.parametrize("ending", ["killed", "stopped"])
 @pytest.mark.parametrize(
-    ("skill", "path", "told"),
+    ("skill", "path", "result"),
     [("pick", "/pick", ("observed", "pick_succeeded")), ("sense", "/sense", ("unknown", ""))],
     ids=["its_result_tells_all", "its_topics_were_missed"],
 )
 async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
-    system: System, endpoint: str, ending: str, skill: str, path: str, told: tuple[str, str]
+    system: System, endpoint: str, ending: str, skill: str, path: str, result: tuple[str, str]
 ) -> None:
     may_end = asyncio.Event()
 
@@ -140,7 +140,7 @@ async def test_a_new_middleware_joins_the_motion_of_the_one_that_is_gone(
         taken_up = tasks.create_task(system.activate(skill))
         await system.adapter.is_called.wait()
         may_end.set()
-    assert (taken_up.result().status, taken_up.result().response) == told
+    assert (taken_up.result().status, taken_up.result().response) == result
     assert len(system.adapter.motions) == 1
 
 

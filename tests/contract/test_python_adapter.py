@@ -181,8 +181,8 @@ async def test_a_function_gets_the_fields_and_tells_progress_and_topics(robot: R
         result = await robot.call("/drive", x=1.5)
         assert (result.fields, result.published) == ({"success": True}, {"/pose": 1})
         assert (await anext(poses))[1].fields == {"x": 1.5, "y": 0.0}
-        told = [(await anext(progress))[1] for _ in range(3)]
-    assert [(each.state, each.progress, each.text) for each in told] == [
+        states = [(await anext(progress))[1] for _ in range(3)]
+    assert [(state.state, state.progress, state.text) for state in states] == [
         ("accepted", 0.0, ""),
         ("executing", 0.5, "half way"),
         ("succeeded", 1.0, ""),
@@ -261,8 +261,8 @@ async def test_a_function_that_cannot_be_stopped_ends_the_process_and_is_unknown
     progress = robot.bus.listen(robot.keys.progress("/skill"), SkillProgress)
     async with asyncio.timeout(HANG_S), progress:
         running = asyncio.create_task(robot.refusal("/skill", 1))
-        async for _, each in progress:
-            if each.state == "executing":
+        async for _, state in progress:
+            if state.state == "executing":
                 break
         with pytest.raises(AosError) as error:
             await robot.cancel("/skill")

@@ -129,7 +129,7 @@ async def test_hostile_pushes_are_answered_and_change_nothing_that_is_not_sound(
             report = await push(bus, keys, files)
         except AosError as error:
             pytest.fail(f"{files} is answered by {error}")
-        assert report.is_accepted or any(each.is_error for each in report.diagnostics)
+        assert report.is_accepted or any(finding.is_error for finding in report.diagnostics)
     assert (await current(bus, keys)).project.name == "armadillo"
     assert registry[1].returncode is None
 
@@ -162,9 +162,9 @@ def test_hostile_archives_are_read_or_refused(finer: dict[str, bytes], tmp_path:
         path = tmp_path / f"{number}.{form}"
         path.write_bytes(data)
         files, remarks = read_archive(path)
-        errors = [each for each in remarks if each.is_error]
+        errors = [remark for remark in remarks if remark.is_error]
         assert not (errors and files)
-        assert {each.code for each in errors} <= set(REFUSAL_CODES)
+        assert {error.code for error in errors} <= set(REFUSAL_CODES)
         refused += bool(errors)
         path.unlink()
     assert refused > HOSTILE_ARCHIVES / 3

@@ -180,7 +180,7 @@ async def test_documents_that_a_dying_solver_was_asked_about_are_not_accepted_un
     report = await push(bus, keys, finer)
     await leaving[0]
     assert not report.is_accepted
-    assert {each.code for each in report.diagnostics if each.is_error} == {"AOS607"}
+    assert {finding.code for finding in report.diagnostics if finding.is_error} == {"AOS607"}
 
 
 async def test_a_skill_of_an_unknown_project_is_refused_with_the_nearest_name(
@@ -235,15 +235,15 @@ async def test_a_drop_that_lacks_the_project_waits_until_it_is_pushed(
 ) -> None:
     observe = {name: finer.pop(name) for name in list(finer) if name.startswith("observe_holding")}
     async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
-        told = aiter(reports)
+        sequence = aiter(reports)
         drop(registry, "sensing", observe)
-        refused = (await anext(told))[1]
+        refused = (await anext(sequence))[1]
         assert (refused.is_accepted, refused.is_waiting, refused.source) == (False, True, "sensing")
-        assert "AOS115" in {each.code for each in refused.diagnostics}
+        assert "AOS115" in {finding.code for finding in refused.diagnostics}
         await push(bus, keys, finer)
-        pushed, taken = [(await anext(told))[1] for _ in range(2)]
+        pushed, waited = [(await anext(sequence))[1] for _ in range(2)]
         assert (pushed.source, pushed.revision) == ("test", 1)
-        assert (taken.source, taken.revision, taken.added) == ("sensing", 2, ("observe_holding",))
+        assert (waited.source, waited.revision, waited.added) == ("sensing", 2, ("observe_holding",))
     assert len((await current(bus, keys)).project.skills) == 5
 
 
@@ -252,22 +252,25 @@ async def test_a_drop_that_waits_is_told_again_only_when_the_answer_is_new(
 ) -> None:
     pick = {name: finer.pop(name) for name in list(finer) if name.startswith("pick")}
     async with asyncio.timeout(HANG_S), other.listen(keys.bundle_report, BundleReport) as reports:
-        told = aiter(reports)
+        sequence = aiter(reports)
         drop(registry, "half", {"pick.am": pick["pick.am"]})
-        assert (await anext(told))[1].is_waiting  # for an environment
+        assert (await anext(sequence))[1].is_waiting  # for an environment
         await push(bus, keys, finer)
-        second = (await anext(told))[1], (await anext(told))[1]
-        assert [(each.source, each.is_waiting) for each in second] == [("test", False), ("half", True)]
-        assert {each.code for each in second[1].diagnostics if each.is_error} == {
+        second = (await anext(sequence))[1], (await anext(sequence))[1]
+        assert [(report.source, report.is_waiting) for report in second] == [("test", False), ("half", True)]
+        assert {finding.code for finding in second[1].diagnostics if finding.is_error} == {
             "AOS114"
         }  # its skill document
         await bus.ask(
             keys.remove_bundle, RemoveDocuments("armadillo", "serve"), BundleReport, timeout_s=HANG_S
         )
         await push(bus, keys, pick)
-        rest = [(await anext(told))[1] for _ in range(3)]
-        assert [each.removed for each in rest] == [("serve",), (), ()]
-        assert [(each.source, each.is_accepted) for each in rest[1:]] == [("test", True), ("half", True)]
+        rest = [(await anext(sequence))[1] for _ in range(3)]
+        assert [report.removed for report in rest] == [("serve",), (), ()]
+        assert [(report.source, report.is_accepted) for report in rest[1:]] == [
+            ("test", True),
+            ("half", True),
+        ]
 
 
 async def test_every_push_and_removal_is_told_on_the_bus(
@@ -278,8 +281,8 @@ async def test_every_push_and_removal_is_told_on_the_bus(
         request = RemoveDocuments("armadillo", "observe_holding")
         removed = await bus.ask(keys.remove_bundle, request, BundleReport, timeout_s=HANG_S)
         assert removed.removed == ("observe_holding",)
-        told = [(await anext(aiter(reports)))[1] for _ in range(2)]
-    assert told == [pushed, removed]
+        published = [(await anext(aiter(reports)))[1] for _ in range(2)]
+    assert published == [pushed, removed]
 
 
 async def test_the_catalogue_survives_a_restart(
@@ -304,6 +307,6 @@ async def test_a_changed_document_with_the_version_it_had_is_refused_and_a_highe
     assert (await push(bus, keys, pick("1.2", "-2"))).is_accepted
     refused = await push(bus, keys, pick("1.2", "-3"))
     assert (refused.is_accepted, refused.revision) == (False, 1)
-    assert [each.code for each in refused.diagnostics if each.is_error] == ["AOS129"]
-    taken = await push(bus, keys, pick("1.10", "-3"))
-    assert (taken.is_accepted, taken.revision, taken.changed) == (True, 2, ("pick",))
+    assert [finding.code for finding in refused.diagnostics if finding.is_error] == ["AOS129"]
+    higher = await push(bus, keys, pick("1.10", "-3"))
+    assert (higher.is_accepted, higher.revision, higher.changed) == (True, 2, ("pick",))

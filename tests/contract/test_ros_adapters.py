@@ -243,9 +243,9 @@ async def test_an_action_is_cancelled_at_the_robot_and_late_ones_too(lab: Lab) -
     async with lab.bus.listen(lab.keys.progress("/count"), SkillProgress) as progress:
         running = asyncio.create_task(lab.call("/count", {"order": 1000}, 1, limit_s=HANG_S))
         async with asyncio.timeout(HANG_S):
-            async for _, told in progress:
-                if told.state == "executing" and told.text:
-                    assert told.text == '{"sequence": [0, 1, 2]}'
+            async for _, state in progress:
+                if state.state == "executing" and state.text:
+                    assert state.text == '{"sequence": [0, 1, 2]}'
                     break
         cancelled = await lab.bus.ask(
             lab.keys.cancel("/count"), Cancel("enough"), Cancelled, timeout_s=HANG_S

@@ -144,8 +144,8 @@ async def _row(folder: Path, arguments: argparse.Namespace, cache_dir: Path) -> 
     cells = [f"{cost.each_us:.2f} {cost.used}" if cost.counted else f"({cost.used})" for cost in costs]
     preparation_s = max(cost.preparation_s for cost in costs)
     update_s = max(cost.update_s for cost in costs)
-    told = f"{ratio:.1f} | {preparation_s:.2f} s | {update_s:.2f} s |"
-    print(f"| {_name(folder)} | {' | '.join(cells)} | {told}", flush=True)
+    figures = f"{ratio:.1f} | {preparation_s:.2f} s | {update_s:.2f} s |"
+    print(f"| {_name(folder)} | {' | '.join(cells)} | {figures}", flush=True)
     return ratio
 
 

@@ -24,7 +24,9 @@ def noisy(right: int, count: int, accuracy: float) -> Seen:
     """`right` with this probability, else any other observation."""
     if count == 1 or accuracy >= 1:
         return right
-    return tuple((seen, accuracy if seen == right else (1 - accuracy) / (count - 1)) for seen in range(count))
+    return tuple(
+        (value, accuracy if value == right else (1 - accuracy) / (count - 1)) for value in range(count)
+    )
 
 
 def moved(place: int, by: int, count: int) -> int:

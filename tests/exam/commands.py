@@ -106,7 +106,7 @@ async def examine_bundles(arguments: argparse.Namespace) -> int:
     print("| bundle | planner | told | proven | returned | range | right |\n|---|---|---|---|---|---|---|")
     for bundle in arguments.bundle:
         for planner in arguments.planner or PLANNERS["values"]:
-            told = await told_of_bundle(
+            entry = await told_of_bundle(
                 bundle,
                 planner,
                 missions=arguments.missions,
@@ -114,8 +114,8 @@ async def examine_bundles(arguments: argparse.Namespace) -> int:
                 seconds=None if arguments.simulations else arguments.seconds or 0.1,
                 simulations=arguments.simulations or 0,
             )
-            is_passed = is_passed and told.is_right
-            print(told.row(), flush=True)
+            is_passed = is_passed and entry.is_right
+            print(entry.row(), flush=True)
     return 0 if is_passed else 1
 
 
@@ -147,7 +147,7 @@ def examine_engine(arguments: argparse.Namespace) -> int:
                     print(json.dumps(answer), flush=True)
                 if is_false and not arguments.json:
                     _clear_line()
-                    print(summary.told(problem, answer), flush=True)
+                    print(summary.faults_text(problem, answer), flush=True)
                 if is_false and arguments.dump:
                     _dump(arguments.dump, problem, answer)
                 _tell_progress(f"{done}/{len(all_problems)} {summary.line()}")

@@ -97,15 +97,15 @@ async def _mission(
         following = dict(_following(problem, action))
         if not following:
             break
-        seen = source.choice(sorted(following))
+        response = source.choice(sorted(following))
         names = {number: name for name, number in _RESPONSES.items()}
-        update = await engine.update(engine.description.actions[action].name, names[seen])
+        update = await engine.update(engine.description.actions[action].name, names[response])
         if update.is_impossible:
-            false.append(f"step {step}: {names[seen]} is held impossible")
+            false.append(f"step {step}: {names[response]} is held impossible")
             break
         summary = update.summary
         running = 1 - summary.goal_probability - summary.failure_probability - summary.over_probability
-        problem = following[seen]
+        problem = following[response]
     return Examined(bundle.name, bundle.idioms, tuple(false), decisions, 100 * worst)
 
 
@@ -116,12 +116,12 @@ def _following(problem: Problem, action: int) -> Iterator[tuple[int, Problem]]:
         for odds, after, sensing, _ in problem.rows[state, action]:
             if problem.states[after][1] != RUNNING:
                 continue
-            for seen, likelihood in problem.sensings[sensing]:
-                found = weights.setdefault(seen, {})
+            for response, likelihood in problem.sensings[sensing]:
+                found = weights.setdefault(response, {})
                 found[after] = found.get(after, 0.0) + share * odds * likelihood
-    for seen, found in weights.items():
+    for response, found in weights.items():
         total = sum(found.values())
         yield (
-            seen,
+            response,
             dataclasses.replace(problem, starts=[(state, weight / total) for state, weight in found.items()]),
         )

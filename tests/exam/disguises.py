@@ -87,13 +87,13 @@ def _with_chatter(random: random.Random, world: World) -> World:
     def step(state: State, action: int) -> list[Outcome]:
         found = []
         for out in world.step(state, action):
-            seen = out.seen if isinstance(out.seen, tuple) else ((out.seen, 1.0),)
+            sensing = out.observation if isinstance(out.observation, tuple) else ((out.observation, 1.0),)
             shaded = tuple(
                 ((observation + 1) * shades + shade, odds / shades)
-                for observation, odds in seen
+                for observation, odds in sensing
                 for shade in range(shades)
             )
-            found.append(dataclasses.replace(out, seen=shaded))
+            found.append(dataclasses.replace(out, observation=shaded))
         return found
 
     return dataclasses.replace(world, step=step)

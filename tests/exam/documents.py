@@ -173,9 +173,11 @@ def _world(length: int, sink: str, share: float) -> World:
         if sink == "goal" and after[-1]:
             reward -= 4
             ends = True
-        seen = YES if sink == "response" and value else NO
+        observation = YES if sink == "response" and value else NO
         ending = GOAL if ends else RUNNING
-        return [Outcome(part, (answer, *after), reward + earned, seen, ending) for part, earned in odds]
+        return [
+            Outcome(part, (answer, *after), reward + earned, observation, ending) for part, earned in odds
+        ]
 
     zeros = (0,) * (length - 1)
     starts = [(share, (1, 1, *zeros)), (1 - share, (0, 0, *zeros))]

@@ -28,21 +28,21 @@ class Failures:
 
     @property
     def claims(self) -> list[Played]:
-        return [each for each in self.played if each.is_claimed]
+        return [trial for trial in self.played if trial.is_claimed]
 
     @property
     def false_claims(self) -> list[Played]:
-        return [each for each in self.played if each.is_false_claim]
+        return [trial for trial in self.played if trial.is_false_claim]
 
     @property
     def spared(self) -> list[Played]:
         """Those that the robot does without its broken skill."""
-        return [each for each in self.played if each.is_spare_at_goal]
+        return [trial for trial in self.played if trial.is_spare_at_goal]
 
     @property
     def stood_in(self) -> list[Played]:
         """Those that it does, too, with that skill broken."""
-        return [each for each in self.spared if each.is_at_goal]
+        return [trial for trial in self.spared if trial.is_at_goal]
 
     def is_passed(self) -> bool:
         allowed = 1 - LIMITS.goal_probability
@@ -56,8 +56,8 @@ class Failures:
     def table(self) -> str:
         """A line for each fault, and one for all."""
         by_fault: dict[str, list[Played]] = defaultdict(list)
-        for each in self.played:
-            by_fault[each.fault].append(each)
+        for trial in self.played:
+            by_fault[trial.fault].append(trial)
         rows = [(fault, Failures(played)) for fault, played in sorted(by_fault.items())]
         return "\n".join(
             [

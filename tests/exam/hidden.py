@@ -113,10 +113,10 @@ def machine(random: Random, large: bool) -> World:
         if action == 1:
             return [Outcome(1.0, state, inspect, noisy(level, levels, accuracy))]
         earned = 1 - level * 3 / levels
-        seen = ((1, 0.5 + 0.4 * level / levels), (0, 0.5 - 0.4 * level / levels))
+        observation = ((1, 0.5 + 0.4 * level / levels), (0, 0.5 - 0.4 * level / levels))
         return [
-            Outcome(1 - wear, state, earned, seen),
-            Outcome(wear, (min(level + 1, levels - 1),), earned, seen),
+            Outcome(1 - wear, state, earned, observation),
+            Outcome(wear, (min(level + 1, levels - 1),), earned, observation),
         ]
 
     horizon = random.randint(10, 30)
@@ -136,9 +136,9 @@ def exits(random: Random, large: bool) -> World:
     def step(state: State, action: int) -> list[Outcome]:
         room, good = state
         if action == 0:
-            seen = noisy(good, count, accuracy)
+            observation = noisy(good, count, accuracy)
             lost = Outcome(danger, state, cost, NOTHING_SEEN, FAILURE)
-            return [Outcome(1 - danger, (moved(room, 1, rooms), good), cost, seen), lost]
+            return [Outcome(1 - danger, (moved(room, 1, rooms), good), cost, observation), lost]
         value = values[(action - 1 - good) % count]
         return [Outcome(1.0, state, value, NOTHING_SEEN, GOAL if value > 0 else FAILURE)]
 
@@ -172,8 +172,8 @@ def pursuit(random: Random, large: bool) -> World:
         found = []
         for odds, by in ((flees, away), ((1 - flees) / 2, 0), ((1 - flees) / 2, -away)):
             after = beside(target, by)
-            seen = noisy(int(abs(robot - after) <= reach), 2, accuracy)
-            found.append(Outcome(odds, (robot, after), cost, seen))
+            observation = noisy(int(abs(robot - after) <= reach), 2, accuracy)
+            found.append(Outcome(odds, (robot, after), cost, observation))
         return found
 
     horizon = random.randint(8, 25)
@@ -267,8 +267,8 @@ def machines(random: Random, large: bool) -> World:
             for broken, was_broken, hazard in zip(after, fixed, breaks, strict=True):
                 odds *= 1.0 if was_broken else hazard if broken else 1 - hazard
             looks = count <= action < 2 * count
-            seen: Seen = noisy(after[machine], 2, accuracy) if looks else NOTHING_SEEN
-            found.append(Outcome(odds, after, reward, seen))
+            observation: Seen = noisy(after[machine], 2, accuracy) if looks else NOTHING_SEEN
+            found.append(Outcome(odds, after, reward, observation))
         return found
 
     horizon = random.randint(6, 20)

@@ -57,9 +57,9 @@ class Job:
 
     def spare(self, broken: str) -> dict[str, str] | None:
         """The bundle without a skill; None where it alone gets through some stage, or tells something."""
-        left = [skill for skill in self.skills if skill.name != broken]
-        suffices = {skill.purpose for skill in left} == {skill.purpose for skill in self.skills}
-        return self._with(left) if suffices else None
+        working = [skill for skill in self.skills if skill.name != broken]
+        suffices = {skill.purpose for skill in working} == {skill.purpose for skill in self.skills}
+        return self._with(working) if suffices else None
 
     def _with(self, skills: Sequence[_Skill]) -> dict[str, str]:
         files = {"job.ef": self.environment}

@@ -54,11 +54,11 @@ def ties(random: Random, large: bool) -> World:
     twins = random.randint(2, 4)
     moves = {key: random.randrange(states) for key in product(range(states), range(kinds))}
     rewards = {key: random.choice((-1, 0, 0, 0, 1)) for key in moves}
-    seen = [random.randrange(2) for _ in range(states)]
+    sights = [random.randrange(2) for _ in range(states)]
 
     def step(state: State, action: int) -> list[Outcome]:
         key = (state[0], action % kinds)
-        return [Outcome(1.0, (moves[key],), rewards[key], seen[moves[key]])]
+        return [Outcome(1.0, (moves[key],), rewards[key], sights[moves[key]])]
 
     horizon = random.randint(5, 15)
     names = [f"a{i}" for i in range(kinds * twins)]
@@ -79,8 +79,8 @@ def endings(random: Random, large: bool) -> World:
 
     def step(state: State, action: int) -> list[Outcome]:
         key = (state[0], action)
-        seen = NOTHING_SEEN if is_seen else 0
-        over = Outcome(hazard[key], state, prizes[key] + rewards[key], seen, kinds[key])
+        observation = NOTHING_SEEN if is_seen else 0
+        over = Outcome(hazard[key], state, prizes[key] + rewards[key], observation, kinds[key])
         return [
             over,
             *(
@@ -107,13 +107,15 @@ def counter(random: Random, large: bool) -> World:
     def step(state: State, action: int) -> list[Outcome]:
         now = state[0]
         after = min(now + 1, period) if once else (now + 1) % period
-        seen = after if is_seen else NOTHING_SEEN
+        observation = after if is_seen else NOTHING_SEEN
         if action == 1:
             is_open = now >= opens
-            return [Outcome(1.0, (after,), prize if is_open else fine, seen, GOAL if is_open else FAILURE)]
+            return [
+                Outcome(1.0, (after,), prize if is_open else fine, observation, GOAL if is_open else FAILURE)
+            ]
         if action == 2:  # winds it back
-            return [Outcome(1.0, (0,), quiet, seen)]
-        return [Outcome(1.0, (after,), quiet, seen)]
+            return [Outcome(1.0, (0,), quiet, observation)]
+        return [Outcome(1.0, (after,), quiet, observation)]
 
     starts = [(1.0, (0,))] if random.random() < 0.6 else [(1.0, (now,)) for now in range(period)]
     horizon = period + random.randint(2, 10)

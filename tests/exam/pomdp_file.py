@@ -25,8 +25,8 @@ def pomdp_text(problem: Problem) -> str:
             for copy in range(max(most, 1)):
                 copies[state, copy] = len(copies)
     end = len(copies)
-    observations = sorted({seen for sensing in problem.sensings for seen, _ in sensing})
-    index = {seen: number for number, seen in enumerate(observations)}
+    observations = sorted({observation for sensing in problem.sensings for observation, _ in sensing})
+    index = {observation: number for number, observation in enumerate(observations)}
     starts = [0.0] * (end + 1)
     for state, odds in problem.starts:
         starts[copies[state, 0]] += odds
@@ -48,8 +48,8 @@ def pomdp_text(problem: Problem) -> str:
             if not sensings:
                 lines.append(f"O: {action} : {number} : 0 1.0")
                 continue
-            for seen, odds in problem.sensings[sensings[min(copy, len(sensings) - 1)]]:
-                lines.append(f"O: {action} : {number} : {index[seen]} {odds!r}")
+            for observation, odds in problem.sensings[sensings[min(copy, len(sensings) - 1)]]:
+                lines.append(f"O: {action} : {number} : {index[observation]} {odds!r}")
     for (state, _), number in copies.items():
         for action in actions:
             reward = 0.0

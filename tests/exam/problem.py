@@ -38,7 +38,7 @@ class Outcome:
     probability: float
     next: State
     reward: float = 0.0
-    seen: Seen = NOTHING_SEEN
+    observation: Seen = NOTHING_SEEN
     ending: int = RUNNING
 
 
@@ -87,7 +87,9 @@ class Problem:
             " ".join(map(str, ("irrelevant", len(world.irrelevant), *world.irrelevant))),
         ]
         words += [" ".join(map(str, (*state, ending))) for state, ending in self.states]
-        words += [_row((seen, repr(odds)) for seen, odds in sensing) for sensing in self.sensings]
+        words += [
+            _row((observation, repr(odds)) for observation, odds in sensing) for sensing in self.sensings
+        ]
         words += [f"{state} {odds!r}" for state, odds in self.starts]
         for number, (_, ending) in enumerate(self.states):
             if ending == RUNNING:
@@ -133,8 +135,12 @@ def tabulate(name: str, world: World, max_states: int) -> Problem:
             for outcome in world.step(state, action):
                 if outcome.probability <= 0:
                     continue
-                seen = outcome.seen if isinstance(outcome.seen, tuple) else ((outcome.seen, 1.0),)
-                sensing = sensings.setdefault(_normalised(seen), len(sensings))
+                responses = (
+                    outcome.observation
+                    if isinstance(outcome.observation, tuple)
+                    else ((outcome.observation, 1.0),)
+                )
+                sensing = sensings.setdefault(_normalised(responses), len(sensings))
                 merged[number_of(outcome.next, outcome.ending), sensing, outcome.reward] += (
                     outcome.probability
                 )
@@ -146,9 +152,9 @@ def tabulate(name: str, world: World, max_states: int) -> Problem:
     return Problem(name, world, list(numbers), list(sensings), starts, rows)
 
 
-def _normalised(seen: tuple[tuple[int, float], ...]) -> tuple[tuple[int, float], ...]:
+def _normalised(responses: tuple[tuple[int, float], ...]) -> tuple[tuple[int, float], ...]:
     merged: dict[int, float] = defaultdict(float)
-    for observation, odds in seen:
+    for observation, odds in responses:
         merged[observation] += odds
     total = sum(merged.values())
     return tuple((observation, odds / total) for observation, odds in sorted(merged.items()) if odds > 0)

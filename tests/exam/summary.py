@@ -47,7 +47,7 @@ class Bounds:
             self.false_models.append(problem.name)
         return bool(answer["false"])
 
-    def told(self, problem: Problem, answer: dict[str, Any]) -> str:
+    def faults_text(self, problem: Problem, answer: dict[str, Any]) -> str:
         """The failure of a model for people."""
         if "claims" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
@@ -139,7 +139,7 @@ class Regrets:
                 is_bad |= excess > WORST_TARGET or bool(entry["fault"])
         return is_bad
 
-    def told(self, problem: Problem, answer: dict[str, Any]) -> str:
+    def faults_text(self, problem: Problem, answer: dict[str, Any]) -> str:
         if "optimum" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         head = (

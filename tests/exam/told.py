@@ -96,22 +96,22 @@ class Values:
             return False
         family = problem.name.partition("/")[0].removesuffix("+")
         found = [(entry["planner"], told_of(problem.name, entry, answer)) for entry in answer["planners"]]
-        for name, told in found:
-            self.values[name][family].append(told)
-        return not all(told.is_right for _, told in found)
+        for name, compared in found:
+            self.values[name][family].append(compared)
+        return not all(compared.is_right for _, compared in found)
 
-    def told(self, problem: Problem, answer: dict[str, Any]) -> str:
+    def faults_text(self, problem: Problem, answer: dict[str, Any]) -> str:
         """Returns what is wrong about a model, for people."""
         if "optimum" not in answer:
             return f"{problem.name}: {answer.get('crash') or answer.get('fault')}"
         found = (told_of(problem.name, entry, answer) for entry in answer["planners"])
-        return "\n".join(told.text() for told in found if not told.is_right)
+        return "\n".join(entry.text() for entry in found if not entry.is_right)
 
     def all_of(self, name: str) -> list[Told]:
-        return [told for of_family in self.values[name].values() for told in of_family]
+        return [entry for of_family in self.values[name].values() for entry in of_family]
 
     def share_right(self, name: str) -> float:
-        return fmean(told.is_right for told in self.all_of(name))
+        return fmean(entry.is_right for entry in self.all_of(name))
 
     def line(self) -> str:
         return ", ".join(f"{name} {100 * self.share_right(name):.0f} % right" for name in self.values)
@@ -131,11 +131,13 @@ class Values:
         return "\n".join(lines)
 
     def is_passed(self) -> bool:
-        return not self.crashes and all(told.is_right for name in self.values for told in self.all_of(name))
+        return not self.crashes and all(entry.is_right for name in self.values for entry in self.all_of(name))
 
     def as_json(self) -> dict[str, Any]:
         return {
-            "told": {name: [dataclasses.asdict(told) for told in self.all_of(name)] for name in self.values},
+            "told": {
+                name: [dataclasses.asdict(entry) for entry in self.all_of(name)] for name in self.values
+            },
             "left_out": self.left_out,
             "crashes": self.crashes,
         }
@@ -158,8 +160,8 @@ def told_of(problem: str, entry: dict[str, Any], answer: dict[str, Any]) -> Told
 
 
 def _row(family: str, found: list[Told]) -> str:
-    right = sum(told.is_right for told in found)
-    deviations = [100 * told.deviation for told in found]
+    right = sum(entry.is_right for entry in found)
+    deviations = [100 * entry.deviation for entry in found]
     size = fmean(abs(deviation) for deviation in deviations)
-    error = fmean(100 * told.share_of_error for told in found)
+    error = fmean(100 * entry.share_of_error for entry in found)
     return f"| {family} | {len(found)} | {right} | {fmean(deviations):+.1f} | {size:.1f} | {error:.1f} |"

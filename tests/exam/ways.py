@@ -36,14 +36,16 @@ def corridor(random: Random, large: bool) -> World:
         found = []
         for odds, place in ((1 - slip, after), (slip, state[0])):
             is_there = place == goal and way == 1
-            seen = noisy(place, cells, accuracy) if accuracy in (0, 1) else _edge(place, cells, accuracy)
+            observation = (
+                noisy(place, cells, accuracy) if accuracy in (0, 1) else _edge(place, cells, accuracy)
+            )
             back = 0 if is_there and not ends else place
             found.append(
                 Outcome(
                     odds,
                     (back,),
                     cost + (prize if is_there else 0),
-                    NOTHING_SEEN if accuracy == 0 else seen,
+                    NOTHING_SEEN if accuracy == 0 else observation,
                     GOAL if is_there and ends else RUNNING,
                 )
             )
@@ -89,13 +91,15 @@ def grid(random: Random, large: bool) -> World:
         for odds, move in ((1 - slip, action), (slip / 2, (action + 1) % 4), (slip / 2, (action + 3) % 4)):
             x = moved(state[0], moves[move][0], width)
             y = moved(state[1], moves[move][1], height)
-            seen = seen_at(x, y, (x, y) == state)
+            observation = seen_at(x, y, (x, y) == state)
             if (x, y) == goal:
-                found.append(Outcome(odds, (x, y), cost + prize, seen, GOAL))
+                found.append(Outcome(odds, (x, y), cost + prize, observation, GOAL))
             elif (x, y) in traps:
-                found.append(Outcome(odds, (x, y), cost + fine, seen, FAILURE if trap_ends else RUNNING))
+                found.append(
+                    Outcome(odds, (x, y), cost + fine, observation, FAILURE if trap_ends else RUNNING)
+                )
             else:
-                found.append(Outcome(odds, (x, y), cost, seen))
+                found.append(Outcome(odds, (x, y), cost, observation))
         return found
 
     starts = [(1.0, (0, 0))]
@@ -137,8 +141,8 @@ def keys(random: Random, large: bool) -> World:
             reward, ending = reward + prize, GOAL
         else:
             reward += fine
-        seen = has_key if sees_key else NOTHING_SEEN
-        return [Outcome(1.0, (place, has_key, key), reward, seen, ending)]
+        observation = has_key if sees_key else NOTHING_SEEN
+        return [Outcome(1.0, (place, has_key, key), reward, observation, ending)]
 
     places = [0, 1] if hidden else [0]
     starts = [(1.0, (home, 0, key)) for key in places]
@@ -204,8 +208,8 @@ def late(random: Random, large: bool) -> World:
             return [
                 Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)
             ]
-        seen: Seen = noisy(colour, colours, accuracy) if is_seen and place == 0 else NOTHING_SEEN
-        return [Outcome(1.0, (place, colour), cost, seen)]
+        observation: Seen = noisy(colour, colours, accuracy) if is_seen and place == 0 else NOTHING_SEEN
+        return [Outcome(1.0, (place, colour), cost, observation)]
 
     starts = [(odds, (0, colour)) for colour, odds in enumerate(odds_of(random, colours)) if odds > 0]
     horizon = cells + random.randint(4, 10)
@@ -231,8 +235,8 @@ def heaven(random: Random, large: bool) -> World:
                 Outcome(1.0, state, prize if is_right else fine, NOTHING_SEEN, GOAL if is_right else FAILURE)
             ]
         place = moved(place, (1, -1, 0, 0)[action], fork + 1)
-        seen: Seen = noisy(side, 2, accuracy) if place == 0 else NOTHING_SEEN
-        return [Outcome(1.0, (place, side), cost, seen)]
+        observation: Seen = noisy(side, 2, accuracy) if place == 0 else NOTHING_SEEN
+        return [Outcome(1.0, (place, side), cost, observation)]
 
     odds = random.choice((0.5, 0.4, 0.2))
     starts = [(odds, (way, 0)), (1 - odds, (way, 1))]
@@ -279,9 +283,9 @@ def invest(random: Random, large: bool) -> World:
             return [Outcome(1.0, (0 if done == 0 else done - 1,), 0, done if is_seen else NOTHING_SEEN)]
         if done + 1 == length:
             return [Outcome(1.0, (0,), prize, 0)]
-        seen = done + 1 if is_seen else NOTHING_SEEN
+        observation = done + 1 if is_seen else NOTHING_SEEN
         return [
-            Outcome(1 - lapse, (done + 1,), cost, seen),
+            Outcome(1 - lapse, (done + 1,), cost, observation),
             Outcome(lapse, (0,), cost, 0 if is_seen else NOTHING_SEEN),
         ]
 
@@ -312,12 +316,14 @@ def battery(random: Random, large: bool) -> World:
             charge = full if place == 0 else charge
         found = []
         for odds, lost in ((1 - leak, 0), (leak, 1)):
-            left = max(charge - lost, 0)
-            seen = left if sees == "charge" else int(left <= full // 3) if sees == "low" else NOTHING_SEEN
-            if left == 0:
-                found.append(Outcome(odds, (place, 0), reward + fine, seen, FAILURE))
+            rest = max(charge - lost, 0)
+            observation = (
+                rest if sees == "charge" else int(rest <= full // 3) if sees == "low" else NOTHING_SEEN
+            )
+            if rest == 0:
+                found.append(Outcome(odds, (place, 0), reward + fine, observation, FAILURE))
             else:
-                found.append(Outcome(odds, (place, left), reward, seen))
+                found.append(Outcome(odds, (place, rest), reward, observation))
         return found
 
     horizon = random.randint(10, 30)

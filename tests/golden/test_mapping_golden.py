@@ -17,7 +17,7 @@ EXPECTED = Path(__file__).parent / "python"
 
 
 def compare(folder: Path, expected: Path) -> None:
-    generated = {each.file_name: each.python for each in emit_project(project_in(folder))}
+    generated = {mapping.file_name: mapping.python for mapping in emit_project(project_in(folder))}
     if os.environ.get("AOS_PROMOTE"):
         expected.mkdir(parents=True, exist_ok=True)
         for name, text in generated.items():
@@ -32,7 +32,7 @@ def test_our_armadillo_mappings_are_generated_as_stored(bundles: Path) -> None:
 
 def test_the_two_armadillo_bundles_share_their_mappings(bundles: Path) -> None:
     rough, finer = (project_in(bundles / f"armadillo-{name}") for name in ("rough", "finer"))
-    assert [each.python for each in emit_project(rough)] == [each.python for each in emit_project(finer)]
+    assert [mapping.python for mapping in emit_project(rough)] == [mapping.python for mapping in emit_project(finer)]
 
 
 def test_a_json_mapping_with_every_construct_is_generated_as_stored() -> None:

@@ -74,7 +74,7 @@ def test_decisions_of_a_folder_that_is_no_run_say_so(tmp_path: Path) -> None:
 
 
 def test_the_doctor_says_what_is_there() -> None:
-    findings = {each["subject"]: each for each in json.loads(run("aos", "doctor", "--json").stdout)}
+    findings = {finding["subject"]: finding for finding in json.loads(run("aos", "doctor", "--json").stdout)}
     assert findings["pybullet"]["state"] == "ok"
     assert findings["loopback"]["state"] == "ok"
     assert "C++ compiler" in findings
@@ -87,7 +87,7 @@ def test_the_doctor_says_what_a_deploy_file_lacks(tmp_path: Path, root: Path) ->
         "programs: {nav: {command: [./nav]}, ls: {command: [ls]}}\nbind: {'*': model}\n"
     )
     done = run("aos", "doctor", str(deploy), "--json")
-    findings = {each["subject"]: each for each in json.loads(done.stdout)}
+    findings = {finding["subject"]: finding for finding in json.loads(done.stdout)}
     assert done.returncode == 3
     assert (findings["ls"]["state"], findings["ls"]["found"]) == ("ok", "program ls")
     assert findings["model"]["state"] == "ok"

@@ -65,7 +65,7 @@ async def test_light_and_dark_weigh_places_by_their_noise(bundles: Path, cache_d
         numbers = {"east_m": east_m, "north_m": north_m}
         update = await engine.update("move(direction=north)", "moved", numbers=numbers)
     assert update.probability == pytest.approx(density, rel=1e-9)
-    (rows,) = (each.values for each in update.summary.marginals if each.variable == "y")
+    (rows,) = (marginal.values for marginal in update.summary.marginals if marginal.variable == "y")
     for y in (2, 3, 4):
         weight = sum(weights[x, y] for x in (1, 2, 3))
         assert rows[str(y)] == pytest.approx(weight / density, abs=1e-9)
@@ -81,4 +81,4 @@ def test_the_benchmark_bundles_have_no_mistakes(problem: str, bundles: Path) -> 
     loaded = load_bundle(bundles / "bench" / problem)
     assert loaded.project is not None
     # Tasks that go on for ever have no goal.
-    assert {each.code for each in loaded.diagnostics} <= {"AOS139"}
+    assert {finding.code for finding in loaded.diagnostics} <= {"AOS139"}

@@ -100,15 +100,15 @@ def test_intervals_cover_the_numbers_that_missions_were_drawn_with(tmp_path: Pat
 
 def test_what_nobody_recorded_is_left_open_and_the_intervals_are_wider(tmp_path: Path) -> None:
     bundles = [DEPLOY / "bundles" / "armadillo-rough-blind", RETRACT]
-    seen = recorded(tmp_path, "armadillo-rough-blind.yaml", 1, 15)
+    recorded_missions = recorded(tmp_path, "armadillo-rough-blind.yaml", 1, 15)
     unseen = tuple(
         msgspec.structs.replace(
             mission, steps=tuple(msgspec.structs.replace(step, truth=()) for step in mission.steps)
         )
-        for mission in seen
+        for mission in recorded_missions
     )
-    results = [asyncio.run(calibrate(missions, bundles)) for missions in (seen, unseen)]
-    picks = [next(e for e in each.estimates if e.draw.skill == "pick") for each in results]
+    results = [asyncio.run(calibrate(missions, bundles)) for missions in (recorded_missions, unseen)]
+    picks = [next(e for e in result.estimates if e.draw.skill == "pick") for result in results]
     widths = [pick.outcomes[0].probability.high - pick.outcomes[0].probability.low for pick in picks]
     assert picks[0].is_counted
     assert not picks[1].is_counted
@@ -134,11 +134,11 @@ def test_a_wrong_number_is_told_with_a_patch_that_mends_it(tmp_path: Path, cache
             env={**os.environ, "AOS_CACHE_DIR": str(cache_dir), "COLUMNS": "120"},
         )
 
-    told = run("--write", "changes.patch")
-    assert told.returncode == 0, told.stderr
-    assert "pick.sd:13" in told.stdout
-    assert "OUTSIDE" in told.stdout
-    assert "no record" in told.stdout  # of the hard table, where the robot never picks
+    done = run("--write", "changes.patch")
+    assert done.returncode == 0, done.stderr
+    assert "pick.sd:13" in done.stdout
+    assert "OUTSIDE" in done.stdout
+    assert "no record" in done.stdout  # of the hard table, where the robot never picks
     assert pick.read_text() == wrong
     patched = subprocess.run(
         ["git", "apply", "changes.patch"], cwd=tmp_path, capture_output=True, check=False

@@ -77,7 +77,7 @@ async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path,
         name, *rest = line.split("\t")
         fields = rest[: rest.index("")] if "" in rest else rest
         # Every question may have a limit to its processor time.
-        for field in (each for each in fields if not each.startswith("max_seconds=")):
+        for field in (name for name in fields if not name.startswith("max_seconds=")):
             lines.append("\t".join(part for part in (name, *rest) if part != field))
             lacking.append((name, field.partition("=")[0]))
     command = [str(executable[0]), str(tmp_path / "blame"), "", "1", "widen", "12"]

@@ -31,9 +31,9 @@ def run(app: typer.Typer, *arguments: str | Path) -> Result:
 
 
 def test_a_plan_says_what_it_risks_and_what_is_too_risky(app: typer.Typer, bundle: Path) -> None:
-    told = run(app, "plan", bundle, "--simulations", "100", "--never", f"0.2: {NEVER}")
-    assert f"listen: risks 0, 0.2 left of 0.2: never {NEVER}" in told.stdout
-    assert "too risky: open_left" in told.stdout
+    done = run(app, "plan", bundle, "--simulations", "100", "--never", f"0.2: {NEVER}")
+    assert f"listen: risks 0, 0.2 left of 0.2: never {NEVER}" in done.stdout
+    assert "too risky: open_left" in done.stdout
     found = json.loads(run(app, "plan", bundle, "--json", "--never", f"0.2: {NEVER}").stdout)
     (constraint,) = found["constraints"]
     assert (constraint["risk"], constraint["left"], constraint["risks"]) == (0, 0.2, [0, 0.5, 0])
@@ -55,6 +55,6 @@ def test_a_policy_file_keeps_to_constraints_that_came_after_it(
     options = ["--policy", str(policy), "--runs", "20", "--step-limit", "8", "--json"]
     free = json.loads(run(app, "simulate", bundle, *options, "--never", f"0.9: {NEVER}").stdout)
     bound = json.loads(run(app, "simulate", bundle, *options, "--never", f"0: {NEVER}").stdout)
-    assert any("open_left" in each["actions"] for each in free["runs"])
-    assert not any("open_left" in each["actions"] for each in bound["runs"])
+    assert any("open_left" in run["actions"] for run in free["runs"])
+    assert not any("open_left" in run["actions"] for run in bound["runs"])
     assert bound["summary"][f"violation_rate of {NEVER}"] == 0

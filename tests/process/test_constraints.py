@@ -126,7 +126,7 @@ async def built(files: Mapping[str, str], cache_dir: Path, *constraints: str) ->
 
 
 async def risk_of(engine: Engine, action: str, constraint: int = 0) -> float:
-    names = [each.name for each in engine.description.actions]
+    names = [action.name for action in engine.description.actions]
     return (await engine.risks(seed=1)).actions[names.index(action)][constraint]
 
 
@@ -218,12 +218,13 @@ async def test_a_cost_is_what_searches_count_for_a_violation(cache_dir: Path) ->
     costly = msgspec.structs.replace(project.constraints[0], cost=100.0)
     costly_project = msgspec.structs.replace(project, constraints=(costly,))
     free, costs = [
-        await build_project(each, cache_dir, lambda remark: None) for each in (project, costly_project)
+        await build_project(documents, cache_dir, lambda remark: None)
+        for documents in (project, costly_project)
     ]
     values = []
     for model in (free, costs):
         async with engine_of(model) as engine:
-            values.append({each.action: each.q for each in (await engine.exact(1)).actions})
+            values.append({action.action: action.q for action in (await engine.exact(1)).actions})
     assert values[0]["touch"] == pytest.approx(10)
     assert values[1]["touch"] == pytest.approx(10 - 0.3 * 100)
 
@@ -247,11 +248,15 @@ async def test_a_decision_record_tells_what_every_action_risks(cache_dir: Path) 
     async with engine_of(model) as engine:
         state = await Mission(terms, RunningModel(1, engine), around).run()
     assert state.ending == "goal"
-    told = [record.constraints[0] for record in around.records[::2]]
+    constraints = [record.constraints[0] for record in around.records[::2]]
     assert [record.action for record in around.records[::2]] == ["look", "look", "touch"]
-    assert [each.risk for each in told] == pytest.approx([0, 0, AFTER_TWO])
-    assert [each.risks for each in told] == [pytest.approx((0, p)) for p in (0.3, AFTER_ONE_BLACK, AFTER_TWO)]
-    assert {(each.never, each.probability, each.left) for each in told} == {(TOUCHES_HOT, 0.05, 0.05)}
+    assert [constraint.risk for constraint in constraints] == pytest.approx([0, 0, AFTER_TWO])
+    assert [constraint.risks for constraint in constraints] == [
+        pytest.approx((0, p)) for p in (0.3, AFTER_ONE_BLACK, AFTER_TWO)
+    ]
+    assert {(constraint.never, constraint.probability, constraint.left) for constraint in constraints} == {
+        (TOUCHES_HOT, 0.05, 0.05)
+    }
 
 
 async def test_a_mission_that_may_do_nothing_any_more_says_what_is_left(cache_dir: Path) -> None:
@@ -262,6 +267,6 @@ async def test_a_mission_that_may_do_nothing_any_more_says_what_is_left(cache_di
     async with engine_of(model) as engine:
         state = await Mission(terms, RunningModel(1, engine), around).run()
     assert (state.ending, exit_code_of_mission(state)) == ("too_risky", ExitCode.TOO_RISKY)
-    left = "0.05 is left of 0.05, and the least risk is 0.3"
-    assert state.remark == f"every action risks more than is allowed (never {TOUCHES_HOT}: {left})"
+    numbers = "0.05 is left of 0.05, and the least risk is 0.3"
+    assert state.remark == f"every action risks more than is allowed (never {TOUCHES_HOT}: {numbers})"
     assert not any(kind == "intended" for kind, _ in around.journalled)

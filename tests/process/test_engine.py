@@ -89,13 +89,13 @@ async def _exact(engine: Engine, horizon: int) -> dict[str, float]:
 async def test_an_answer_that_takes_long_tells_how_far_it_is_and_is_the_same(
     bundles: Path, cache_dir: Path
 ) -> None:
-    told: list[str] = []
+    texts: list[str] = []
     async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
         unheard = await engine.exact(4)
-        engine.on_progress = lambda progress: told.append(progress.text)
+        engine.on_progress = lambda progress: texts.append(progress.text)
         await engine.tell_progress(0)
         assert await engine.exact(4) == unheard
-    assert any(text.startswith("listing states: ") for text in told)
+    assert any(text.startswith("listing states: ") for text in texts)
 
 
 @pytest.mark.parametrize("kind", ["rough", "finer"])

@@ -27,8 +27,8 @@ def results(cache_dir: Path) -> dict[str, list[str]]:
     """The expectations of each test that were in vain."""
     program = asyncio.run(built_program(cache_dir, UNITS / "main.cpp", "-O1", includes=[TABLES]))
     done = subprocess.run([program], capture_output=True, text=True, timeout=HANG_S)
-    told = [json.loads(line) for line in done.stdout.splitlines()]
-    return {entry["test"]: entry["failures"] for entry in told}
+    entries = [json.loads(line) for line in done.stdout.splitlines()]
+    return {entry["test"]: entry["failures"] for entry in entries}
 
 
 @pytest.mark.parametrize("sentence", sentences)

@@ -51,7 +51,7 @@ def test_no_claim_about_random_models_is_false(executable: Path) -> None:
     for problem, answer in reports(
         executable, "bounds", options, problems(list(FAMILIES), 88, 1, False, 100)
     ):
-        assert not found.add(problem, answer), found.told(problem, answer)
+        assert not found.add(problem, answer), found.faults_text(problem, answer)
     assert found.claims > 3000
 
 
@@ -60,7 +60,7 @@ def test_auto_loses_hardly_more_than_exact_look_ahead(executable: Path) -> None:
     options = {"simulations": 2000, "missions": 1, "planners": "auto,look-ahead", "truth": 1}
     asked = [*problems(list(FAMILIES), 22, 300, False, 100), *problems(NEEDLES, 6, 400, True, 200)]
     for problem, answer in reports(executable, "regret", options, asked):
-        assert not found.add(problem, answer), found.told(problem, answer)
+        assert not found.add(problem, answer), found.faults_text(problem, answer)
     excesses = [excess for excess, _ in found.worst["auto"]]
     assert len(excesses) >= 20
     assert sum(excesses) / len(excesses) <= MEAN_TARGET
@@ -72,19 +72,19 @@ def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(exec
     options = {"simulations": 500, "missions": 10, "planners": "auto", "truth": 0.5}
     asked = [named_problem(name, 100) for name in ("counter/8", "late/306")]
     for problem, answer in reports(executable, "regret", options, asked):
-        assert not found.add(problem, answer), found.told(problem, answer)
-    assert [told.planner for told in found.all_of("auto")] == ["exact", "exact"]
+        assert not found.add(problem, answer), found.faults_text(problem, answer)
+    assert [entry.planner for entry in found.all_of("auto")] == ["exact", "exact"]
 
 
 def test_a_value_is_wrong_beyond_two_errors_and_a_twentieth_of_the_range() -> None:
-    def told(value: float, error: float, returned_error: float) -> Told:
+    def entry_of(value: float, error: float, returned_error: float) -> Told:
         return Told("p", "auto", value, error, 10.0, returned_error, range=100.0)
 
-    assert told(15, 0, 0).is_right
-    assert not told(16, 0, 0).is_right
-    assert told(4, 3, 1).is_right
-    assert not told(-4.9, 3, 4).is_right
-    assert told(-4.9, 3, 7).is_right
+    assert entry_of(15, 0, 0).is_right
+    assert not entry_of(16, 0, 0).is_right
+    assert entry_of(4, 3, 1).is_right
+    assert not entry_of(-4.9, 3, 4).is_right
+    assert entry_of(-4.9, 3, 7).is_right
 
 
 def test_no_variable_is_left_out_that_matters() -> None:
@@ -104,7 +104,7 @@ async def test_with_a_broken_skill_no_goal_is_claimed_falsely_and_others_stand_i
     found = Failures(
         [await played_job(job(seed), cache_dir, simulations=500) for seed in (3, 4, 5, 8, 9, 25)]
     )
-    assert {each.fault for each in found.played} == {"fails", "is_lost", "talks_nonsense"}
+    assert {job.fault for job in found.played} == {"fails", "is_lost", "talks_nonsense"}
     assert len(found.claims) >= 4
     assert not found.false_claims
     assert len(found.spared) == len(found.stood_in) >= 4
@@ -133,8 +133,8 @@ def action_value(problem: Problem, belief: dict[int, float], action: int, decisi
             value += weight * odds * reward
             if problem.states[after][1] != RUNNING:
                 continue
-            for seen, likelihood in problem.sensings[sensing]:
-                part = following.setdefault(seen, {})
+            for observation, likelihood in problem.sensings[sensing]:
+                part = following.setdefault(observation, {})
                 part[after] = part.get(after, 0.0) + weight * odds * likelihood
     if decisions > 1:
         value += problem.world.discount * sum(

@@ -109,10 +109,10 @@ async def test_beside_a_camera_that_always_fails_the_robot_asks(cache_dir: Path)
     assert state.ending == "goal"
     assert skills[:4] == ["look", "look", "look", "ask"]
     assert around.outcomes[2].remark.startswith("look is set aside for 300 s after 3 failures in a row")
-    told = around.decisions[3]
-    assert told.set_aside.keys() == {"look"}
-    assert told.set_aside["look"] in told.why
-    assert "look" not in {value.action for value in told.actions}
+    decision = around.decisions[3]
+    assert decision.set_aside.keys() == {"look"}
+    assert decision.set_aside["look"] in decision.why
+    assert "look" not in {value.action for value in decision.actions}
 
 
 async def test_a_skill_of_which_nobody_knows_ran_always_or_never(tutorial: BuiltModel) -> None:

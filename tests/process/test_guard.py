@@ -43,8 +43,8 @@ async def test_a_command_that_does_not_exist_is_named() -> None:
 
 
 async def test_a_nicer_command_is_nicer_than_the_processes_of_every_session() -> None:
-    told = f"{sys.executable} -c 'import os; print(os.nice(0))'; cat /proc/self/autogroup 2>/dev/null"
-    child = await start(told, Limits(niceness=7))
+    command = f"{sys.executable} -c 'import os; print(os.nice(0))'; cat /proc/self/autogroup 2>/dev/null"
+    child = await start(command, Limits(niceness=7))
     nice, *session = (await child.stdout.read()).decode().splitlines()
     assert int(nice) == min(os.nice(0) + 7, 19)
     assert session == [] or session[0].endswith("nice 7")  # A kernel without sessions of its own has none.

@@ -95,7 +95,7 @@ def test_an_episode_ends_at_the_goal_and_tells_it_in_words(kettle: Path) -> None
 def test_many_worlds_start_anew_when_they_are_over_and_repeat_with_their_seed(kettle: Path) -> None:
     def story(seed: int) -> list[np.ndarray]:
         first, _ = worlds.reset(seed=seed)
-        told = [first]
+        values_of_story = [first]
         was_over = np.zeros(32, bool)
         for _ in range(30):
             observations, rewards, terminated, truncated, _ = worlds.step(worlds.action_space.sample())
@@ -103,9 +103,9 @@ def test_many_worlds_start_anew_when_they_are_over_and_repeat_with_their_seed(ke
             assert (rewards[was_over] == 0).all()
             assert (terminated == (rewards == 9)).all()
             was_over = terminated | truncated
-            told += [observations, rewards, terminated, truncated]
-        assert any(values.any() for values in told[3::4])
-        return told
+            values_of_story += [observations, rewards, terminated, truncated]
+        assert any(values.any() for values in values_of_story[3::4])
+        return values_of_story
 
     worlds = AosVectorEnv(kettle, 32, max_episode_steps=6)
     first, again, other = story(1), story(1), story(2)

@@ -52,7 +52,7 @@ async def lamps(cache_dir: Path) -> Engine:
 
 
 def probability(summary: BeliefSummary, variable: str) -> float:
-    (marginal,) = (each.values for each in summary.marginals if each.variable == variable)
+    (marginal,) = (marginal.values for marginal in summary.marginals if marginal.variable == variable)
     return marginal.get("true", 0.0)
 
 
@@ -96,10 +96,10 @@ async def test_the_cautious_belief_has_nothing_that_was_not_observed(lamps: Engi
     summary = await lost(lamps, "red", times=3)
     assert summary.cautious is not None
     assert (summary.goal_probability, summary.cautious.goal_probability) == (pytest.approx(0.4375), 0.0)
-    seen = await lamps.update("red", "done")
+    update = await lamps.update("red", "done")
     # 1/2 in the cautious belief, and more in the other: the lamp is on in both.
-    assert seen.summary.cautious is None
-    assert seen.probability == pytest.approx(0.4375 + 0.5625 / 2)
+    assert update.summary.cautious is None
+    assert update.probability == pytest.approx(0.4375 + 0.5625 / 2)
 
 
 async def test_an_end_that_changes_nothing_is_believed_to_have_changed_nothing(lamps: Engine) -> None:
@@ -163,11 +163,11 @@ async def test_a_search_may_do_without_a_skill_and_start_from_the_cautious_belie
     await lost(lamps, "red", ran=0.9)
     everything = await lamps.plan(seed=1, simulations=2000)
     plan = await lamps.plan(seed=1, simulations=2000, without=["red", "press"], cautious=cautious)
-    assert {each.action for each in plan.actions} == {"blue", "check", "see"}
+    assert {action.action for action in plan.actions} == {"blue", "check", "see"}
     assert plan.best.action == lamps.description.actions[plan.index].name
     # Without the red lamp there is nothing to earn.
-    assert [each.q for each in plan.actions] == [0.0] * 3
+    assert [action.q for action in plan.actions] == [0.0] * 3
     assert not (await lamps.may_reach_goal(without=["red", "press"], cautious=cautious)).is_reachable
     assert (await lamps.may_reach_goal(cautious=cautious)).is_reachable
     again = await lamps.plan(seed=1, simulations=2000)
-    assert [each.q for each in again.actions] == [each.q for each in everything.actions]
+    assert [action.q for action in again.actions] == [action.q for action in everything.actions]

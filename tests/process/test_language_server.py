@@ -57,19 +57,19 @@ class Editor(LanguageClient):
 
     def __init__(self) -> None:
         super().__init__("test", "1")
-        self.told: asyncio.Queue[tuple[str, list[types.Diagnostic]]] = asyncio.Queue()
+        self.published: asyncio.Queue[tuple[str, list[types.Diagnostic]]] = asyncio.Queue()
 
         @self.feature(types.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS)
         def on_findings(params: types.PublishDiagnosticsParams) -> None:
             name = params.uri.rpartition("/")[2]
-            self.told.put_nowait((name, list(params.diagnostics)))
+            self.published.put_nowait((name, list(params.diagnostics)))
 
     async def findings(self, name: str) -> list[types.Diagnostic]:
         """The next findings about a file."""
         async with asyncio.timeout(HANG_S):
             while True:
-                told, found = await self.told.get()
-                if told == name:
+                file, found = await self.published.get()
+                if file == name:
                     return found
 
     def open(self, path: Path) -> None:
@@ -128,8 +128,8 @@ async def test_an_edit_in_one_file_is_checked_against_the_others(editor: Editor,
     editor.open(environment)
     editor.change(environment, ENVIRONMENT.replace("is_lit", "is_on"))
     found = await editor.findings("press.sd")
-    assert all("is_lit" in each.message for each in found)
-    assert {each.range.start.line for each in found} == {3, 4}
+    assert all("is_lit" in finding.message for finding in found)
+    assert {finding.range.start.line for finding in found} == {3, 4}
 
 
 async def test_words_are_explained_and_completed_and_sections_listed(editor: Editor, bundle: Path) -> None:
@@ -185,7 +185,7 @@ async def test_names_lead_to_their_declaration_and_to_all_their_uses(editor: Edi
         types.ReferenceParams(types.ReferenceContext(True), asked.text_document, asked.position)
     )
     assert everywhere is not None
-    assert [place(each)[:2] for each in everywhere] == [
+    assert [place(location)[:2] for location in everywhere] == [
         ("lamp.ef", 3),
         ("lamp.ef", 5),
         ("lamp.ef", 8),
@@ -213,7 +213,7 @@ async def test_a_state_variable_is_renamed_in_all_files(editor: Editor, bundle: 
     for uri, changes in edit.changes.items():
         path = bundle / uri.rpartition("/")[2]
         lines = path.read_text().split("\n")
-        for change in sorted(changes, key=lambda each: -each.range.start.character):
+        for change in sorted(changes, key=lambda change: -change.range.start.character):
             start, end = change.range.start, change.range.end
             line = lines[start.line]
             lines[start.line] = line[: start.character] + change.new_text + line[end.character :]
@@ -297,5 +297,5 @@ async def test_a_folder_without_documents_is_left_alone(editor: Editor, bundle: 
     skill.write_text(SKILL.replace("lit :", "bright :"))
     editor.open(skill)
     async with asyncio.timeout(HANG_S):
-        name, _ = await editor.told.get()
+        name, _ = await editor.published.get()
     assert name.startswith("press.")

@@ -105,10 +105,10 @@ async def test_a_belief_goes_over_in_pieces_to_documents_with_other_constants(
 
 
 async def test_of_many_values_the_likeliest_are_told_and_the_rest_summed_up(engine: Engine) -> None:
-    told = {marginal.variable: marginal for marginal in (await engine.summary()).marginals}
-    codes = told["code"]
+    marginals = {marginal.variable: marginal for marginal in (await engine.summary()).marginals}
+    codes = marginals["code"]
     assert len(codes.values) == 16
     assert list(codes.values) == sorted(codes.values, key=lambda code: -codes.values[code])
     assert codes.values["0"] == pytest.approx(0.6**8, abs=0.002)
     assert sum(codes.values.values()) + codes.others == pytest.approx(1)
-    assert told["lamps[16]"].others == 0
+    assert marginals["lamps[16]"].others == 0

@@ -16,13 +16,13 @@ VARIABLES = 1_000
 
 
 def marginal(belief: BeliefSummary, name: str) -> dict[str, float]:
-    return next(each.values for each in belief.marginals if each.variable == name)
+    return next(marginal.values for marginal in belief.marginals if marginal.variable == name)
 
 
 @pytest.mark.parametrize("files", [many_variables(VARIABLES), long_array(ELEMENTS)], ids=["many", "long"])
 def test_nothing_is_wrong_with_a_large_bundle(files: dict[str, str]) -> None:
     found = load_files({name: text.encode() for name, text in files.items()}).diagnostics
-    assert {each.code for each in found} <= {"AOS139"}  # There is no goal.
+    assert {finding.code for finding in found} <= {"AOS139"}  # There is no goal.
 
 
 async def test_a_thousand_variables_are_believed_one_by_one(cache_dir: Path) -> None:

@@ -92,7 +92,9 @@ def linted(app: typer.Typer, folder: Path, exit_code: int = 0) -> dict[str, Any]
     result = CliRunner().invoke(app, ["lint", str(folder), "--format", "json"])
     assert result.exit_code == exit_code, result.output
     found = json.loads(result.stdout)["diagnostics"]
-    return {each["code"]: (each["severity"], _place(each["span"]), each["hint"]) for each in found}
+    return {
+        finding["code"]: (finding["severity"], _place(finding["span"]), finding["hint"]) for finding in found
+    }
 
 
 def _place(span: dict[str, Any]) -> str:
@@ -110,21 +112,21 @@ A compiler that does not check divisions derives that `left` is 1.
 """
 
 
-@pytest.mark.parametrize(("code", "error_code", "told"), FAULTS, ids=["segfault", "loop", "division"])
+@pytest.mark.parametrize(("code", "error_code", "text"), FAULTS, ids=["segfault", "loop", "division"])
 def test_a_fault_of_model_code_names_its_document_line(
     app: typer.Typer,
     hall: Callable[..., Path],
     monkeypatch: pytest.MonkeyPatch,
     code: str,
     error_code: str,
-    told: str,
+    text: str,
 ) -> None:
     monkeypatch.setattr(replay, "REPLAY_DEADLINE_S", HANG_S)
     result = CliRunner().invoke(app, ["plan", str(hall(code)), "--time", "0.1"])
     assert isinstance(result.exception, ModelError)
     (diagnostic,) = result.exception.diagnostics
     assert (diagnostic.code, diagnostic.span.file, diagnostic.span.line) == (error_code, "walk.sd", 5)
-    assert told in diagnostic.message
+    assert text in diagnostic.message
 
 
 STEP = "state__.place = state.place + 1;\n"

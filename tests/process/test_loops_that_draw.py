@@ -78,7 +78,7 @@ async def test_loops_are_followed_whatever_the_order_of_their_outcomes(cache_dir
         for name, (_, probability) in LOOPS.items():
             await engine.reset_belief()
             prediction = await engine.predict(names.index(name))
-            stays = {seen.response: seen.probability for seen in prediction.predicted}
+            stays = {predicted.response: predicted.probability for predicted in prediction.predicted}
             assert stays["yes"] == pytest.approx(probability, abs=0.03), name
             update = await engine.update(name, "no")
             assert not update.is_impossible, name

@@ -44,8 +44,8 @@ async def evaluator(tmp_path: Path) -> AsyncIterator[Start]:
         return made[-1]
 
     yield make
-    for each in made:
-        await each.close()
+    for evaluator in made:
+        await evaluator.close()
 
 
 async def fault_of(evaluator: Evaluator, result: dict[str, object] | None = None) -> MappingFault:

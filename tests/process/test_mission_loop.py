@@ -58,9 +58,9 @@ async def test_a_mission_goes_on_after_one_lost_activation(finer: BuiltModel) ->
 
     state, around = await run_mission(finer, robot)
     assert state.ending == "goal"
-    assert all(each.planner and each.why and each.threads == 1 for each in around.records)
-    assert all(each.preparation_s >= 0 for each in around.records)
-    assert all((each.update_s > 0) == (each.outcome is not None) for each in around.records)
+    assert all(record.planner and record.why and record.threads == 1 for record in around.records)
+    assert all(record.preparation_s >= 0 for record in around.records)
+    assert all((record.update_s > 0) == (record.outcome is not None) for record in around.records)
     statuses = [record.outcome.status for record in around.records if record.outcome]
     assert statuses[0] == "timed_out"
     assert set(statuses[1:]) == {"observed"}
@@ -81,7 +81,7 @@ async def test_a_skill_that_fails_is_tried_again_as_often_as_the_deploy_file_say
     rules = FailureRules(skills={"pick": SkillRule(on_failure="retry", retries=2)})
     state, around = await run_mission(finer, robot, rules=rules)
     decisions = [record for record in around.records if record.outcome is None]
-    assert [each.skill for each in decisions[1:4]] == ["pick", "pick", "pick"]
+    assert [decision.skill for decision in decisions[1:4]] == ["pick", "pick", "pick"]
     assert decisions[2].why == "it is tried again after a failure, 1 of 2"
     assert statuses(around)[1:4] == ["failed", "failed", "observed"]
     assert state.ending == "goal"
@@ -108,7 +108,7 @@ async def test_a_mission_holds_until_somebody_lets_it_go_on(finer: BuiltModel) -
     around.on_hold = lambda: around.mission.resume()
     rules = FailureRules(skills={"pick": SkillRule(on_failure="hold")})
     state, _ = await run_mission(finer, robot, rules=rules, around=around)
-    (held,) = [each for each in around.states if each.phase == "holding"]
+    (held,) = [state for state in around.states if state.phase == "holding"]
     assert held.remark == "the mission holds: pick: failed, AOS510: gripper jammed"
     assert state.ending == "goal"
 
@@ -129,7 +129,7 @@ async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: Buil
     await run_mission(finer, good, limits=MissionLimits(step_limit=2), around=around)
     assert {record.skill for record in around.records} <= ANSWERS.keys() - {"navigate"}
     # All actions are valued all the same: the belief and the model have not changed.
-    assert "navigate(destination=easy_table)" in {each.action for each in around.records[0].actions}
+    assert "navigate(destination=easy_table)" in {action.action for action in around.records[0].actions}
 
     def come_back() -> None:
         around.unavailable = {}
@@ -138,7 +138,7 @@ async def test_what_nobody_can_run_is_not_decided_until_somebody_can(finer: Buil
     around.unavailable = dict.fromkeys(ANSWERS, "its adapter has left")
     around.on_hold = come_back
     state, _ = await run_mission(finer, good, around=around)
-    assert [each.remark for each in around.states if each.phase == "holding"] == [
+    assert [state.remark for state in around.states if state.phase == "holding"] == [
         "the mission holds, for no skill can be run: its adapter has left"
     ]
     assert state.ending == "goal"

@@ -104,9 +104,9 @@ async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_l
                 await asyncio.wait({making}, timeout=0.01)
             await asyncio.wait({making}, timeout=0.05)
             made.middleware_may_answer.set()
-        taken = taking.result()
-        assert taken.engine.pid is not None, "the mission got an engine that was closed"
-        newest = await made.shelf.newest(taken)
+        model = taking.result()
+        assert model.engine.pid is not None, "the mission got an engine that was closed"
+        newest = await made.shelf.newest(model)
         assert newest.revision == 3
         assert (await newest.engine.export_belief()).particles == belief.particles
         assert made.living == [newest.engine]

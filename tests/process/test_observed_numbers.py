@@ -67,7 +67,7 @@ def posterior(prior: Mapping[int, float], likelihood: Mapping[int, float]) -> tu
 async def levels(engine: Engine) -> dict[int, float]:
     """The engine's belief over the levels."""
     summary = await engine.summary()
-    (values,) = (each.values for each in summary.marginals if each.variable == "level")
+    (values,) = (marginal.values for marginal in summary.marginals if marginal.variable == "level")
     return {int(level): probability for level, probability in values.items()}
 
 
@@ -115,19 +115,19 @@ async def test_several_numbers_and_a_response_count_together(
     )
     likelihood = {}
     for level in range(3):
-        seen = 1 - 0.1 * level
+        chance = 1 - 0.1 * level
         warmth = 1 / (level + 2) if level - 1 <= 0.7 <= 2 * level + 1 else 0.0
         shade = (1 + level) / (4 + level)
         kinds = {0: 0.2, 1: 0.1 * level, -1: 0.8 - 0.1 * level}
         beep = {True: 0.3 + 0.2 * level, False: 0.7 - 0.2 * level, None: 1.0}
-        likelihood[level] = seen * warmth * shade * kinds[kind] * 0.5 * beep[beeps]
+        likelihood[level] = chance * warmth * shade * kinds[kind] * 0.5 * beep[beeps]
     expected, density = posterior(dict(enumerate(PRIOR)), likelihood)
     async with engine_of(await built_text(files, cache_dir)) as engine:
         numbers = {"warmth": 0.7, "shade": 1, "kind": kind, "beeps": beeps}
         update = await engine.update("look", "read", numbers=numbers)
         assert update.probability == pytest.approx(density, rel=1e-9)
         assert await levels(engine) == pytest.approx({k: v for k, v in expected.items() if v}, abs=1e-9)
-        (prediction,) = [each.probability for each in (await engine.predict(0)).predicted[:1]]
+        (prediction,) = [response.probability for response in (await engine.predict(0)).predicted[:1]]
         assert prediction == pytest.approx(sum(p * (1 - 0.1 * level) for level, p in expected.items()))
 
 
@@ -162,7 +162,7 @@ async def test_a_hundred_numbers_that_hardly_fit_have_a_posterior_all_the_same(c
     ]
     async with engine_of(await built_text(files, cache_dir)) as engine:
         update = await engine.update("look", "read", numbers={"beams": beams})
-        total = max(logs) + math.log(sum(math.exp(each - max(logs)) for each in logs))
+        total = max(logs) + math.log(sum(math.exp(log - max(logs)) for log in logs))
         assert total < -7000
         assert update.log_probability == pytest.approx(total, rel=1e-9)
         assert await levels(engine) == pytest.approx({2: 1.0})
@@ -179,21 +179,21 @@ async def test_a_drifting_place_is_followed_as_by_a_kalman_filter(cache_dir: Pat
     )
     async with engine_of(await built_text(files, cache_dir)) as engine:
         mean, variance = 0.0, 1.0
-        expected = told = 0.0
+        expected = log_probability = 0.0
         for sight in (0.1, 0.9, 0.5, 1.4, 2.0, 1.6, 3.4, 3.0, 3.9, 3.6):
             mean, variance = mean + 0.3, variance + 0.16
             expected += math.log(normal(sight, mean, math.sqrt(variance + 0.25)))
             gain = variance / (variance + 0.25)
             mean, variance = mean + gain * (sight - mean), (1 - gain) * variance
             update = await engine.update("look", "read", numbers={"sight": sight})
-            told += update.log_probability
+            log_probability += update.log_probability
             weights, places = await places_of(engine)
             assert update.summary.effective_states >= 100
             assert np.average(places, weights=weights) == pytest.approx(mean, abs=0.08)
             spread = np.average((places - mean) ** 2, weights=weights)
             assert spread == pytest.approx(variance, rel=0.25)
         assert not update.summary.is_exact
-        assert told == pytest.approx(expected, abs=0.3)
+        assert log_probability == pytest.approx(expected, abs=0.3)
 
 
 async def places_of(engine: Engine) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -386,8 +386,8 @@ async def test_where_states_can_be_listed_point_based_search_tells_numbers_by_ce
         assert plan.best.at_most is None
         assert 0.95 * best <= plan.best.at_least <= best
         assert abs(plan.best.q - best) <= max(2 * plan.best.stderr, 0.05 * best)
-        told = r"with 20 decisions to go the belief is worth at least 5\.\d+, telling numbers by \d+ cells"
-        assert re.search(told, plan.why)
+        pattern = r"with 20 decisions to go the belief is worth at least 5\.\d+, telling numbers by \d+ cells"
+        assert re.search(pattern, plan.why)
         assert "between" not in plan.why
         assert (await endings_of_doors(engine, planner)).count(Ending.GOAL) >= 27
 

@@ -76,7 +76,7 @@ async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache
     async with engine_of(await built_text(SINGLE, cache_dir)) as engine:
         plan = await engine.plan(simulations=5_000, seed=1)
         assert plan.best.q == pytest.approx(1 + 0.9 + 0.81 + 0.729 + 0.6561, abs=0.3)
-        assert {seen.response for seen in plan.predicted} == {"it is hot", "it is cold"}
+        assert {response.response for response in plan.predicted} == {"it is hot", "it is cold"}
         update = await engine.update("toss", "it is hot")
     marginals = {marginal.variable: marginal.values for marginal in update.summary.marginals}
     assert marginals["is_hot"] == {"true": pytest.approx(1)}

@@ -68,7 +68,7 @@ async def test_each_program_waits_for_the_one_before_it(system: System) -> None:
     second = own("sh", "-c", "exec sleep 1000", name="second")
     async with asyncio.timeout(HANG_S), system.up(first, second):
         await system.until("second", "ready")
-    changes = [(each.service, each.state) for each in system.events]
+    changes = [(event.service, event.state) for event in system.events]
     assert changes.index(("first", "ready")) < changes.index(("second", "starting"))
 
 
@@ -95,7 +95,7 @@ async def test_a_set_up_program_ends_before_the_adapters_start(system: System) -
     setup = own("sh", "-c", "echo homed", name="homing", ready=ReadyPart(exit=0))
     async with asyncio.timeout(HANG_S), system.up(setup, ADAPTER):
         await system.until("robot", "ready")
-    changes = [(each.service, each.state) for each in system.events]
+    changes = [(event.service, event.state) for event in system.events]
     assert changes.index(("homing", "done")) < changes.index(("robot", "starting"))
     assert system.ends == []
 
@@ -163,8 +163,8 @@ async def test_what_follows_the_end_of_a_program_is_said_in_the_deploy_file(
         await work()
     (end,) = system.ends
     assert (end.name, end.how, end.then) == ("nav", "killed by SIGKILL", then)
-    told = next(each.detail for each in system.events if (each.service, each.state) == ("nav", "ended"))
-    assert told == f"killed by SIGKILL; {then}"
+    detail = next(event.detail for event in system.events if (event.service, event.state) == ("nav", "ended"))
+    assert detail == f"killed by SIGKILL; {then}"
 
 
 DEAF = "trap : TERM; while :; do sleep 1; done"
@@ -276,7 +276,7 @@ def test_the_end_of_a_program_in_mid_mission_is_in_the_summary(project: Path) ->
     assert "AOS804: sim ended unexpectedly: exit status 5" in done.stderr
     summary = json.loads(Path("runs/latest/summary.json").read_text())
     assert (summary["ending"], summary["exit_code"]) == ("fault", 7)
-    assert [(each["name"], each["how"]) for each in summary["process_ends"]] == [("sim", "exit status 5")]
+    assert [(end["name"], end["how"]) for end in summary["process_ends"]] == [("sim", "exit status 5")]
 
 
 def test_what_a_program_has_started_ends_with_a_killed_aos_up(project: Path) -> None:

@@ -35,10 +35,10 @@ def _cache(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> None:
     monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
 
 
-def play(root: Path, out: Path, seeds: range, on: str, told: list[str] | None = None) -> list[Trial]:
-    """The missions, without how long they took; `told` gets a line for each that was played or was there."""
+def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None = None) -> list[Trial]:
+    """The missions, without how long they took; `report` gets a line for each one, played or there already."""
     setting = Setting(deploy="armadillo.yaml", simulations=2000, step_limit=6)
-    lines = told if told is not None else []
+    lines = report if report is not None else []
     played = asyncio.run(
         play_campaign(
             setting,
@@ -61,13 +61,13 @@ def test_missions_on_two_workers_are_those_of_this_machine_and_none_is_played_tw
     here = play(root, tmp_path / "here", range(1, 7), HERE)
     there = play(root, tmp_path / "there", range(1, 5), ray_cluster.OWN)
     assert there == here[:4]
-    told: list[str] = []
-    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, told) == here
-    assert told[:4] == ["mission"] * 4
-    assert "processors of the Ray cluster ray" in told[4]
-    told = []
-    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, told) == here
-    assert told == ["mission"] * 6
+    lines: list[str] = []
+    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, lines) == here
+    assert lines[:4] == ["mission"] * 4
+    assert "processors of the Ray cluster ray" in lines[4]
+    lines = []
+    assert play(root, tmp_path / "there", range(1, 7), ray_cluster.OWN, lines) == here
+    assert lines == ["mission"] * 6
 
 
 @needs_ray
@@ -116,16 +116,16 @@ def test_without_ray_the_command_says_how_to_install_it(
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "text"),
     [
         (["--on", "cluster:10001"], "is none of local, ray://HOST:PORT"),
         (["--on", "ray", "--system-seeds", "1"], "missions of the whole system are run here"),
     ],
 )
 def test_a_place_where_missions_cannot_run_is_refused_before_anything_runs(
-    options: list[str], told: str
+    options: list[str], text: str
 ) -> None:
     app: typer.Typer = aos_app()
     done = CliRunner().invoke(app, ["experiment", "run", "armadillo", *options])
     assert done.exit_code == 2
-    assert told in " ".join(done.stderr.split())
+    assert text in " ".join(done.stderr.split())

@@ -65,10 +65,10 @@ async def test_a_listing_of_as_many_other_states_is_not_taken_for_the_last_one(
 ) -> None:
     built = await built_text(VAULT, cache_dir)
     async with engine_of(built) as engine:
-        for seen, worth in WORTH.items():
+        for response, worth in WORTH.items():
             # A million states are too many to list. After a look they are 61, every time others.
             await engine.reset_belief()
             await engine.plan(simulations=20, seed=1, planner="auto")
-            await engine.update("look", seen)
+            await engine.update("look", response)
             plan = await engine.plan(simulations=2000, seed=1, planner=planner)
-            assert plan.best.q == pytest.approx(worth, abs=0.01), seen
+            assert plan.best.q == pytest.approx(worth, abs=0.01), response

@@ -103,8 +103,10 @@ def test_an_unchanged_original_bundle_runs_a_mission_on_services_of_ros_1(
     (tmp_path / "robot.yaml").write_text(stand_in + SERVED.format(**values))
     (tmp_path / "mission.yaml").write_text(MISSION.format(**values))
     with up([str(tmp_path / "robot.yaml"), "--serve", "ros1"], cache_dir) as robot:
-        told = list(events_of_until(robot, "Ctrl-C stops it"))
-        assert any("/pick_unknown is robotican_demos_upgrade/srv/pick_unknown" in str(one) for one in told)
+        happened = list(events_of_until(robot, "Ctrl-C stops it"))
+        assert any(
+            "/pick_unknown is robotican_demos_upgrade/srv/pick_unknown" in str(one) for one in happened
+        )
         with up([str(tmp_path / "mission.yaml")], cache_dir) as mission:
             events = list(events_of(mission))
     assert_whole_mission(events, tmp_path / "runs" / "latest")
@@ -169,9 +171,9 @@ def test_the_page_about_ros_can_be_followed_to_the_first_activation(
     block = page.partition("The first one prints what it serves:")[2].split("```")[1]
     here = ["--runs", str(tmp_path / "robot"), "--listen", "tcp/127.0.0.1:0"]
     with up([*in_the_checkout(serve, root), *here], cache_dir) as robot:
-        told = [str(event.get("text")) for event in events_of_until(robot, "Ctrl-C stops it")]
+        texts = [str(event.get("text")) for event in events_of_until(robot, "Ctrl-C stops it")]
         for line in block.strip().splitlines():
-            assert line == "..." or line in told
+            assert line == "..." or line in texts
         served = json.loads((tmp_path / "robot" / "latest" / "run.json").read_text())["endpoint"]
         (file,) = in_the_checkout(drive, root)
         # Where the page has the ports of a whole machine, a test has those that are free.

@@ -135,7 +135,7 @@ def test_a_second_start_is_refused_and_latest_stays(place: Place, mission: Path)
     assert code == 3
     assert f"cannot listen at {place.endpoint}: another AOS runs there. `aos runs` lists" in error
     assert place.latest == mission
-    assert [each.name for each in mission.parent.glob("2*")] == [mission.name]
+    assert [run.name for run in mission.parent.glob("2*")] == [mission.name]
 
 
 @pytest.mark.parametrize("is_elsewhere", [False, True], ids=["here", "elsewhere"])
@@ -168,8 +168,8 @@ def test_of_two_living_missions_one_has_to_be_named(
 def test_of_two_starts_at_once_one_runs(root: Path, cache_dir: Path, tmp_path: Path) -> None:
     place = Place(root, tmp_path, f"tcp/127.0.0.1:{free_port()}", cache_dir, tmp_path)
     with place.up() as one, place.up() as other:
-        decided = {each: each.has_decided() for each in (one, other)}
-        codes = {decided[each]: each.end()[0] if decided[each] else each.ended()[0] for each in decided}
+        decided = {start: start.has_decided() for start in (one, other)}
+        codes = {decided[start]: start.end()[0] if decided[start] else start.ended()[0] for start in decided}
     assert codes == {True: 130, False: 3}
 
 

@@ -66,7 +66,7 @@ async def test_values_are_exact_and_the_same(cache_dir: Path) -> None:
         async with engine_of(await built_text(files, cache_dir)) as engine:
             exact = await engine.exact()
             summary = await engine.summary()
-            values.append({each.action: each.q for each in exact.actions})
+            values.append({action.action: action.q for action in exact.actions})
             names = {marginal.variable for marginal in summary.marginals}
             assert {"at", "load[Dock]", "load[Ramp]"} <= names
     assert values[0] == values[1]

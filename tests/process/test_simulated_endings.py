@@ -102,5 +102,5 @@ def test_goals_are_counted_by_the_world(
     assert summary["goal_rate"] == endings.count("goal") / 40 < 1
     assert summary["failure_rate"] == endings.count("failure") / 40
     assert summary["over_rate"] == 0
-    told = CliRunner().invoke(app, command).stdout
-    assert "believed in 100%" in told
+    output = CliRunner().invoke(app, command).stdout
+    assert "believed in 100%" in output

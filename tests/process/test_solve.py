@@ -70,11 +70,11 @@ async def test_tiger_has_its_known_value(problems: Path, cache_dir: Path) -> Non
 
 
 async def test_bounds_only_come_nearer(problems: Path, cache_dir: Path) -> None:
-    told: list[Bounds] = []
+    bounds: list[Bounds] = []
     model = read_problem(problems / "rover.pomdpx")
-    solution = await solve(model, QUICK, cache_dir=cache_dir, on_progress=told.append)
-    assert tuple(told) == solution.history
-    assert all(a.lower <= b.lower and a.upper >= b.upper for a, b in pairwise(told))
+    solution = await solve(model, QUICK, cache_dir=cache_dir, on_progress=bounds.append)
+    assert tuple(bounds) == solution.history
+    assert all(a.lower <= b.lower and a.upper >= b.upper for a, b in pairwise(bounds))
 
 
 def random_model(seed: int) -> ExplicitModel:
@@ -203,7 +203,7 @@ async def test_a_policy_decides_online_and_returns_what_it_promises(
     assert np.mean(returns) == pytest.approx(solution.bounds.lower, abs=4 * error)
     assert first.simulations == 0
     assert {value.action for value in first.actions} == set(found.model.actions)
-    assert sum(each.probability for each in first.predicted) == pytest.approx(1)
+    assert sum(response.probability for response in first.predicted) == pytest.approx(1)
 
 
 async def test_a_policy_for_other_documents_is_refused(
@@ -315,16 +315,20 @@ def test_the_c_header_needs_nothing_else_and_acts_as_the_graph_does(
     options = ["-x", "c", "-std=c99", "-pedantic-errors", "-Wall", "-Werror"]
     command = [*compiler.command, *options, "walk.c", "-o", "walk"]
     subprocess.run(command, cwd=tmp_path, check=True, timeout=HANG_S)
-    seen = np.random.default_rng(1).integers(0, 2, 500).tolist()
+    observations = np.random.default_rng(1).integers(0, 2, 500).tolist()
     expected, node = [tiger_graph.nodes[0].action], 0
-    for observation in seen:
+    for observation in observations:
         node = tiger_graph.nodes[node].next.get(observation, OVER)
         if node == OVER:
             expected.append(-1)
             break
         expected.append(tiger_graph.nodes[node].action)
     walked = subprocess.run(
-        [tmp_path / "walk"], input=" ".join(map(str, seen)), capture_output=True, text=True, check=True
+        [tmp_path / "walk"],
+        input=" ".join(map(str, observations)),
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert [int(line) for line in walked.stdout.split()] == expected
 

@@ -72,8 +72,8 @@ def test_a_policy_of_a_bundle_plans_and_simulates(app: typer.Typer, bundle: Path
     assert decided["value"] == pytest.approx(19.371, abs=2e-3)
     options = ["--policy", saved, "--runs", "3", "--step-limit", "12", "--json"]
     campaign = json.loads(run(app, "simulate", bundle, *options).stdout)
-    assert [each["steps"] for each in campaign["runs"]] == [12, 12, 12]
-    assert all(each["actions"][0] == "listen" for each in campaign["runs"])
+    assert [run["steps"] for run in campaign["runs"]] == [12, 12, 12]
+    assert all(run["actions"][0] == "listen" for run in campaign["runs"])
 
 
 def test_mistakes_are_told_before_the_work_begins(app: typer.Typer, tiger: Path, tmp_path: Path) -> None:

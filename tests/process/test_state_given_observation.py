@@ -152,8 +152,8 @@ async def test_a_local_variable_of_a_state_variables_name_and_type_tells_its_val
 
 
 async def test_the_code_sees_the_state_before_the_step(engine: Engine) -> None:
-    seen = {**SEEN, "slipped": "true", "tiles": "[true,true,false]"}
-    belief = (await engine.update("drive", "arrived", seen)).summary
+    local_values = {**SEEN, "slipped": "true", "tiles": "[true,true,false]"}
+    belief = (await engine.update("drive", "arrived", local_values)).summary
     assert values(belief, "at") == {"Base": 1.0}
     assert values(belief, "visits") == {"1": 1.0}
 

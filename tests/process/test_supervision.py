@@ -187,7 +187,7 @@ async def test_a_command_starts_when_the_router_listens_and_is_ready_when_it_ser
         system.up(small("registry"), command("python", "small_command.py", *name)),
     ):
         await system.until("robot", "ready")
-    changes = [(each.service, each.state) for each in system.events]
+    changes = [(event.service, event.state) for event in system.events]
     assert changes.index(("router", "ready")) < changes.index(("robot", "starting"))
     assert system.order("starting").count("robot") == 1
 
@@ -200,7 +200,7 @@ async def test_a_command_that_starts_again_is_ready_again(system: System) -> Non
         await system.until("robot", "ready")
         kill(supervisor.pids["robot"])
         await system.until("robot", "ready", times=2)
-    states = [each.state for each in system.events if each.service == "robot"]
+    states = [event.state for event in system.events if event.service == "robot"]
     assert states[:5] == ["starting", "ready", "ended", "starting", "ready"]
 
 

@@ -147,7 +147,7 @@ async def test_one_draw_of_many_outcomes_leaves_many_effective_states(cache_dir:
         await engine.reset_world(1)
         effective = []
         for step in range(12):
-            seen = await engine.step_world(step)
-            update = await engine.update(engine.description.actions[step].name, seen.response)
+            outcome = await engine.step_world(step)
+            update = await engine.update(engine.description.actions[step].name, outcome.response)
             effective.append(update.summary.effective_states)
     assert min(effective) > 500, effective

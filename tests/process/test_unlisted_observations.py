@@ -117,8 +117,10 @@ async def test_beliefs_after_numbers_in_texts_are_those_of_bayes(
     left, right = (math.prod(_chance(reading, mean) for reading in readings) for mean in (-1, 1))
     async with engine_of(await built_text(DOORS, cache_dir)) as engine:
         update = await engine.update("listen", "".join(f"{reading};" for reading in readings))
-    told = next(marginal for marginal in update.summary.marginals if marginal.variable.endswith("is_left"))
-    assert dict(told.values)["true"] == pytest.approx(left / (left + right), abs=0.03)
+    marginal = next(
+        marginal for marginal in update.summary.marginals if marginal.variable.endswith("is_left")
+    )
+    assert dict(marginal.values)["true"] == pytest.approx(left / (left + right), abs=0.03)
     assert (update.summary.effective_states or 0) > 1000
 
 

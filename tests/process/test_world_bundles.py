@@ -110,10 +110,10 @@ async def test_the_person_of_the_other_documents_makes_no_mistake(bundles: Path,
                 board = marked(board, cell, "O")
                 if is_over(board):
                     break
-                seen = (await engine.step_world(indices["look"])).response
-                allowed = [marked(board, each, "X") for each in best_moves(board, "X")]
-                assert seen in allowed
-                board = seen
+                response = (await engine.step_world(indices["look"])).response
+                allowed = [marked(board, move, "X") for move in best_moves(board, "X")]
+                assert response in allowed
+                board = response
 
 
 async def test_a_robot_whose_documents_are_wrong_about_the_world_acts_in_the_other_world(

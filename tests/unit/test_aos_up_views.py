@@ -124,8 +124,8 @@ def test_how_far_a_decision_is_is_told_once_for_each_work(capsys: pytest.Capture
     view = PlainView()
     for remark in ("listing states: 1 of 2", "listing states: 2 of 3", "computing first bounds: 1 of 10"):
         view(MissionState("m", "planning", 0, 0.0, remark=remark))
-    told = capsys.readouterr().out.splitlines()
-    assert told == [
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == [
         "mission planning: listing states: 1 of 2",
         "mission planning: computing first bounds: 1 of 10",
     ]
@@ -284,9 +284,9 @@ def test_the_screen_that_is_left_behind_turns_no_more() -> None:
         view(ServiceChanged("solver", "stopping", 2.0))
         assert "⠋ stopping solver ... 0 s" in text.getvalue()
         view(Told("cancelled after 1 steps"))
-    left = text.getvalue().rpartition("pick")[2]
-    assert "cancelled after 1 steps" in left
-    assert not set("⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏") & set(left)
+    rest = text.getvalue().rpartition("pick")[2]
+    assert "cancelled after 1 steps" in rest
+    assert not set("⠋⠙⠹⠸⠼⠴⠦⠧⠇⠏") & set(rest)
 
 
 def test_without_colour_there_is_no_style_at_all(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -73,7 +73,7 @@ def model(cache_dir: Path) -> ScriptedModel:
 
 
 def errors(environment: str) -> list[Diagnostic]:
-    return [each for each in load_files(files(environment=environment)).diagnostics if each.is_error]
+    return [finding for finding in load_files(files(environment=environment)).diagnostics if finding.is_error]
 
 
 def test_elements_exist_from_the_start_and_have_the_names_of_the_enums_values(model: ScriptedModel) -> None:

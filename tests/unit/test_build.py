@@ -77,7 +77,7 @@ async def test_progress_says_what_takes_the_time(cache_dir: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("length", "ready", "taken"),
+    ("length", "ready", "chosen"),
     [
         (40, {64}, 256),
         (40, {64, 256, ANY_SIZE}, 256),
@@ -86,7 +86,7 @@ async def test_progress_says_what_takes_the_time(cache_dir: Path) -> None:
     ],
 )
 async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
-    length: int, ready: set[int], taken: int, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+    length: int, ready: set[int], chosen: int, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     usual = await build_engine(cache_dir)
     compiler = await find_compiler()
@@ -102,7 +102,7 @@ async def test_a_large_state_gets_the_quickest_engine_that_is_ready(
     row = f"state_variable: int row []\ncode:\nstate.row = vector<int>({length}, 0);\n"
     step = f"state__.row[3] = {len(ready)};"
     await build(emitted_skill(step, HOME + row), cache_dir=cache_dir)
-    assert sizes == [64, taken]
+    assert sizes == [64, chosen]
 
 
 async def test_a_mistake_in_sdl_is_told_with_line_and_column(cache_dir: Path) -> None:

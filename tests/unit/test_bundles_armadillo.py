@@ -126,7 +126,7 @@ def test_the_picking_skill_has_the_figures_of_its_statistics(bundles: Path, name
     (block,) = project_in(bundles / f"armadillo-{name}").skill("pick").model.dynamic_model
     assert block.code is not None
     lists = re.findall(r"SampleDiscrete\(Ending, \{(.*?)\}", block.code.code)
-    assert {figure.strip() for each in lists for figure in each.split(",")} == FIGURES[name]
+    assert {figure.strip() for figures in lists for figure in figures.split(",")} == FIGURES[name]
 
 
 @pytest.mark.parametrize("name", FIGURES)

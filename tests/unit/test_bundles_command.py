@@ -56,7 +56,7 @@ def test_lint_gives_sarif_with_rules_and_regions(app: typer.Typer, broken: Path)
     (run,) = log["runs"]
     ids = [rule["id"] for rule in run["tool"]["driver"]["rules"]]
     assert ids == ["AOS115", "AOS116", "AOS117"]
-    found = next(each for each in run["results"] if each["ruleId"] == "AOS116")
+    found = next(result for result in run["results"] if result["ruleId"] == "AOS116")
     assert found["level"] == "error"
     assert ids[found["ruleIndex"]] == "AOS116"
     place = found["locations"][0]["physicalLocation"]

@@ -40,11 +40,11 @@ def test_four_records_that_may_well_come_are_no_reason_to_change_a_number(counts
 
 def test_what_is_inside_keeps_its_proportions_and_what_is_excluded_stays_so() -> None:
     found = counted(discrete(0.6, 0.2, 0.2, 0.0), 10, 70, 20, 0)
-    assert [each.is_inside for each in found.outcomes] == [False, False, True, True]
+    assert [outcome.is_inside for outcome in found.outcomes] == [False, False, True, True]
     assert found.is_contradicted
     assert proposed_numbers(found) == (0.1, 0.7, 0.2, 0.0)
     inside = counted(discrete(0.5, 0.3, 0.2), 200, 75, 45)
-    assert [each.is_inside for each in inside.outcomes] == [False, False, False]
+    assert [outcome.is_inside for outcome in inside.outcomes] == [False, False, False]
     one = counted(discrete(0.2, 0.4, 0.4), 80, 10, 10)
     assert sum(proposed_numbers(one)) == pytest.approx(1)
 

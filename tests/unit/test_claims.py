@@ -26,7 +26,7 @@ def trial(*steps: str, seed: int = 1, ending: str = "goal", states: tuple[str, .
         ending=ending,
         goal=ending == "goal",
         actions=tuple(action for action, _ in pairs),
-        responses=tuple(told for _, told in pairs),
+        responses=tuple(response for _, response in pairs),
         states=states,
     )
 
@@ -182,7 +182,7 @@ def test_everything_wrong_with_a_test_file_is_found_at_its_place(tmp_path: Path)
     )
     with pytest.raises(DeployError) as caught:
         read_test_file(path)
-    found = {(each.code, each.span.line) for each in caught.value.diagnostics}
+    found = {(finding.code, finding.span.line) for finding in caught.value.diagnostics}
     assert caught.value.code == "AOS808"
     assert {("AOS106", 5), ("AOS105", 7), ("AOS102", 8), ("AOS105", 9)} <= found
 
@@ -211,7 +211,7 @@ def test_a_part_without_a_script_is_told_with_its_place(tmp_path: Path) -> None:
     path.write_text("aos: 1\ntitle: T\nparts:\n  one: {deploy: x.yaml, missions: 2}\n")
     with pytest.raises(DeployError) as caught:
         read_script_file(path)
-    assert [(each.code, each.span.line) for each in caught.value.diagnostics] == [("AOS105", 4)]
+    assert [(finding.code, finding.span.line) for finding in caught.value.diagnostics] == [("AOS105", 4)]
 
 
 def test_speed_is_simulated_time_for_processor_time() -> None:

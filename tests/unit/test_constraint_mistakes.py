@@ -34,7 +34,7 @@ def found_in(path: Path, text: str) -> Diagnostic:
 
 
 @pytest.mark.parametrize(
-    ("never", "code", "at", "told"),
+    ("never", "code", "at", "text"),
     [
         ("serv && state.arm_outstretched", "AOS110", 0, "`serv`. Did you mean `serve`?"),
         ("serve && state.arm_outstreched", "AOS110", 15, "Did you mean `arm_outstretched`?"),
@@ -51,11 +51,11 @@ def found_in(path: Path, text: str) -> Diagnostic:
 )
 @pytest.mark.parametrize(("before", "after"), [("", ""), ('"', '"')])
 def test_a_mistake_is_told_at_its_place(
-    write: Path, never: str, code: str, at: int, told: str, before: str, after: str
+    write: Path, never: str, code: str, at: int, text: str, before: str, after: str
 ) -> None:
     found = found_in(write, f"    - never: {before}{never}{after}\n      probability: 0.01\n")
     assert found.code == code
-    assert told in f"{found.message}. {found.hint}"
+    assert text in f"{found.message}. {found.hint}"
     assert (found.span.file, found.span.line) == (str(write), 6)
     assert found.span.column == 14 + len(before) + at
     assert never in found.excerpt

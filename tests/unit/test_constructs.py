@@ -169,8 +169,8 @@ def test_a_construct_that_is_misused_is_told_at_its_place(construct: str) -> Non
     findings = list(loaded.diagnostics)
     if loaded.project is not None:
         findings += lower(loaded.project)[1]
-    told = [f"{each.span} {each.code} {each.message}" for each in findings]
-    assert (rule.code, place) in [(each.code, each.span) for each in findings], told
+    texts = [f"{finding.span} {finding.code} {finding.message}" for finding in findings]
+    assert (rule.code, place) in [(finding.code, finding.span) for finding in findings], texts
 
 
 def test_the_page_of_the_constructs_names_every_one_and_tests_that_exist(root: Path) -> None:

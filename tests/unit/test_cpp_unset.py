@@ -63,7 +63,7 @@ RIGHT = [
 
 def found(code: str) -> list[tuple[str, int, bool]]:
     unset = unset_reads(read_cpp(code), frozenset({"Side"}))
-    return [(each.name, each.extent.column, each.never) for each in unset]
+    return [(variable.name, variable.extent.column, variable.never) for variable in unset]
 
 
 @pytest.mark.parametrize(("code", "name", "column"), NEVER)

@@ -40,9 +40,9 @@ def findings(folder: Path, text: str) -> list[str]:
         read(folder, text)
     assert caught.value.code == "AOS801"
     return [
-        f"{each.span.line}:{each.span.column} {each.code} {each.message}"
-        + (f". {each.hint}" if each.hint else "")
-        for each in caught.value.diagnostics
+        f"{finding.span.line}:{finding.span.column} {finding.code} {finding.message}"
+        + (f". {finding.hint}" if finding.hint else "")
+        for finding in caught.value.diagnostics
     ]
 
 
@@ -118,7 +118,7 @@ programs:
     assert (sim.command, sim.folder, sim.ready) == (("python", "sim.py"), str(folder), ReadyPart(port=5555))
     assert (sim.start_s, sim.stop_s, sim.on_exit, sim.is_restarted) == (5, 7, "restart", True)
     assert (nav.host, nav.folder, nav.on_exit, nav.is_restarted) == ("robot@arm", "/opt/nav", "fault", False)
-    assert [each.name for each in programs_of_deployment(without_a_robot(deployment))] == [
+    assert [program.name for program in programs_of_deployment(without_a_robot(deployment))] == [
         "registry",
         "middleware",
         "model",
@@ -400,8 +400,8 @@ def test_a_bundle_is_refused_with_the_deploy_file_beside_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(folder)
-    told = refusal(Path("bundle"))
-    assert told.endswith("no deploy file. Write one for it: aos new adapter model --in bundle")
+    text = refusal(Path("bundle"))
+    assert text.endswith("no deploy file. Write one for it: aos new adapter model --in bundle")
     (folder / "rover.yaml").write_text(HEAD)
     assert refusal(Path("bundle")).endswith("no deploy file. Name one that has it: rover.yaml")
 

@@ -54,7 +54,7 @@ def loaded_files(look: str = LOOK, **more: str) -> LoadedBundle:
 def project_of(look: str = LOOK) -> Project:
     bundle = loaded_files(look)
     assert bundle.project is not None, bundle.diagnostics
-    assert [each for each in bundle.diagnostics if each.code != "AOS139"] == []
+    assert [finding for finding in bundle.diagnostics if finding.code != "AOS139"] == []
     return bundle.project
 
 
@@ -139,7 +139,9 @@ def test_a_result_that_brings_no_response_is_told_with_its_reason() -> None:
 def test_a_mapping_that_has_no_skill_is_told_with_the_name_that_was_meant() -> None:
     mapping = mapping_text(project="barn", skill="look")
     bundle = loaded_files(lok_am=mapping)
-    errors = [(each.code, each.span.file, each.hint) for each in bundle.diagnostics if each.is_error]
+    errors = [
+        (finding.code, finding.span.file, finding.hint) for finding in bundle.diagnostics if finding.is_error
+    ]
     assert errors == [
         ("AOS114", "lok.am", "Did you mean `look`?"), ("AOS114", "look.sd", "Did you mean `lok`?"),
     ]  # fmt: skip
@@ -147,7 +149,7 @@ def test_a_mapping_that_has_no_skill_is_told_with_the_name_that_was_meant() -> N
 
 def test_a_mapping_that_cannot_be_read_is_not_replaced() -> None:
     bundle = loaded_files(look_am="project: barn\npath: /look\n")
-    assert {each.span.file for each in bundle.diagnostics if each.is_error} == {"look.am"}
+    assert {finding.span.file for finding in bundle.diagnostics if finding.is_error} == {"look.am"}
 
 
 @pytest.mark.parametrize(
@@ -159,7 +161,9 @@ def test_a_mapping_that_cannot_be_read_is_not_replaced() -> None:
 )
 def test_what_no_response_can_be_read_from_is_an_error(model: str, code: str, place: str) -> None:
     bundle = loaded_files(f"project: barn\ndynamic_model:\n{model}\n")
-    assert [(each.code, str(each.span)) for each in bundle.diagnostics if each.is_error] == [(code, place)]
+    assert [(finding.code, str(finding.span)) for finding in bundle.diagnostics if finding.is_error] == [
+        (code, place)
+    ]
 
 
 def test_it_is_shown_and_not_converted_and_a_template_answers_it(tmp_path: Path) -> None:

@@ -146,10 +146,10 @@ def test_every_construct_of_a_json_environment_is_read() -> None:
     environment = project.environment
     assert (environment.horizon, environment.discount, environment.is_one_state_model) == (10, 1.0, False)
     assert environment.enums[0].values == ("Here", "There")
-    place, pose, seen = environment.compounds[0].fields
+    place, pose, sight = environment.compounds[0].fields
     assert place.default is not None
     assert place.default.code == "There"
-    assert (pose.type, pose.low_level_type, seen.default) == ("anyValue", "Pose", None)
+    assert (pose.type, pose.low_level_type, sight.default) == ("anyValue", "Pose", None)
     at, grid, raw, visits, home = environment.variables
     assert at.default_value is not None
     assert (grid.is_array, raw.type, visits.key_types) == (True, "vector<int>", ("Place", "(0,3,1)"))
@@ -248,10 +248,13 @@ def test_a_text_response_and_parameters_by_code_are_read_from_both_dialects() ->
     loaded = load_files(files | {name: text.encode() for name, text in sdl.items()})
     assert loaded.project is not None, loaded.diagnostics
     look, see = loaded.project.skills
-    for each in (look, see):
-        assert each.mapping.response_variable == "text"
-        assert (each.mapping.activation.kind, each.mapping.activation.max_duration_s) == ("skill", 4.0)
-        assert len(each.model.possible_parameters) == 1
+    for read_skill in (look, see):
+        assert read_skill.mapping.response_variable == "text"
+        assert (read_skill.mapping.activation.kind, read_skill.mapping.activation.max_duration_s) == (
+            "skill",
+            4.0,
+        )
+        assert len(read_skill.model.possible_parameters) == 1
 
 
 def test_null_counts_as_absent() -> None:

@@ -16,9 +16,13 @@ from aos_language.reading.sdl_sections import GRAMMARS
 
 def test_every_word_of_the_grammar_has_a_meaning_and_no_other() -> None:
     grammar = {
-        (kind, word): set(each.parts) for kind, words in GRAMMARS.items() for word, each in words.items()
+        (kind, word): set(section.parts)
+        for kind, words in GRAMMARS.items()
+        for word, section in words.items()
     }
-    meant = {(kind, word): {*each[1]} for kind, words in SECTIONS.items() for word, each in words.items()}
+    meant = {
+        (kind, word): {*meaning[1]} for kind, words in SECTIONS.items() for word, meaning in words.items()
+    }
     assert meant == grammar
 
 

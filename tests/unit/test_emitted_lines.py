@@ -52,4 +52,4 @@ def test_names_of_the_emitted_model_are_no_names_of_documents() -> None:
     act = "project: test\ndynamic_model:\nstate__.aos_ending = 1;\n"
     project = text_project({"home.ef": home, "act.sd": act, "act.am": mapping_text()})
     _, findings = lower(project)
-    assert "the emitted model uses the name `aos_ending`" in [each.message for each in findings]
+    assert "the emitted model uses the name `aos_ending`" in [finding.message for finding in findings]

@@ -107,16 +107,16 @@ def test_other_states_go_on(room: ScriptedModel) -> None:
 
 def test_endings_that_their_reward_decides_are_told(room: ScriptedModel) -> None:
     found = load_files({name: text.encode() for name, text in BUNDLE.items()}).diagnostics
-    told = {each.span.line: each.message for each in found if each.code == "AOS137"}
+    messages = {finding.span.line: finding.message for finding in found if finding.code == "AOS137"}
     lines = ROOM.splitlines()
-    assert [lines[line] for line in sorted(told)] == [
+    assert [lines[line] for line in sorted(messages)] == [
         "if (state.n == 3) { __reward = -5; __isGoalState = true; }",
         "if (state.n == 4) __isGoalState = true;",
         "state_condition: state.n == 8",
         "state_condition: state.n == 9",
     ]
-    assert "failure" in told[11]
-    assert "neither" in told[13]
+    assert "failure" in messages[11]
+    assert "neither" in messages[13]
 
 
 def test_both_dialects_say_the_same_of_failure() -> None:

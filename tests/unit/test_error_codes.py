@@ -34,12 +34,14 @@ MORE_RULES = [
 def test_a_mistake_of_this_kind_is_told_at_its_place(rule: Rule) -> None:
     files, place = bundle_of(rule)
     loaded = load_files(files)
-    assert (rule.code, place) in [(each.code, each.span) for each in loaded.diagnostics], found_by(loaded)
+    assert (rule.code, place) in [(finding.code, finding.span) for finding in loaded.diagnostics], found_by(
+        loaded
+    )
 
 
 def test_a_bundle_beyond_the_limits_is_refused() -> None:
     loaded = load_files({"folder/go.sd": b"project: p\n"})
-    assert "AOS120" in {each.code for each in loaded.diagnostics}
+    assert "AOS120" in {finding.code for finding in loaded.diagnostics}
 
 
 def test_a_message_of_another_protocol_is_refused() -> None:

@@ -143,10 +143,10 @@ def test_the_picture_is_the_last_one_of_the_first_mission_that_has_some(tmp_path
 
 
 def test_statistics_tell_what_came_back_and_what_each_step_changed() -> None:
-    def mission(told: str, place: str) -> RecordedMission:
+    def mission(response: str, place: str) -> RecordedMission:
         steps = (
             RecordedStep("go", "there", (("at", "table"), ("can", "table"))),
-            RecordedStep("pick", told, (("at", "table"), ("can", place))),
+            RecordedStep("pick", response, (("at", "table"), ("can", place))),
         )
         return RecordedMission("m", steps)
 

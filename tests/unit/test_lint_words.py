@@ -64,13 +64,15 @@ def found(
     return load_files({name: text.encode() for name, text in files.items()}).diagnostics
 
 
-def told(**texts: str) -> list[str]:
+def finding_texts(**texts: str) -> list[str]:
     """Each finding as line, code, message and hint."""
-    return [f"{each.span.line} {each.code} {each.message}. {each.hint}" for each in found(**texts)]
+    return [
+        f"{finding.span.line} {finding.code} {finding.message}. {finding.hint}" for finding in found(**texts)
+    ]
 
 
 def test_the_bundle_itself_is_clean() -> None:
-    assert told() == []
+    assert finding_texts() == []
 
 
 @pytest.mark.parametrize(
@@ -91,7 +93,7 @@ def test_the_bundle_itself_is_clean() -> None:
 def test_a_missing_colon_is_one_error(text: tuple[str, str, str], line: int, word: str) -> None:
     document, before, after = text
     whole = {"environment": ENVIRONMENT, "skill": SKILL, "mapping": MAPPING}[document]
-    (only,) = told(**{document: whole.replace(before, after)})
+    (only,) = finding_texts(**{document: whole.replace(before, after)})
     assert only == f"{line} AOS104 a colon is missing after `{word}`. Write `{word}:`"
 
 
@@ -99,9 +101,9 @@ def test_lines_of_code_that_begin_with_a_word_of_the_grammar_stay_code() -> None
     mapping = MAPPING.replace("local_variable: steps", "local_variable: path").replace(
         "code:\nsteps", "code:\npath"
     )
-    assert told(mapping=mapping) == []
+    assert finding_texts(mapping=mapping) == []
     skill = SKILL.replace("state__.second.x =", "int parameter = 1;\nparameter = 2;\nstate__.second.x =")
-    assert told(skill=skill) == []
+    assert finding_texts(skill=skill) == []
 
 
 @pytest.mark.parametrize("comment", ["# the door is open", "    #the door's open"])
@@ -127,8 +129,8 @@ def test_a_name_of_the_language_without_its_underscores_is_recognized(
 ) -> None:
     document, before, after = text
     whole = {"environment": ENVIRONMENT, "skill": SKILL}[document]
-    errors = [each for each in found(**{document: whole.replace(before, after)}) if each.is_error]
-    assert [(each.message, each.hint) for each in errors] == [
+    errors = [finding for finding in found(**{document: whole.replace(before, after)}) if finding.is_error]
+    assert [(error.message, error.hint) for error in errors] == [
         (f"unknown name `{written}`", f"Did you mean `{meant}`?")
     ]
     assert errors[0].mend is not None
@@ -137,7 +139,7 @@ def test_a_name_of_the_language_without_its_underscores_is_recognized(
 
 def test_own_variables_may_be_called_like_names_of_the_language_without_underscores() -> None:
     skill = SKILL.replace("__moduleResponse", "int reward = 0;\nreward += 1;\n__moduleResponse")
-    assert told(skill=skill) == []
+    assert finding_texts(skill=skill) == []
 
 
 def test_names_may_begin_with_underscores() -> None:
@@ -145,7 +147,7 @@ def test_names_may_begin_with_underscores() -> None:
         "initial_belief:\n",
         "initial_belief:\nassignment:\ntemporary_variable: int __S\ncode:\n__S = 1;\nassignment:\ncode:\n",
     ).replace("AOS.Bernoulli(0.5) ? 1", "AOS.Bernoulli(0.5) ? __S")
-    assert told(environment=environment) == []
+    assert finding_texts(environment=environment) == []
 
 
 @pytest.mark.parametrize("name", ["__reward", "2fast", "__LINE__"])
@@ -156,7 +158,7 @@ def test_a_refused_name_is_told_once(name: str) -> None:
 
 
 def test_code_that_uses_a_variable_with_a_refused_name_is_not_wrong_as_well() -> None:
-    codes = {each.code for each in found(environment=ENVIRONMENT.replace("near", "__reward"))}
+    codes = {finding.code for finding in found(environment=ENVIRONMENT.replace("near", "__reward"))}
     assert codes == {"AOS126"}
 
 
@@ -168,13 +170,13 @@ def test_a_mission_without_a_goal_is_remarked() -> None:
 @pytest.mark.parametrize("reward", ["__reward = -10;", "__reward -= 3;", ""])
 def test_endings_that_are_all_penalised_are_a_warning(reward: str) -> None:
     findings = found(environment=ENVIRONMENT.replace("__reward = 10;", reward))
-    assert [each.severity for each in findings if each.code == "AOS139"] == [Severity.WARNING]
+    assert [finding.severity for finding in findings if finding.code == "AOS139"] == [Severity.WARNING]
 
 
 @pytest.mark.parametrize("reward", ["__reward += 3;", "__reward = near;", "__isFailureState = false;"])
 def test_an_ending_that_may_be_a_goal_is_none(reward: str) -> None:
     environment = ENVIRONMENT.replace("__reward = 10;", reward.replace("near", "state.near"))
-    assert "AOS139" not in [each.code for each in found(environment=environment)]
+    assert "AOS139" not in [finding.code for finding in found(environment=environment)]
 
 
 def test_a_parameter_that_the_mapping_never_passes_on_is_told() -> None:
@@ -190,10 +192,10 @@ def test_a_parameter_that_the_mapping_never_passes_on_is_told() -> None:
 
 def test_defaults_that_set_the_same_element_are_told() -> None:
     both = ENVIRONMENT.replace("state.second.x = 2;", "state.second.x = 2;\nstate.first.x = 3;")
-    (only,) = told(environment=both)
+    (only,) = finding_texts(environment=both)
     assert only.startswith("14 AOS141 the defaults of first and second both set `state.first.x`")
     copied = ENVIRONMENT.replace("state.second.x = 2;", "state.first.x = 2;")
-    (only,) = told(environment=copied)
+    (only,) = finding_texts(environment=copied)
     assert only.startswith("13 AOS141 the default of second sets `state.first.x`, and not the variable")
 
 
@@ -201,7 +203,7 @@ def test_what_only_looks_at_the_state_may_not_change_it_where_the_copies_are_one
     skill = SKILL.replace("__meetPrecondition = state.first.x > 0", "state.first.x = 1")
     one = ENVIRONMENT.replace("horizon: 4", "horizon: 4\none_state_model: true")
     for environment in (ENVIRONMENT, one):
-        assert [each.code for each in found(environment=environment, skill=skill)] == ["AOS123"]
+        assert [finding.code for finding in found(environment=environment, skill=skill)] == ["AOS123"]
 
 
 EXTRINSIC = "\nextrinsic_code:\nif (pour != NULL && AOS.Bernoulli(0.5)) state_.second.x = 1;\n"
@@ -221,7 +223,7 @@ def test_a_skill_that_was_left_out_counts_as_never_chosen() -> None:
 
 def test_parameters_of_a_skill_that_was_left_out_are_an_error() -> None:
     looking = EXTRINSIC.replace("AOS.Bernoulli(0.5)", "pour->cups > 1")
-    assert [each.severity for each in found(environment=ENVIRONMENT + looking)] == [
+    assert [finding.severity for finding in found(environment=ENVIRONMENT + looking)] == [
         Severity.WARNING,
         Severity.ERROR,
     ]
@@ -262,14 +264,14 @@ def test_a_draw_that_is_not_written_as_aos_writes_it_is_told_with_the_right_word
 def test_functions_of_ones_own_and_of_cpp_are_left_alone(code: str) -> None:
     before, value = code.split("\n")
     changed = f"{before}\nstate__.second.x = {value}"
-    assert told(skill=SKILL.replace("state__.second.x = state.second.x + steps", changed)) == []
+    assert finding_texts(skill=SKILL.replace("state__.second.x = state.second.x + steps", changed)) == []
 
 
 def test_a_model_that_never_says_what_comes_back_is_an_error_with_what_to_add() -> None:
-    (only,) = told(skill=SKILL.replace("__moduleResponse = walked;\n", ""))
+    (only,) = finding_texts(skill=SKILL.replace("__moduleResponse = walked;\n", ""))
     message = "the dynamic model of walk never sets __moduleResponse, so that every response is impossible"
     assert only == f"9 AOS117 {message}. Add `__moduleResponse = walked;`"
-    (nothing,) = told(skill=SKILL.partition("state__.second.x")[0])
+    (nothing,) = finding_texts(skill=SKILL.partition("state__.second.x")[0])
     assert message in nothing
 
 
@@ -277,7 +279,7 @@ def test_a_text_that_the_model_never_gives_is_an_error_too() -> None:
     text = "response_local_variable: steps\n"
     mapping = MAPPING.replace("response: walked\nresponse_rule: True\n", text)
     skill = SKILL.replace("__moduleResponse = walked;\n", "")
-    (only,) = told(mapping=mapping, skill=skill)
+    (only,) = finding_texts(mapping=mapping, skill=skill)
     assert only.startswith("9 AOS117 the dynamic model of walk never sets __moduleResponseStr")
 
 
@@ -285,4 +287,4 @@ def test_a_text_that_the_model_never_gives_is_an_error_too() -> None:
 def test_a_skill_that_observes_nothing_needs_no_response(rules: str) -> None:
     mapping = MAPPING.replace("response: walked\nresponse_rule: True\n", rules)
     errors = found(mapping=mapping, skill=SKILL.replace("__moduleResponse = walked;\n", ""))
-    assert [each.message for each in errors if each.is_error] == []
+    assert [error.message for error in errors if error.is_error] == []

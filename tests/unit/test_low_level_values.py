@@ -72,10 +72,12 @@ def outcome(**assigned: Any) -> Outcome:
     return Outcome(ActivationId("m", 1), "walk", "observed", "arrived", assigned=values)
 
 
-def observed(mapping: LoadedMapping, seen: Any, low_level: dict[str, Any] | None = None) -> Observed | Raised:
+def observed(
+    mapping: LoadedMapping, value: Any, low_level: dict[str, Any] | None = None
+) -> Observed | Raised:
     begun = mapping.answer(Begin({"to": {"pose": None}}, low_level or {"to.pose": {"x": 1.0}}))
     assert isinstance(begun, Begun), begun
-    answer = mapping.answer(Finish({"seen": seen}))
+    answer = mapping.answer(Finish({"seen": value}))
     assert isinstance(answer, Observed | Raised)
     return answer
 

@@ -122,8 +122,8 @@ def test_a_local_variable_of_a_state_variables_name_and_type_is_told() -> None:
     skill = project.skills[0]
     variable = msgspec.structs.replace(skill.mapping.local_variables[0], name="total", type="int")
     mapping = msgspec.structs.replace(skill.mapping, local_variables=(variable,))
-    told = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=mapping),))
-    assert program_of(told).skills[0].reported == ("total",)
+    shadowed = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=mapping),))
+    assert program_of(shadowed).skills[0].reported == ("total",)
     untyped = msgspec.structs.replace(mapping, local_variables=(msgspec.structs.replace(variable, type=""),))
     project = msgspec.structs.replace(project, skills=(msgspec.structs.replace(skill, mapping=untyped),))
     assert program_of(project).skills[0].reported == ()

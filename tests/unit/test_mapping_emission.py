@@ -35,7 +35,7 @@ def mistakes(text: str) -> list[tuple[str, str]]:
     with pytest.raises(DocumentError) as refusal:
         emitted(text)
     assert refusal.value.code == "AOS121"
-    return [(str(each.span), each.message) for each in refusal.value.diagnostics]
+    return [(str(finding.span), finding.message) for finding in refusal.value.diagnostics]
 
 
 def refusal_of(mapping: AbstractionMapping) -> DocumentError:
@@ -217,7 +217,7 @@ def test_document_text_never_becomes_template_or_comment_source() -> None:
 
 def test_each_line_of_a_snippet_knows_its_line_in_a_text_document(bundles: Path) -> None:
     project = project_in(bundles / "armadillo-finer")
-    mapping = next(each for each in emit_project(project) if each.skill == "observe_holding")
+    mapping = next(generated for generated in emit_project(project) if generated.skill == "observe_holding")
     source = (bundles / "armadillo-finer" / "observe_holding.am").read_text().splitlines()
     lines = mapping.python.splitlines()
     generated = lines.index("    return min(__input.left_force_n, __input.right_force_n)")
@@ -309,7 +309,7 @@ def test_what_is_no_expression_is_refused(code: str) -> None:
     mapping = mapping_of(HEAD)
     field = ActivationField("a", Snippet(code, (Span("look.am", 6, 1),)))
     refusal = refusal_of(replace(mapping, activation=replace(mapping.activation, fields=(field,))))
-    assert [each.code for each in refusal.diagnostics] == ["AOS121"]
+    assert [finding.code for finding in refusal.diagnostics] == ["AOS121"]
 
 
 def test_names_that_would_break_the_module_are_refused() -> None:
@@ -325,7 +325,7 @@ def test_an_import_that_is_none_is_refused() -> None:
     for module, name in (("os; import sys", "x"), ("os", "x\nimport sys"), ("", "1")):
         bad = Import(module, (name,), Span("look.am", 2, 1))
         refusal = refusal_of(replace(mapping, activation=replace(mapping.activation, imports=(bad,))))
-        assert [each.span for each in refusal.diagnostics] == [bad.span]
+        assert [finding.span for finding in refusal.diagnostics] == [bad.span]
 
 
 BRACKETS = ["(", ")", "[", "]", "{", "}", '"""', "#", ",", ":", "=", "\\"]
@@ -352,12 +352,16 @@ def test_any_text_is_either_refused_or_becomes_a_module_with_a_place_for_each_li
     try:
         emission = emit_mapping(replace(skill_of(HEAD), mapping=mapping))
     except DocumentError as error:
-        places = [each.span.file for each in error.diagnostics]
+        places = [finding.span.file for finding in error.diagnostics]
     else:
         places = [emission.locate(line).file for line in range(1, emission.python.count("\n") + 2)]
         assert len(places) == len(emission.origins)
-        functions = [each for each in ast.parse(emission.python).body if isinstance(each, ast.FunctionDef)]
-        assert [each.name for each in functions] == [
+        functions = [
+            statement
+            for statement in ast.parse(emission.python).body
+            if isinstance(statement, ast.FunctionDef)
+        ]
+        assert [function.name for function in functions] == [
             "local_variables",
             "request",
             "x_from_topic",

@@ -71,7 +71,7 @@ RIGHT = {
 }
 
 
-def told(**texts: str) -> list[str]:
+def finding_texts(**texts: str) -> list[str]:
     files = {
         "shop.ef": ENVIRONMENT,
         "shop.lf": texts.pop("low_level", LOW_LEVEL),
@@ -80,9 +80,9 @@ def told(**texts: str) -> list[str]:
     }
     found = load_files({name: text.encode() for name, text in files.items()}).diagnostics
     return [
-        f"{each.span}: {each.severity}: {each.message}. {each.hint}"
-        for each in found
-        if each.code != "AOS133"
+        f"{finding.span}: {finding.severity}: {finding.message}. {finding.hint}"
+        for finding in found
+        if finding.code != "AOS133"
     ]
 
 
@@ -110,7 +110,7 @@ def told(**texts: str) -> list[str]:
     ],
 )  # fmt: skip
 def test_what_python_allows_is_not_told(texts: dict[str, str]) -> None:
-    assert told(**texts) == []
+    assert finding_texts(**texts) == []
 
 
 @pytest.mark.parametrize(
@@ -134,19 +134,19 @@ def test_what_python_allows_is_not_told(texts: dict[str, str]) -> None:
 def test_a_name_that_nothing_gives_is_an_error_at_its_place(
     texts: dict[str, str], place: str, rest: str
 ) -> None:
-    (found,) = told(**texts)
+    (found,) = finding_texts(**texts)
     assert found.startswith(f"{place}: error: no local variable gives {rest}")
 
 
 def test_an_operator_of_cpp_in_a_rule_is_told_with_pythons_word() -> None:
-    (found,) = told(rule="answer && heard")
+    (found,) = finding_texts(rule="answer && heard")
     assert found.startswith("sell.am:3:24: error: this is not Python")
     assert found.endswith("Python writes `and`, `or`, `not`")
 
 
 def test_a_rule_that_is_never_tried_fails_in_no_run() -> None:
     warned = "sell.am:5:16: warning: no local variable gives `unknown_name`."
-    assert any(each.startswith(warned) for each in told(rule="True", second="unknown_name"))
+    assert any(text.startswith(warned) for text in finding_texts(rule="True", second="unknown_name"))
 
 
 def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning() -> None:
@@ -156,7 +156,7 @@ def test_a_request_from_elsewhere_in_documents_to_plan_with_is_a_warning() -> No
     )
     files = {"shop.ef": ENVIRONMENT, "shop.lf": LOW_LEVEL, "sell.sd": SKILL, "sell.am": mapping}
     loaded = load_files({name: text.encode() for name, text in files.items()})
-    (error,) = (each for each in loaded.diagnostics if each.severity is Severity.ERROR)
+    (error,) = (finding for finding in loaded.diagnostics if finding.severity is Severity.ERROR)
     assert "goal_x" not in error.message
-    warned = [each.message for each in loaded.diagnostics if each.severity is Severity.WARNING]
+    warned = [finding.message for finding in loaded.diagnostics if finding.severity is Severity.WARNING]
     assert "no local variable gives `goal_x`" in warned

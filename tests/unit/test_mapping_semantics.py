@@ -21,7 +21,7 @@ VALVES = Path(__file__).parents[1] / "golden" / "python" / "valves"
 
 def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
     project = project_in(corpus / bundle)
-    return loaded(next(each for each in emit_project(project) if each.skill == skill))
+    return loaded(next(generated for generated in emit_project(project) if generated.skill == skill))
 
 
 # --- sources of local variables -------------------------------------------------------------------------
@@ -29,7 +29,7 @@ def original(corpus: Path, bundle: str, skill: str) -> LoadedMapping:
 
 def test_parameters_reach_the_call_through_dotted_paths(bundles: Path) -> None:
     project = project_in(bundles / "armadillo-finer")
-    navigate = next(each for each in emit_project(project) if each.skill == "navigate")
+    navigate = next(mapping for mapping in emit_project(project) if mapping.skill == "navigate")
     parameters = {"destination": {"place": "EasyTable", "x": 0.5, "y": 2.0, "yaw": 1.57}}
     assert fields(loaded(navigate), parameters) == {"x": 0.5, "y": 2.0, "yaw": 1.57}
 

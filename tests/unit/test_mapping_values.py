@@ -77,7 +77,7 @@ def test_enumerations_are_sent_by_their_values() -> None:
     assert plain_from(Enum("Side", {"LEFT": 7})["LEFT"]) == 7
 
 
-@pytest.mark.parametrize("value", [object(), len, int, lambda: 0, (each for each in [])])
+@pytest.mark.parametrize("value", [object(), len, int, lambda: 0, (item for item in [])])
 def test_what_is_no_data_is_refused_with_its_type(value: object) -> None:
     with pytest.raises(TypeError, match="is no plain data"):
         plain_from(value)

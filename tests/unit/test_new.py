@@ -77,7 +77,7 @@ def test_a_new_skill_belongs_to_the_bundles_project(aos: typer.Typer) -> None:
     run(aos, "new skill wipe --in fetch")
     project = load_bundle(Path("fetch")).project
     assert project is not None
-    assert [each.name for each in project.skills] == ["look", "take", "wipe"]
+    assert [skill.name for skill in project.skills] == ["look", "take", "wipe"]
 
 
 @pytest.mark.parametrize("name", deploy_files())

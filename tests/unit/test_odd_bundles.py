@@ -35,7 +35,7 @@ def test_odd_spellings_are_told_and_none_is_an_error(root: Path, bundle: str) ->
     loaded = load_bundle(root / "tests/data/bundles" / bundle)
     assert loaded.project is not None
     codes = {"AOS122", "AOS124", "AOS125", "AOS127", "AOS137", "AOS140"}
-    assert {each.code for each in loaded.diagnostics} <= codes
+    assert {finding.code for finding in loaded.diagnostics} <= codes
 
 
 def test_odd_bundles_walk_a_thousand_steps(warehouse: ScriptedModel, orchard: ScriptedModel) -> None:

@@ -22,14 +22,14 @@ def mapping() -> dict[str, Any]:
 
 
 def load(*documents: dict[str, Any]) -> LoadedBundle:
-    return load_files({f"{i}.json": json.dumps(each).encode() for i, each in enumerate(documents)})
+    return load_files({f"{i}.json": json.dumps(document).encode() for i, document in enumerate(documents)})
 
 
 def emitted(*mappings: dict[str, Any]) -> list[EmittedMapping]:
     """The modules of skills that are alike but for their names and mappings."""
     skills = [copy.deepcopy(SKILL) for _ in mappings]
-    for skill, each in zip(skills, mappings, strict=True):
-        skill["GsdlMain"]["Name"] = each["GsdlMain"]["Name"]
+    for skill, mapping in zip(skills, mappings, strict=True):
+        skill["GsdlMain"]["Name"] = mapping["GsdlMain"]["Name"]
     bundle = load(ENVIRONMENT, LOW_LEVEL, *skills, *mappings)
     assert bundle.project is not None, bundle.diagnostics
     return emit_project(bundle.project)
@@ -47,7 +47,7 @@ def test_an_empty_condition_always_holds(mapping: dict[str, Any]) -> None:
 def test_a_response_is_a_word(mapping: dict[str, Any], name: str) -> None:
     mapping["ModuleResponse"]["ResponseRules"][0]["Response"] = name
     found = load(ENVIRONMENT, LOW_LEVEL, SKILL, mapping).diagnostics
-    assert "AOS126" in [each.code for each in found if each.is_error]
+    assert "AOS126" in [finding.code for finding in found if finding.is_error]
 
 
 @pytest.mark.parametrize("type_name", [None, "Bool", "bool", "int[]"])
@@ -66,8 +66,8 @@ def test_code_may_be_a_list_of_lines_with_tabs(mapping: dict[str, Any]) -> None:
     noisy = mapping["LocalVariablesInitialization"][2]
     noisy["AssignmentCode"] = ["if __input.level > 3:", "\treturn True", "return False"]
     (go,) = emitted(mapping)
-    seen = observed(loaded(go), TO_HOME, [("/noise", {"level": 5})], {"success": True})
-    assert (seen.response, seen.local_variables["noisy"]) == ("eFailed", "true")
+    result = observed(loaded(go), TO_HOME, [("/noise", {"level": 5})], {"success": True})
+    assert (result.response, result.local_variables["noisy"]) == ("eFailed", "true")
 
 
 def test_variables_of_one_name_in_two_mappings_have_nothing_to_do_with_each_other(
@@ -80,8 +80,10 @@ def test_variables_of_one_name_in_two_mappings_have_nothing_to_do_with_each_othe
         "AssignmentCode": "done = 'done is ' + str(__input.success)",
     }
     texts = {}
-    for each in emitted(mapping, other):
-        texts[each.skill] = observed(loaded(each), TO_HOME, [], {"success": True}).local_variables["done"]
+    for generated in emitted(mapping, other):
+        texts[generated.skill] = observed(loaded(generated), TO_HOME, [], {"success": True}).local_variables[
+            "done"
+        ]
     assert texts == {"go": "true", "come": '"done is True"'}
 
 
@@ -89,7 +91,7 @@ def test_imports_are_those_of_the_mapping_alone(mapping: dict[str, Any]) -> None
     other = copy.deepcopy(mapping)
     other["GsdlMain"]["Name"] = "come"
     other["ModuleActivation"]["RosService"]["ImportCode"] = [{"Import": ["cmath"]}]
-    modules = {each.skill: each.python for each in emitted(mapping, other)}
+    modules = {generated.skill: generated.python for generated in emitted(mapping, other)}
     assert "import math" in modules["go"]
     assert "import math" not in modules["come"]
 

@@ -29,8 +29,10 @@ def joint(model: ExplicitModel) -> Floats:
         state, action = divmod(row, size.actions)
         begin = model.outcomes.first[row]
         for offset, (after, probability) in enumerate(zip(*model.outcomes.row(row), strict=True)):
-            for seen, chance in zip(*model.likelihoods.row(model.sensings[begin + offset]), strict=True):
-                dense[state, action, after, seen] += probability * chance
+            for observation, chance in zip(
+                *model.likelihoods.row(model.sensings[begin + offset]), strict=True
+            ):
+                dense[state, action, after, observation] += probability * chance
     return dense
 
 
@@ -61,11 +63,11 @@ def test_a_factored_file_becomes_the_states_that_can_be_reached(problems: Path) 
     # The rover sees where it is: one start for each place.
     assert [start.weight for start in model.starts] == [0.5, 0.5]
     np.testing.assert_allclose(model.start_distribution(), [0.25, 0.25, 0.2, 0.3, 0, 0])
-    seen = {name: number for number, name in enumerate(model.observations)}
+    numbers = {name: number for number, name in enumerate(model.observations)}
     outcome = joint(model)
-    assert outcome[3, 0, 3, seen["rock,bright"]] == pytest.approx(0.8)
+    assert outcome[3, 0, 3, numbers["rock,bright"]] == pytest.approx(0.8)
     assert outcome[0, 1, 2].sum() == pytest.approx(0.8)
-    assert outcome[0, 1, 0, seen["home,dull"]] == pytest.approx(0.1)
+    assert outcome[0, 1, 0, numbers["home,dull"]] == pytest.approx(0.1)
     # The reward for getting to the rock counts as often as that happens.
     np.testing.assert_allclose(model.rewards[:, 1], [0.8, 0.8, 0, 0, 0, 0])
     np.testing.assert_allclose(model.rewards[2:4, 2], [-10, 10])
@@ -164,8 +166,8 @@ def test_a_mistake_is_told_at_its_place(
     with pytest.raises(DocumentError) as caught:
         read_problem(broken)
     first = caught.value.diagnostics[0]
-    told = f"{first.span.line}:{first.span.column} {first.code} {first.message}"
-    assert told.startswith(finding), told
+    text = f"{first.span.line}:{first.span.column} {first.code} {first.message}"
+    assert text.startswith(finding), text
 
 
 def test_probabilities_of_a_factored_file_have_to_sum_to_one_where_it_matters(

@@ -211,7 +211,7 @@ def bundle_of(rule: Rule) -> tuple[dict[str, bytes], Span]:
     place = Span(rule.file)
     if mark:
         place = Span(rule.file, before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1)
-    changed = {name: each.encode() for name, each in files.items()} | {rule.file: (before + after).encode()}
+    changed = {name: text.encode() for name, text in files.items()} | {rule.file: (before + after).encode()}
     return changed, place
 
 
@@ -220,7 +220,7 @@ def named(rule: Rule) -> str:
 
 
 def found_by(loaded: LoadedBundle) -> list[str]:
-    return [f"{each.span} {each.code} {each.message}" for each in loaded.diagnostics]
+    return [f"{finding.span} {finding.code} {finding.message}" for finding in loaded.diagnostics]
 
 
 @pytest.mark.parametrize("files", [JSON, SDL], ids=["json", "sdl"])
@@ -240,8 +240,8 @@ def test_this_is_accepted_with_one_warning_at_its_place(rule: Rule) -> None:
     files, place = bundle_of(rule)
     loaded = load_files(files)
     assert loaded.project is not None, found_by(loaded)
-    told = [(each.severity, each.code, each.span) for each in loaded.diagnostics]
-    assert told == [(Severity.WARNING, rule.code, place)], found_by(loaded)
+    findings = [(finding.severity, finding.code, finding.span) for finding in loaded.diagnostics]
+    assert findings == [(Severity.WARNING, rule.code, place)], found_by(loaded)
 
 
 @pytest.mark.parametrize("rule", REFUSED, ids=named)
@@ -249,10 +249,10 @@ def test_this_is_refused_at_its_place(rule: Rule) -> None:
     files, place = bundle_of(rule)
     loaded = load_files(files)
     assert loaded.project is None
-    errors = [each for each in loaded.diagnostics if each.is_error and each.code == rule.code]
+    errors = [finding for finding in loaded.diagnostics if finding.is_error and finding.code == rule.code]
     assert errors, found_by(loaded)
     if MARK in rule.put:
-        assert place in [each.span for each in errors], found_by(loaded)
+        assert place in [error.span for error in errors], found_by(loaded)
 
 
 # --- whole files ---------------------------------------------------------------------------------------
@@ -327,6 +327,6 @@ def test_whole_files_follow_the_rules(case: Whole) -> None:
     before = {name: text.encode() for name, text in case.files.items()}
     after = {name: data for name, data in {**before, **case.change(before)}.items() if data is not None}
     loaded = load_files(after)
-    told = {(each.severity.value, each.code) for each in loaded.diagnostics}
+    findings = {(finding.severity.value, finding.code) for finding in loaded.diagnostics}
     assert (loaded.project is None) == (case.severity == "error"), found_by(loaded)
-    assert told == ({(case.severity, case.code)} if case.severity else set()), found_by(loaded)
+    assert findings == ({(case.severity, case.code)} if case.severity else set()), found_by(loaded)

@@ -66,5 +66,5 @@ async def test_a_project_that_is_too_large_is_refused_before_it_is_compiled(
 
     report, is_new = await Intake(catalogue, SystemClock(), compile_it).push(files, "test")
     assert not is_new
-    assert [each.code for each in report.diagnostics if each.is_error] == ["AOS120"]
+    assert [finding.code for finding in report.diagnostics if finding.is_error] == ["AOS120"]
     assert asked == []

@@ -73,7 +73,7 @@ def test_in_json_a_version_is_text_and_the_bare_number_of_aos_1_is_none() -> Non
 
 def test_what_is_no_version_is_a_warning(files: dict[str, bytes]) -> None:
     loaded = load_files(files | sdl(files, "new"))
-    (warning,) = [each for each in loaded.diagnostics if "no version" in each.message]
+    (warning,) = [finding for finding in loaded.diagnostics if "no version" in finding.message]
     assert (str(warning.span), warning.is_error) == ("pick.sd:2:10", False)
 
 

@@ -55,10 +55,10 @@ def test_nothing_else_is_a_host(host: str) -> None:
 def test_words_of_the_deploy_file_reach_the_other_shell_as_they_are(tmp_path: Path) -> None:
     settings = tmp_path / "arm.json"
     settings.write_text('{"it": "isn\'t $HOME"}')
-    told = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "r", "AOS_SETTINGS": str(settings)}
+    variables = {"AOS_ENDPOINT": "tcp/127.0.0.1:7447", "AOS_ROBOT": "r", "AOS_SETTINGS": str(settings)}
     words = ("./arm", "two words", "$(reboot)")
     program = Program(name="arm", command=words, host="arm", folder="/opt/the arm")
-    command = remote_command(program, "tcp/127.0.0.1:7447", told, settings)
+    command = remote_command(program, "tcp/127.0.0.1:7447", variables, settings)
     forward = command[command.index("-R") + 1]
     assert forward.startswith("127.0.0.1:")
     assert forward.endswith(":127.0.0.1:7447")

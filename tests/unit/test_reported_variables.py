@@ -55,21 +55,23 @@ charge = __input.charge
 """
 
 
-def bundle(told: str = "reached", type_line: str = "type: bool", assignment: str = "") -> LoadedBundle:
+def bundle(response: str = "reached", type_line: str = "type: bool", assignment: str = "") -> LoadedBundle:
     files = {
         "rover.ef": ENVIRONMENT,
         "rover.lf": "project: rover\ndefine_type: Pose\nvariable: float x\n",
-        "drive.sd": SKILL.format(told=told),
+        "drive.sd": SKILL.format(told=response),
         "drive.am": MAPPING.format(assignment=assignment, type=type_line),
     }
     return load_files({name: text.encode() for name, text in files.items()})
 
 
-def findings(told: str = "reached", type_line: str = "type: bool", assignment: str = "") -> list[str]:
+def findings(response: str = "reached", type_line: str = "type: bool", assignment: str = "") -> list[str]:
     """All that is wrong with the bundle; what tells a state variable by its name is not."""
-    loaded = bundle(told, type_line, assignment)
+    loaded = bundle(response, type_line, assignment)
     return [
-        f"{each.span}: {each.code} {each.message}" for each in loaded.diagnostics if each.code != "AOS134"
+        f"{finding.span}: {finding.code} {finding.message}"
+        for finding in loaded.diagnostics
+        if finding.code != "AOS134"
     ]
 
 
@@ -84,7 +86,7 @@ def test_a_local_variable_that_tells_a_state_variable_by_its_name_is_remarked() 
 
 
 def test_a_local_variable_that_nothing_uses_is_told_still() -> None:
-    assert findings(told="true") == [
+    assert findings(response="true") == [
         "drive.am:12:17: AOS133 no rule and no field uses the local variable reached"
     ]
 
@@ -96,12 +98,12 @@ def test_model_code_cannot_use_a_local_variable_without_a_type_of_cpp(type_line:
 
 
 def test_the_copies_that_a_step_makes_in_between_are_not_there() -> None:
-    (finding,) = findings(told="reached && state_.is_here")
+    (finding,) = findings(response="reached && state_.is_here")
     assert finding.startswith("drive.sd:9:31: AOS123 there is no `state_` in the state given the observation")
 
 
 def test_the_state_before_the_step_cannot_be_written() -> None:
-    (finding,) = findings(told="reached; state__.count = 1")
+    (finding,) = findings(response="reached; state__.count = 1")
     assert "AOS123 `state__.count` is written in the state given the observation" in finding
 
 

@@ -33,7 +33,7 @@ def examples(root: Path) -> dict[str, Any]:
 
 def complaints(schema: str, value: Any) -> list[str]:
     validator = jsonschema.Draft202012Validator(SCHEMAS[schema]())
-    return [f"{each.validator} {each.message}" for each in leaves(validator.iter_errors(value))]
+    return [f"{error.validator} {error.message}" for error in leaves(validator.iter_errors(value))]
 
 
 def leaves(errors: Any) -> Iterator[jsonschema.ValidationError]:
@@ -73,8 +73,8 @@ def test_real_documents_are_valid_but_for_keys_that_the_linter_warns_of(corpus: 
         if dialect is None:
             continue
         found = complaints(dialect, value)
-        assert all(each.startswith("additionalProperties") for each in found), (name, found)
-        warned = [each for each in load_files({name: data}).diagnostics if each.code == "AOS102"]
+        assert all(text.startswith("additionalProperties") for text in found), (name, found)
+        warned = [finding for finding in load_files({name: data}).diagnostics if finding.code == "AOS102"]
         assert len(found) == len(warned), (name, found, warned)
         checked += 1
     assert checked > 60
@@ -121,7 +121,7 @@ def test_schema_and_reader_know_the_same_keys(kind: str, monkeypatch: pytest.Mon
     full = _full(kind)
     findings = Findings()
     read_json(Source("full.json", json.dumps(full)), findings)
-    unknown = [each.message for each in findings.sorted() if each.code == "AOS102"]
+    unknown = [finding.message for finding in findings.sorted() if finding.code == "AOS102"]
     assert [message for message in unknown if "unknown key" in message] == []
     keys = set(_keys(full))
     assert keys <= known
@@ -143,7 +143,7 @@ def _full(kind: str) -> Any:
     """A document of a kind with every key of the schema."""
     schema = SCHEMAS["plp"]()
     definition = next(
-        each["then"]["$ref"] for each in schema["allOf"] if kind in json.dumps(each["if"]).split('"')
+        rule["then"]["$ref"] for rule in schema["allOf"] if kind in json.dumps(rule["if"]).split('"')
     )
     document = _instance({"$ref": definition}, schema)
     document["PlpMain"] |= {"Type": kind, "Name": "full"}
@@ -154,7 +154,7 @@ def _instance(schema: Any, whole: Any) -> Any:
     if "$ref" in schema:
         return _instance(whole["$defs"][schema["$ref"].rpartition("/")[2]], whole)
     if "properties" in schema:
-        return {key: _instance(each, whole) for key, each in schema["properties"].items()}
+        return {key: _instance(schema_of_key, whole) for key, schema_of_key in schema["properties"].items()}
     if schema.get("type") == "array":
         return [_instance(schema["items"], whole)]
     return {"boolean": True, "number": 1, "integer": 1}.get(str(schema.get("type")), "x")

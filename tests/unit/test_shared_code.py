@@ -82,8 +82,8 @@ def files(*changes: str) -> dict[str, bytes]:
 
 def found(*changes: str) -> list[Diagnostic]:
     bundle = load_files(files(*changes))
-    told = [each for each in bundle.diagnostics if each.code != "AOS139"]
-    return told + (list(lower(bundle.project)[1]) if bundle.project is not None else [])
+    findings = [finding for finding in bundle.diagnostics if finding.code != "AOS139"]
+    return findings + (list(lower(bundle.project)[1]) if bundle.project is not None else [])
 
 
 def program(*changes: str) -> Program:
@@ -153,7 +153,7 @@ def test_what_a_function_draws_and_changes_is_known() -> None:
     assert shared.drawing == {"slips"}
     assert shared.reading == {"grip_of", "depth"}
     assert shared.changing == {"slips", "dig", "add"}
-    assert [each.name for each in shared.names if each.is_late] == ["spade"]
+    assert [name.name for name in shared.names if name.is_late] == ["spade"]
 
 
 def test_only_what_functions_may_change_is_part_of_a_particle() -> None:
@@ -276,6 +276,6 @@ def test_a_misspelt_call_is_told_with_the_name_that_was_meant() -> None:
     ],
 )  # fmt: skip
 def test_a_mistake_is_told_at_its_place(change: str, code: str, place: str) -> None:
-    told = [(each.code, str(each.span)) for each in found(change)]
-    assert (code, place) in told
-    assert len(set(told)) == 1 or code in ("AOS145", "AOS126"), told
+    places = [(finding.code, str(finding.span)) for finding in found(change)]
+    assert (code, place) in places
+    assert len(set(places)) == 1 or code in ("AOS145", "AOS126"), places

@@ -74,7 +74,7 @@ def project_of(change: str = "") -> Project:
 
 
 def running(skill: str, change: str = "") -> LoadedMapping:
-    return loaded(next(each for each in emit_project(project_of(change)) if each.skill == skill))
+    return loaded(next(mapping for mapping in emit_project(project_of(change)) if mapping.skill == skill))
 
 
 def test_all_mappings_call_the_functions_and_know_the_constants() -> None:
@@ -86,7 +86,8 @@ def test_all_mappings_call_the_functions_and_know_the_constants() -> None:
 
 def test_only_mappings_that_use_it_have_it_and_its_lines_are_the_documents() -> None:
     look, step = (
-        next(each for each in emit_project(project_of()) if each.skill == name) for name in ("look", "step")
+        next(mapping for mapping in emit_project(project_of()) if mapping.skill == name)
+        for name in ("look", "step")
     )
     lines = look.python.split("\n")
     at = lines.index("    return bearing_rad > LIMIT_RAD / (1 + math.fabs(0))") + 1
@@ -98,7 +99,7 @@ def test_all_dialects_say_the_same() -> None:
     project = project_of()
     assert "shared code of the mappings" in outline(project)
     texts, findings = convert(files(), Dialect.JSON)
-    assert [each for each in findings if each.is_error] == []
+    assert [finding for finding in findings if finding.is_error] == []
     assert json.loads(texts["environment.ef.json"])["SharedMappingCode"] == SHARED.split("\n")
     as_json = {name: text.encode() for name, text in texts.items()}
     back, _ = convert(as_json, Dialect.SDL)
@@ -126,6 +127,6 @@ def test_all_dialects_say_the_same() -> None:
     ],
 )
 def test_a_mistake_is_told_at_its_place(change: str, code: str, place: str) -> None:
-    told = [(each.code, str(each.span)) for each in load_files(files(change)).diagnostics]
-    assert (code, place) in told
-    assert {each for each, _ in told} <= {code, "AOS139"}
+    places = [(finding.code, str(finding.span)) for finding in load_files(files(change)).diagnostics]
+    assert (code, place) in places
+    assert {found_code for found_code, _ in places} <= {code, "AOS139"}

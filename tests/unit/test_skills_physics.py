@@ -130,9 +130,9 @@ def test_a_can_is_grasped_where_it_is_seen(make: Make, table: str) -> None:
     x, y, z = world.room.can_place(table)
     for dx, dy in ((0.0, 0.0), (0.04, -0.03), (-0.03, 0.02)):
         world.scene.client.resetBasePositionAndOrientation(can, (x + dx, y + dy, z), (0, 0, 0, 1))
-        seen = _perceived(world, table)
-        assert seen is not None
-        assert seen[:2] == pytest.approx((x + dx, y + dy), abs=0.001)
+        place = _perceived(world, table)
+        assert place is not None
+        assert place[:2] == pytest.approx((x + dx, y + dy), abs=0.001)
     world.scene.client.changeVisualShape(can, -1, rgbaColor=(1, 1, 1, 1))
     assert _perceived(world, table) is None
 

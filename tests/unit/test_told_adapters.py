@@ -33,14 +33,14 @@ def written(tmp_path: Path) -> dict[str, str]:
     return {**HERE, "AOS_SETTINGS": str(path)}
 
 
-def told(words: list[str], environment: dict[str, str]) -> AdapterSettings:
+def settings_of(words: list[str], environment: dict[str, str]) -> AdapterSettings:
     settings = settings_told(words, environment)
     assert settings is not None
     return settings
 
 
 def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str], tmp_path: Path) -> None:
-    settings = told(["my_arm.adapter:Arm", "port=/dev/ttyUSB0", "baud=9600", "slow=true"], written)
+    settings = settings_of(["my_arm.adapter:Arm", "port=/dev/ttyUSB0", "baud=9600", "slow=true"], written)
     assert (settings.adapter, settings.folder) == ("my_arm.adapter:Arm", str(Path.cwd()))
     assert settings.bind == {"/pick": Binding(target="grasp")}
     assert not settings.serves_others
@@ -54,13 +54,13 @@ def test_a_class_of_a_module_is_told_what_is_bound_to_it(written: dict[str, str]
 
 
 def test_a_class_of_a_file_is_imported_from_its_folder(written: dict[str, str]) -> None:
-    settings = told(["drivers/arm.py:Arm"], written)
+    settings = settings_of(["drivers/arm.py:Arm"], written)
     assert (settings.adapter, settings.folder) == ("arm:Arm", str(Path.cwd() / "drivers"))
 
 
 def test_started_by_hand_it_serves_what_it_has(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    settings = told(["arm:Arm"], HERE)
+    settings = settings_of(["arm:Arm"], HERE)
     assert settings.serves_others
     assert (settings.robot, settings.service, settings.endpoint) == tuple(
         HERE[name] for name in ("AOS_ROBOT", "AOS_ADAPTER", "AOS_ENDPOINT")
@@ -72,7 +72,7 @@ def test_on_another_host_it_keeps_its_ledger_there(
     written: dict[str, str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    settings = told(["arm:Arm"], {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"})
+    settings = settings_of(["arm:Arm"], {**written, "AOS_ENDPOINT": "tcp/127.0.0.1:23456"})
     assert settings.run_dir == str(tmp_path / f"aos-{os.getuid()}" / "20260101T000000Z-fetch")
     assert settings.endpoint == "tcp/127.0.0.1:23456"
 

@@ -140,8 +140,8 @@ def test_where_the_journal_is_damaged_the_verdict_is_on_what_was_seen(run: Path)
     write(run, decided(1), observed(1), ended("goal"))
     damaged = (run / "journal.db").read_bytes().replace(b'"look"', b'"loo\xff"')
     (run / "journal.db").write_bytes(damaged)
-    seen = Account((decided(1), observed(1), ended("goal")))
-    verdict, lacking = settled(run, seen, stopped_by=None, was_interrupted=False)
+    account = Account((decided(1), observed(1), ended("goal")))
+    verdict, lacking = settled(run, account, stopped_by=None, was_interrupted=False)
     assert (verdict.ending, verdict.exit_code) == ("goal", 0)
     assert lacking is not None
     assert lacking.code == "AOS702"
