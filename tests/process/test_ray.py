@@ -36,7 +36,7 @@ def _cache(monkeypatch: pytest.MonkeyPatch, cache_dir: Path) -> None:
 
 
 def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None = None) -> list[Trial]:
-    """The missions, without how long they took; `report` gets a line for each one, played or there already."""
+    """The missions, without how long they took; `report` gets a line for each that is played or was."""
     setting = Setting(deploy="armadillo.yaml", simulations=2000, step_limit=6)
     lines = report if report is not None else []
     played = asyncio.run(

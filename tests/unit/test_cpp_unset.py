@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from test_lint_words import SKILL, told
+from test_lint_words import SKILL, finding_texts
 
 from aos_language.cpp.snippets import read_cpp
 from aos_language.cpp.unset import unset_reads
@@ -106,4 +106,4 @@ def test_text_that_is_nested_very_deeply_is_read_or_left() -> None:
 )
 def test_lint_tells_it_at_its_line(code: str, finding: str) -> None:
     skill = SKILL.replace("__moduleResponse", f"{code}\n__moduleResponse")
-    assert told(skill=skill) == [finding]
+    assert finding_texts(skill=skill) == [finding]
