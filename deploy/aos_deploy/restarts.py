@@ -1,4 +1,4 @@
-"""When a process that has ended is started again: the one table for services, adapters and programs."""
+"""The rule for starting a process again that has ended: the one table for services, adapters and programs."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ _HOST_S = 2.0
 _MISTAKES = (2, 126, NOT_STARTED)
 """Statuses that programs and shells have for a command line that is wrong, which stays wrong."""
 _HOPELESS = ("AOS1", "AOS7", "AOS8")
-"""How the codes of faults begin that the next start would find again."""
+"""The beginnings of the codes of faults that the next start would find again."""
 
 
 class _Running:

@@ -44,7 +44,7 @@ async def ask_until_answered(
 
 
 class _Server:
-    """Whether a service is there, as its presence tells."""
+    """The presence of a service, as its token tells."""
 
     def __init__(self, presence: Subscription[tuple[str, bool]]) -> None:
         self._presence = presence
@@ -65,7 +65,8 @@ class _Server:
         return True
 
     async def _may_leave(self) -> None:
-        """Who has not answered leaves in a moment, or has come this moment."""
+        """Waits a moment for news: a service that has not answered may be leaving, or may have come just
+        now."""
         try:
             async with timeout(_AGAIN_S):
                 await self._hear()

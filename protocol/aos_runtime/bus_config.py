@@ -24,7 +24,7 @@ ADAPTER_LEASE_S = 0.8
 less than losing a service: its call is unknown, and the mission goes on."""
 
 _RETRY = {"period_init_ms": 50, "period_max_ms": 400, "period_increase_factor": 2}
-"""How a client seeks a router that has gone."""
+"""The waits of a client that seeks a router that has gone."""
 
 _ENDPOINT = re.compile(r"(tcp|udp|tls|quic|ws|unixsock-stream)/\S+")
 

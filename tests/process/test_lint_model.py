@@ -23,7 +23,7 @@ from aos_protocol.errors import ModelError
 from aos_solver.building import build as building
 from aos_solver.building.compiler import find_compiler
 from aos_solver.child import replay
-from aos_solver.mission.loop import hot_plug
+from aos_solver.mission import hot_plug
 
 HALL = """project: hall
 horizon: 4

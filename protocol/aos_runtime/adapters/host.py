@@ -49,7 +49,7 @@ MAX_UNSENT_MESSAGES = 10_000
 """The oldest topic messages give way where more than these wait to be sent."""
 
 MIDDLEWARE_AWAY_S = 2.0
-"""What moves is stopped when nobody could hear of it for so long."""
+"""A motion is stopped when nobody could hear of it for this long."""
 
 _ASK_TIMEOUT_S = 5.0
 _LAST_WORDS_S = 2.0

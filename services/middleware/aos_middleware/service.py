@@ -39,7 +39,7 @@ __all__ = ["serve"]
 ASK_TIMEOUT_S = 5.0
 
 FIRST_MAPPINGS_S = 20.0
-"""How long an activation waits for the first mappings of a middleware that was started again."""
+"""An activation waits this long for the first mappings of a middleware that was started again."""
 
 _log = logging.getLogger("aos.middleware")
 
