@@ -91,6 +91,10 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "a model that is not used is kept for",
             "aos_solver.building.build_cache._UNUSED_AFTER_S", "s", "built anew",
         ),
+        Row(
+            "the cache of compiled models",
+            "aos_solver.building.build_cache._SIZE_BYTES", "bytes", "the longest unused are removed",
+        ),
     ),
     "Planning": (
         Row("states that searches number", "planning/state_space.hpp:states", "", "POMCP without them"),

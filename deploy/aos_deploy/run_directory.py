@@ -25,9 +25,10 @@ from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
 from aos_runtime.service_settings import fault_path
 
-__all__ = ["ProcessEnd", "RunDirectory", "RunRecord", "Summary"]
+__all__ = ["LATEST", "ProcessEnd", "RunDirectory", "RunRecord", "Summary"]
 
-_LATEST = "latest"
+LATEST = "latest"
+"""The link to the newest run, in the folder of runs."""
 
 
 class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
@@ -104,6 +105,14 @@ class RunDirectory:
             ) from error
         return created
 
+    def hold(self) -> bool:
+        """Takes the lock until `close`; False while somebody else has it, since the run goes on."""
+        try:
+            self._lock = _locked(self.path, fcntl.LOCK_EX)
+        except OSError:
+            return False
+        return True
+
     def close(self) -> None:
         """The run is over. A process that is killed lets go of the lock as well."""
         if self._lock is not None:
@@ -113,13 +122,13 @@ class RunDirectory:
     @classmethod
     def latest(cls, runs: Path) -> RunDirectory:
         """The newest run below `runs`; BusError AOS605 if there is none."""
-        if not (runs / _LATEST / "run.json").is_file():
+        if not (runs / LATEST / "run.json").is_file():
             raise BusError(
                 f"there is no run in {runs}",
                 code="AOS605",
                 hint="Start one with aos-up, or name a run directory or an endpoint",
             )
-        return cls((runs / _LATEST).resolve())
+        return cls((runs / LATEST).resolve())
 
     def write_settings(self, service: str, settings: dict[str, Any]) -> Path:
         """Writes the settings of a service, and returns their path; StorageError AOS701 if that cannot be."""
@@ -167,10 +176,10 @@ class RunDirectory:
         _write_whole(path, _pretty(record))
         if is_known:
             return
-        link = self.path.with_name(f".{_LATEST}-{self.path.name}")
+        link = self.path.with_name(f".{LATEST}-{self.path.name}")
         with _kept(link):
             link.symlink_to(self.path.name)
-            link.replace(self.path.with_name(_LATEST))
+            link.replace(self.path.with_name(LATEST))
 
     def read_record(self) -> RunRecord:
         """DeployError AOS801 if this is not a run directory."""

@@ -148,6 +148,14 @@ def test_a_living_mission_is_found(place: Place, mission: Path, tmp_path: Path, 
     assert (Path(listed["directory"]).name, listed["ending"]) == (mission.name, "running")
 
 
+def test_a_living_mission_is_never_pruned(place: Place, mission: Path) -> None:
+    printed = place.run(
+        "runs", "--runs", str(mission.parent), "prune", "--keep", "0", "--json", folder=Path("/")
+    )
+    assert json.loads(printed.stdout)["kept"] == 1, printed.stderr
+    assert mission.is_dir()
+
+
 def test_of_two_living_missions_one_has_to_be_named(
     root: Path, place: Place, mission: Path, cache_dir: Path, tmp_path: Path
 ) -> None:

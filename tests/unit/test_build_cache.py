@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -110,3 +112,27 @@ async def test_who_waits_for_a_failure_tries_by_itself(tmp_path: Path) -> None:
     with pytest.raises(RuntimeError):
         await failing
     assert (entry / "part").exists()
+
+
+async def test_beyond_its_size_the_cache_loses_what_was_not_asked_for_the_longest(tmp_path: Path) -> None:
+    async def make_large(staging: Path) -> None:
+        (staging / "part").write_bytes(bytes(100_000))
+
+    cache = BuildCache(tmp_path, size_bytes=250_000)
+    for age_s, name in (
+        (10_000, "model-old"),
+        (30_000, "model-oldest"),
+        (20_000, "model-older"),
+        (60, "model-new"),
+    ):
+        entry = await cache.fill(name, make_large)
+        os.utime(entry, (time.time() - age_s,) * 2)
+    assert cache.find("model-older") is not None  # Somebody has asked for it.
+    await cache.fill("model-newest", make_large)
+    assert sorted(names(tmp_path)) == ["model-new", "model-newest", "model-older"]
+
+
+async def test_what_may_be_running_stays_though_the_cache_is_too_large(tmp_path: Path) -> None:
+    for name in ("model-a", "model-b", "model-c"):
+        await BuildCache(tmp_path, size_bytes=1).fill(name, make)
+    assert len(names(tmp_path)) == 3

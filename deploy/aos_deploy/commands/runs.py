@@ -10,7 +10,8 @@ import typer
 
 from aos_deploy.living_runs import RUNS, living_runs
 from aos_deploy.options import AsJson
-from aos_deploy.printing import from_here, print_json
+from aos_deploy.printing import count, from_here, print_json
+from aos_deploy.pruning import Pruned, pruned
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.run_end import account_of
 from aos_protocol.errors import DeployError, StorageError
@@ -18,9 +19,12 @@ from aos_protocol.errors import DeployError, StorageError
 __all__ = ["register"]
 
 
+runs_app = typer.Typer()
+
+
 def register(app: typer.Typer) -> None:
-    """Adds the command to `aos`."""
-    app.command(epilog="Example: aos runs --running")(runs)
+    """Adds `aos runs` to `aos`."""
+    app.add_typer(runs_app, name="runs", epilog="Example: aos runs --running")
 
 
 class Entry(msgspec.Struct):
@@ -36,15 +40,23 @@ class Entry(msgspec.Struct):
     endpoint: str
 
 
+Folder = Annotated[Path | None, typer.Option("--runs", metavar="DIR", help="Instead of ./runs")]
+
+
+@runs_app.callback(invoke_without_command=True)
 def runs(
-    folder: Annotated[Path | None, typer.Option("--runs", metavar="DIR", help="Instead of ./runs")] = None,
+    context: typer.Context,
+    folder: Folder = None,
     running: Annotated[bool, typer.Option("--running", help="Only those that run, wherever")] = False,
     as_json: AsJson = False,
 ) -> None:
     """List the missions that run on this machine, and those kept in ./runs.
 
-    `aos decisions --run DIR` shows one of them.
+    `aos decisions --run DIR` shows one of them, `aos runs prune` removes old ones.
     """
+    if context.invoked_subcommand is not None:
+        context.obj = folder
+        return
     going_on = {run.path: run for run in living_runs()}
     kept = {} if running else {run.path: run for run in _runs_in(folder or RUNS)}
     entries = [_entry(run) for run in (kept | going_on).values()]
@@ -59,6 +71,29 @@ def runs(
     if not entries:
         where = "" if running else f", and there is no run in {folder or RUNS}"
         typer.echo(f"No mission runs{where}.")
+
+
+@runs_app.command(epilog="Example: aos runs prune --keep 20")
+def prune(
+    context: typer.Context,
+    keep: Annotated[int, typer.Option("--keep", min=0, help="How many of the newest runs stay")],
+    folder: Folder = None,
+    as_json: AsJson = False,
+) -> None:
+    """Remove all but the newest runs of ./runs.
+
+    A run that goes on is never removed.
+    """
+    folder = folder or context.obj or RUNS
+    done = pruned(folder, keep) if folder.is_dir() else Pruned((), 0)
+    if as_json:
+        print_json({"removed": done.removed, "kept": done.kept, "freed_bytes": done.freed_bytes})
+        return
+    for run in done.removed:
+        typer.echo(f"removed {from_here(Path(run.directory))}  {run.size_bytes / 1e6:.1f} MB")
+    typer.echo(
+        f"{count(len(done.removed), 'run')} removed, {done.freed_bytes / 1e6:.1f} MB freed; {done.kept} kept"
+    )
 
 
 def _runs_in(folder: Path) -> list[RunDirectory]:

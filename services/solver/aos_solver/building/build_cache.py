@@ -1,7 +1,8 @@
 """A cache of build results that several processes may share.
 
 An entry is a directory that appears at once, by a rename, when everything in it is complete. Its name is the
-digest of all that decides about the result. What nobody has asked for in a month makes room for new entries.
+digest of all that decides about the result. Before a new entry is made, those go that nobody has asked for in
+a month, and beyond the cache's size those that were not asked for the longest.
 
 Who makes an entry holds its lock (`build_lock`), and others wait for the entry instead of making it as well.
 """
@@ -22,6 +23,10 @@ __all__ = ["BuildCache", "digest_of"]
 
 _ABANDONED_AFTER_S = 3600.0
 _UNUSED_AFTER_S = 30 * 86400.0
+_SIZE_BYTES = 2 * 2**30
+"""A dozen engines with headers compiled in advance, of some 100 MB each, and hundreds of models of 1 MB."""
+_IN_USE_S = 3600.0
+"""An entry that somebody has asked for within this time may be in use, and stays whatever the size of all."""
 
 
 def digest_of(parts: Iterable[str]) -> str:
@@ -35,8 +40,9 @@ def digest_of(parts: Iterable[str]) -> str:
 class BuildCache:
     """Entries below a directory, which need not exist."""
 
-    def __init__(self, directory: Path) -> None:
+    def __init__(self, directory: Path, size_bytes: int = _SIZE_BYTES) -> None:
         self.directory = directory.absolute()
+        self._size_bytes = size_bytes
 
     def find(self, name: str) -> Path | None:
         """The entry of that name, if it is complete."""
@@ -89,9 +95,29 @@ class BuildCache:
                 raise
 
     def _remove_old(self) -> None:
-        """Removes unused entries, and what builds left behind that were killed."""
+        """Removes unused entries, what killed builds have left, and what is beyond the size of the cache."""
+        now_s = time.time()
+        kept: list[tuple[float, Path]] = []
         for path in self.directory.glob("*-*"):
             limit_s = _ABANDONED_AFTER_S if path.suffix == ".building" else _UNUSED_AFTER_S
             with contextlib.suppress(OSError):
-                if path.is_dir() and time.time() - path.stat().st_mtime > limit_s:
+                if path.is_symlink() or not path.is_dir():
+                    continue
+                asked_s = path.stat().st_mtime
+                if now_s - asked_s > limit_s:
                     shutil.rmtree(path, ignore_errors=True)
+                else:
+                    kept.append((asked_s, path))
+        excess_bytes = sum(_size_bytes(path) for _, path in kept) - self._size_bytes
+        for asked_s, path in sorted(kept):
+            if excess_bytes <= 0 or now_s - asked_s < _IN_USE_S:
+                return
+            excess_bytes -= _size_bytes(path)
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _size_bytes(folder: Path) -> int:
+    """The space that the files of a folder take; 0 if it has just gone."""
+    with contextlib.suppress(OSError):
+        return sum(path.lstat().st_blocks * 512 for path in folder.iterdir())
+    return 0
