@@ -1,6 +1,9 @@
 #!/bin/sh
-# Every check of the project, the quick ones first, the tests last. Arguments go to pytest.
-# Exit code 0 means that all of them passed.
+# Every check of the project, the quick ones first, the tests last. Exit code 0 means that all of them passed.
+#
+#   tests/check.sh             all of them
+#   tests/check.sh --quick     without the tests that start whole systems (tests/process)
+#   tests/check.sh ARGUMENTS   arguments go to pytest
 set -u
 cd "$(dirname "$0")/.." || exit 2
 
@@ -19,6 +22,9 @@ if [ ! -x "$BIN/pytest" ]; then
     exit 2
 fi
 
+# Tests start hundreds of processes. Each would compile the same modules anew.
+unset PYTHONDONTWRITEBYTECODE
+
 step style "$BIN/ruff" check
 step form "$BIN/ruff" format --check
 step types "$BIN/mypy"
@@ -33,9 +39,18 @@ if [ -n "$failed" ]; then
     exit 1
 fi
 
-# Each process takes whole files: tests of one share what they compile.
-if [ $# = 0 ]; then
-    set -- --numprocesses auto --maxprocesses 4 --dist loadfile
-fi
+# One process more than there are cores: tests also wait for each other's processes. Each takes whole files, the
+# longest first (tests/conftest.py), since tests of one file share what they compile.
+processes=$(($(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2) + 1))
+[ "$processes" -le 5 ] || processes=5
+spread="--numprocesses $processes --dist loadfile --no-loadscope-reorder"
+# shellcheck disable=SC2086 # The options are words.
+case ${1:-} in
+    '') set -- $spread ;;
+    --quick)
+        shift
+        set -- $spread tests/unit tests/golden tests/contract "$@"
+        ;;
+esac
 printf '== tests: %s\n' "$BIN/pytest $*"
 exec "$BIN/pytest" "$@"

@@ -7,19 +7,18 @@ import json
 import re
 import subprocess
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import msgspec
-from exam.programs import run, what_decides
+from exam.programs import PATIENCE_S, run, what_decides
 
 from aos_language.load import load_bundle, load_files
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
-from aos_solver.building.build import SOURCES
+from aos_solver.building.build import SOURCES, SUPPORT, build_engine
 from aos_solver.building.build_cache import BuildCache, digest_of
-from aos_solver.building.compiler import Compiler, find_compiler
+from aos_solver.building.compiler import find_compiler
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
 
@@ -33,12 +32,13 @@ __all__ = [
     "text_project",
 ]
 
-_DRIVER = Path(__file__).parent / "cpp"
-_HEADER = "scripted.hpp"
-_OPTIONS = ("-O0", f"-I{SOURCES}")
+_DRIVER = Path(__file__).parent / "cpp" / "scripted"
+_OPTIONS = ("-O0", "-DAOS_QUICK")
+"""Those of the engine's precompiled headers for code that is not optimised."""
 _EXECUTABLE = "scripted"
 _TABLE = re.compile(r"constinit const aos::ModelTable .*\s+aos::table_of<(.*)>\(\);")
-_MAIN = r"""int main(int argc, char** argv) { return aos::run<\1>(argc, argv); }"""
+_SCRIPTED_TABLE = r"""#include "scripted.hpp"
+constinit const aos::ScriptedModel aos::scripted_model = aos::scripted_model_of<\1>();"""
 
 
 class Played(msgspec.Struct, frozen=True):
@@ -129,24 +129,23 @@ def lowered(project: Project) -> tuple[EmittedModel, tuple[Diagnostic, ...]]:
 def scripted(project: Project, cache_dir: Path) -> ScriptedModel:
     """The model of a project, compiled for the script."""
     emitted, _ = lowered(project)
-    return ScriptedModel(emitted, asyncio.run(_compiled(emitted, BuildCache(cache_dir))) / _EXECUTABLE)
+    return ScriptedModel(emitted, asyncio.run(_compiled(emitted, cache_dir)) / _EXECUTABLE)
 
 
-async def _compiled(emitted: EmittedModel, cache: BuildCache) -> Path:
+async def _compiled(emitted: EmittedModel, cache_dir: Path) -> Path:
     compiler = await find_compiler()
-    decides = [*_OPTIONS, (_DRIVER / _HEADER).read_text(), *what_decides(compiler)]
-    precompiled = await cache.fill(f"script-{digest_of(decides)}", partial(_precompile, compiler))
+    cache = BuildCache(cache_dir)
+    engine = await build_engine(cache_dir, compiler=compiler)
+    decides = [*_OPTIONS, *what_decides(compiler, _DRIVER)]
+
+    async def make_driver(staging: Path) -> None:
+        run(compiler.compilation(str(_DRIVER / "scripted.cpp"), "driver.o", str(SOURCES), *_OPTIONS), staging)
 
     async def make(staging: Path) -> None:
-        # Only what is included first is taken as precompiled.
-        (staging / "scripted.cpp").write_text(f'#include "{_HEADER}"\n{_TABLE.sub(_MAIN, emitted.cpp)}')
-        options = [*_OPTIONS, *compiler.precompiled(_HEADER, str(precompiled))]
-        run(compiler.compilation("scripted.cpp", "scripted.o", str(_DRIVER), *options), staging)
-        run(compiler.linking(["scripted.o"], _EXECUTABLE), staging)
+        (staging / "scripted.cpp").write_text(_TABLE.sub(_SCRIPTED_TABLE, emitted.cpp))
+        options = [*_OPTIONS, *compiler.precompiled(SUPPORT, str(engine / "unoptimized")), f"-I{_DRIVER}"]
+        run(compiler.compilation("scripted.cpp", "scripted.o", str(SOURCES), *options), staging)
+        run(compiler.linking(["scripted.o", str(driver / "driver.o")], _EXECUTABLE), staging)
 
-    return await cache.fill(f"scripted-{digest_of([emitted.cpp, *decides])}", make)
-
-
-async def _precompile(compiler: Compiler, staging: Path) -> None:
-    """Reads the driver, and with it what models include, once for all of them."""
-    run(compiler.precompilation(_HEADER, str(_DRIVER), ".", *_OPTIONS), staging)
+    driver = await cache.fill(f"driver-{digest_of(decides)}", make_driver, patience_s=PATIENCE_S)
+    return await cache.fill(f"scripted-{digest_of([emitted.cpp, *decides])}", make, patience_s=PATIENCE_S)

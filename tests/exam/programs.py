@@ -12,9 +12,9 @@ from aos_solver.building.build import SOURCES, build_engine
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
 
-__all__ = ["built_program", "run", "what_decides"]
+__all__ = ["PATIENCE_S", "built_program", "run", "what_decides"]
 
-_PATIENCE_S = 1200.0
+PATIENCE_S = 1200.0
 """Another process that compiles the same is waited for."""
 
 
@@ -35,7 +35,7 @@ async def built_program(cache_dir: Path, source: Path, *options: str, includes: 
         run(compiler.linking(["part.o", str(engine / "point_based.o")], source.stem), staging)
 
     name = f"{source.stem}-{digest_of([source.name, *more, *what_decides(compiler, *folders)])}"
-    return await BuildCache(cache_dir).fill(name, make, patience_s=_PATIENCE_S) / source.stem
+    return await BuildCache(cache_dir).fill(name, make, patience_s=PATIENCE_S) / source.stem
 
 
 def what_decides(compiler: Compiler, *folders: Path) -> list[str]:
@@ -52,6 +52,6 @@ def _texts(folder: Path) -> list[str]:
 
 def run(command: list[str], folder: Path) -> None:
     """Runs a compiler's command; its messages are the error."""
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_PATIENCE_S)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=PATIENCE_S)
     if done.returncode != 0:
         raise RuntimeError(f"it does not compile: {' '.join(command)}\n{done.stderr}")

@@ -27,7 +27,7 @@ from aos_solver.building.compiler_messages import read_messages, without_line_di
 from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, ran_out, run_compiler
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
 
-__all__ = ["ANY_SIZE", "SOURCES", "BuildKind", "BuiltModel", "build", "build_engine"]
+__all__ = ["ANY_SIZE", "SOURCES", "SUPPORT", "BuildKind", "BuiltModel", "build", "build_engine"]
 
 SOURCES = Path(__file__).parents[1] / "cpp"
 """The engine, and what emitted models stand on."""
@@ -38,7 +38,7 @@ ANY_SIZE = 0
 """Stands for the engine that takes states of every size: each has memory of its own, which takes longer."""
 MAX_STATE_BYTES = 1 << 20
 
-_SUPPORT = "aos/model/model_support.hpp"
+SUPPORT = "aos/model/model_support.hpp"
 """Every emitted model includes this file first."""
 
 BuildKind = Literal["quick", "thorough", "unoptimized"]
@@ -163,8 +163,8 @@ async def build_engine(
         if state_bytes == STATE_BYTES[0]:
             commands.append(_part(compiler, _NUMBERS_OBJECT, "-O3"))
             for kind in _HURRIED:
-                (staging / kind / _SUPPORT).parent.mkdir(parents=True)
-                commands.append(compiler.precompilation(_SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
+                (staging / kind / SUPPORT).parent.mkdir(parents=True)
+                commands.append(compiler.precompilation(SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
         deadline_s = _ENGINE_DEADLINES * compiler.deadline_s
         started_s = time.monotonic()
         runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
@@ -250,7 +250,7 @@ class _Build(msgspec.Struct, frozen=True):
         entry = self._ready_engine(STATE_BYTES[0])
         if entry is None or self.kind not in _HURRIED:
             return []
-        return self.compiler.precompiled(_SUPPORT, str(entry / self.kind))
+        return self.compiler.precompiled(SUPPORT, str(entry / self.kind))
 
     def _state_bytes(self, model: Path) -> int:
         """The size of the quickest engine that takes the model's states."""
