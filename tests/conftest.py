@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import shutil
 from pathlib import Path
 
 import pytest
+from kept_cache import link_engines, make_room
 
 from aos_deploy.program import cache_dir as user_cache_dir
 
@@ -15,6 +14,9 @@ ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".compiled"
 CACHE_BYTES = 1_000_000_000
 """Two runs with other sources of the engine fit."""
+TESTS = ROOT / "tests"
+LONGEST = TESTS / "longest_first.txt"
+"""Files of tests, by the processor time that docs/lab/checks.md tells of."""
 
 
 @pytest.fixture(scope="session")
@@ -40,35 +42,18 @@ def corpus() -> Path:
 
 @pytest.fixture(scope="session")
 def cache_dir() -> Path:
-    """Compiled models, kept from run to run, and the engines that setup.sh has compiled.
-
-    An entry's name says what it was made from: a model of other documents or sources is not found by it.
-    """
-    CACHE.mkdir(exist_ok=True)
-    for engine in user_cache_dir().glob("engine-*-*"):
-        if engine.suffix not in (".building", ".lock"):
-            with contextlib.suppress(FileExistsError):
-                (CACHE / engine.name).symlink_to(engine)
+    """Compiled models, kept from run to run, and the engines that setup.sh has compiled."""
+    link_engines(user_cache_dir(), CACHE)
     return CACHE
 
 
-def pytest_configure(config: pytest.Config) -> None:
+def pytest_configure() -> None:
     """Makes room in the cache, once for all processes of a run."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         make_room(CACHE, CACHE_BYTES)
 
 
-def make_room(folder: Path, limit_bytes: int) -> None:
-    """Removes links to engines that are gone, and the entries unused for longest beyond so many bytes."""
-    entries = [path for path in folder.glob("*-*") if not path.is_symlink()]
-    for link in folder.glob("*-*"):
-        if link.is_symlink() and not link.exists():
-            link.unlink(missing_ok=True)
-    total_bytes = 0
-    for entry in sorted(entries, key=lambda path: path.stat().st_mtime, reverse=True):
-        files = [entry] if entry.is_file() else [path for path in entry.rglob("*") if path.is_file()]
-        total_bytes += sum(path.stat().st_size for path in files)
-        if total_bytes > limit_bytes and entry.is_dir():
-            shutil.rmtree(entry, ignore_errors=True)
-        elif total_bytes > limit_bytes:
-            entry.unlink(missing_ok=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Puts the files that take longest first, so that processes that share the tests end together."""
+    places = {name: place for place, name in enumerate(LONGEST.read_text().split())}
+    items.sort(key=lambda item: places.get(item.path.relative_to(TESTS).as_posix(), len(places)))

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import re
 import subprocess
 from pathlib import Path
 
 import pytest
-from exam.programs import built_program
+from engine_checks import UNITS, engine_checks
 from processes import HANG_S
 
-TESTS = Path(__file__).parents[1]
-UNITS = TESTS / "cpp" / "units"
-TABLES = TESTS / "exam" / "cpp"
 SENTENCES = re.compile(r'^TEST\("(.+)"\)', re.MULTILINE)
 
 sentences = [
@@ -25,8 +21,7 @@ sentences = [
 @pytest.fixture(scope="module")
 def results(cache_dir: Path) -> dict[str, list[str]]:
     """The expectations of each test that were in vain."""
-    program = asyncio.run(built_program(cache_dir, UNITS / "main.cpp", "-O1", includes=[TABLES]))
-    done = subprocess.run([program], capture_output=True, text=True, timeout=HANG_S)
+    done = subprocess.run([engine_checks(cache_dir)], capture_output=True, text=True, timeout=HANG_S)
     entries = [json.loads(line) for line in done.stdout.splitlines()]
     return {entry["test"]: entry["failures"] for entry in entries}
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from engine_checks import engine_checks
 from exam.broken import played_job
 from exam.compiled import examined, left_out
 from exam.documents import documents
-from exam.driver import Driver, built_driver
+from exam.driver import Driver
 from exam.failures import Failures
 from exam.families import FAMILIES, NEEDLES
 from exam.generation import named_problem, problems
@@ -23,7 +23,7 @@ from processes import HANG_S
 
 @pytest.fixture(scope="module")
 def executable(cache_dir: Path) -> Path:
-    return asyncio.run(built_driver(cache_dir))
+    return engine_checks(cache_dir)
 
 
 @pytest.fixture

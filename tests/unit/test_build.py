@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from kept_cache import link_engines
 from mappings import mapping_of_model, mapping_text
 from processes import HANG_S, until_ended
 from scripted_models import bundle_project, json_text, lowered, text_project
@@ -31,6 +32,15 @@ state_variable: int total
 
 BEING_BUILT = f"*.{os.getpid()}.*.building"
 """Entries that this process makes."""
+
+
+@pytest.fixture(scope="module")
+def cache_dir(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A cache without a model, and with the engines of all tests."""
+    asyncio.run(build_engine(cache_dir))
+    fresh = tmp_path_factory.mktemp("cache")
+    link_engines(cache_dir, fresh)
+    return fresh
 
 
 def emitted_skill(code: str, home: str = HOME) -> EmittedModel:
@@ -211,7 +221,7 @@ async def test_what_models_include_is_compiled_once_and_changes_nothing(
     engine = await build_engine(cache_dir)
     (tmp_path / "model.cpp").write_text(emitted_skill("state__.total += 7;").cpp)
     objects = []
-    for more in ([], compiler.precompiled(build_module._SUPPORT, str(engine / "quick"))):
+    for more in ([], compiler.precompiled(build_module.SUPPORT, str(engine / "quick"))):
         options = [*build_module._OPTIONS["quick"], *more, "-H"]
         command = compiler.compilation("model.cpp", "model.o", str(SOURCES), *options)
         done = await asyncio.to_thread(

@@ -1,6 +1,6 @@
-// Runs every test and tells of each, as a line of JSON, what it expected in vain.
+// Runs every test and prints for each, as a line of JSON, what it expected in vain. With arguments it is the exam.
 //
-// All tests are one translation unit: the headers are templates, which would be compiled for each file anew.
+// All is one translation unit: the headers are templates, which would be compiled for each file anew.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -8,6 +8,7 @@
 #include "aos/base/fault.hpp"
 #include "aos/base/json.hpp"
 #include "aos/model/support.hpp"
+#include "answers.hpp"
 #include "check.hpp"
 
 #include "belief.cpp"
@@ -28,7 +29,8 @@
 #include "text_order.cpp"
 #include "wide_values.cpp"
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc > 1) return exam::answer_problems(argc, argv);
   bool has_failed = false;
   for (const units::Test& test : units::all_tests()) {
     units::failures().clear();
