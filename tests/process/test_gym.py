@@ -154,5 +154,5 @@ def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> 
     text = subprocess.run(command, check=True, capture_output=True, text=True, timeout=HANG_S).stdout
     assert "actions       Discrete(1): heat" in text
     assert "observations  Discrete(3): DefaultObservation, cold, warm" in text
-    program = text[text.index("from aos_deploy") :]
+    program = text[text.index("from aos_lab") :]
     subprocess.run([sys.executable, "-c", program], check=True, timeout=HANG_S)

@@ -159,7 +159,7 @@ async def test_an_error_outside_the_documents_names_the_emitted_file(cache_dir: 
     emitted = emitted_skill("state__.total = 5;")
     broken = EmittedModel(
         emitted.project,
-        emitted.cpp.replace("struct Model {", "struct Model { Unheard of;"),
+        emitted.cpp.replace("namespace model {", "namespace model { Unheard of;"),
         emitted.digest,
         emitted.state_digest,
         emitted.snippets,
