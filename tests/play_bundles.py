@@ -30,7 +30,8 @@ __all__ = ["Played", "bundles_in", "play_bundle"]
 
 
 class Played(msgspec.Struct, kw_only=True):
-    """The way that a bundle came; `fault` is empty where it came through."""
+    """The progress of a bundle through its checks, its build and its missions; `fault` is empty where it
+    came through."""
 
     bundle: str
     findings: int

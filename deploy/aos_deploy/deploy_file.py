@@ -68,7 +68,8 @@ class ConstraintPart(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """The end of a mission. `stop_below_value` is an expected return; without one nothing is too poor.
+    """The conditions that end a mission. `stop_below_value` is an expected return; without one nothing is too
+    poor.
 
     A skill is set aside for `set_aside_s` after `set_aside_after` failures in a row, and the mission ends
     after `failure_limit` failures of all skills; see docs/when-a-skill-fails.md. It holds for `hold_s` at

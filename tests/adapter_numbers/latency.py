@@ -1,4 +1,4 @@
-"""The way from the solver's activation to the skill, and from its result to the observation."""
+"""The latency from the solver's activation to the skill, and from its result to the observation."""
 
 from __future__ import annotations
 

@@ -211,8 +211,8 @@ def search(random: Random, large: bool) -> World:
 
 
 def hallway(random: Random, large: bool) -> World:
-    """A hallway asks where the robot is: cells that look alike, sensors and motors that err, a goal that
-    has to be declared."""
+    """A robot in a hallway asks where it is: cells that look alike, sensors and motors that err, a goal
+    that has to be declared."""
     cells = random.randint(10, 25) if large else random.randint(4, 9)
     looks = [random.randrange(3) for _ in range(cells)]
     accuracy = random.choice((0.6, 0.8, 0.95))

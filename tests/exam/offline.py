@@ -17,7 +17,8 @@ __all__ = ["false_bounds"]
 
 
 async def false_bounds(problem: Problem, truth: Driver, cache_dir: Path, cpu_s: float) -> tuple[str, ...]:
-    """Returns what the solver says falsely of a problem with a discount below 1, at any time of its search.
+    """Returns the solver's false statements about a problem with a discount below 1, at any time of its
+    search.
 
     `truth` is asked for values without an end.
     """

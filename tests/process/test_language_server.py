@@ -53,7 +53,7 @@ success = __input.success
 
 
 class Editor(LanguageClient):
-    """The picture in an editor: the latest findings of each file."""
+    """An editor that keeps the latest findings of each file."""
 
     def __init__(self) -> None:
         super().__init__("test", "1")

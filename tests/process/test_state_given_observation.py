@@ -1,4 +1,5 @@
-"""The effects of real runs on the state beyond the response, and the text of a state, in a running engine."""
+"""The evidence of real runs about the state beyond the response, and the text of a state, in a running
+engine."""
 
 from __future__ import annotations
 

@@ -97,7 +97,8 @@ def test_what_only_one_format_can_say_is_refused_by_the_other(problems: Path, tm
 
 
 def test_an_observation_of_the_step_itself_splits_the_state_that_follows() -> None:
-    """The sight tells which of two states was left; problem files know only the state that is entered."""
+    """The observation tells which of two states was left; problem files know only the state that is
+    entered."""
     ragged = Ragged(np.array([0, 1, 2]), np.array([0, 0]), np.array([1.0, 1.0]))
     model = ExplicitModel(
         name="trace",

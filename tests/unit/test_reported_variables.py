@@ -1,5 +1,4 @@
-"""The parts of documents that a real run tells about: local variables in model code, low-level
-assignments."""
+"""The words of documents on what a real run tells: local variables in model code, low-level assignments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The words of an adapter's command and of its environment, and what the adapter makes of them."""
+"""The settings that an adapter makes of the words of its command and of its environment."""
 
 from __future__ import annotations
 

@@ -92,7 +92,8 @@ async def discounted_returns(
     budget_s: float,
     on_run: Callable[[], None],
 ) -> list[float]:
-    """Returns the return of one mission for each seed, planned with so much processor time for each step."""
+    """Plays one mission for each seed, with so much processor time for each step, and returns their
+    returns."""
     limits = MissionLimits(goal_probability=_NEVER, step_limit=problem.steps, stop_below_value=None)
     returns = []
     for seed in seeds:

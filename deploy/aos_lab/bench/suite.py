@@ -69,7 +69,7 @@ class Suite:
 
     @property
     def steps(self) -> int:
-        """The most calls of `on_step`: missions may be run without rollout policies, too."""
+        """The number of calls of `on_step`, at most: missions may be run without rollout policies, too."""
         planners = len(self._effort.planners)
         return sum(3 + 2 * planners * self._effort.runs_of(problem) for problem in self._problems)
 

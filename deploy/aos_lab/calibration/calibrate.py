@@ -1,4 +1,4 @@
-"""The way from documents and recorded missions to estimates, and to the patch that they suggest."""
+"""The calibration of documents by recorded missions: estimates, and the patch that they suggest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The way from a POMDP over variables to one over states: those that can be reached, and no others."""
+"""The flattening of a POMDP over variables to one over states: those that can be reached, and no others."""
 
 from __future__ import annotations
 

@@ -1,1 +1,2 @@
-"""The way from the text of a model to an executable: compilers, their messages, the cache of builds."""
+"""The building of models: from their text to an executable, with compilers, their messages, and the cache
+of builds."""

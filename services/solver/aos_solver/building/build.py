@@ -1,4 +1,4 @@
-"""The way from the emitted C++ to an executable, through a cache.
+"""The build of a model: from the emitted C++ to an executable, through a cache.
 
 A model is compiled by itself and linked to the engine. The engine is compiled once for all models whose
 states have up to so many bytes: it is four times as much code, and models change while a robot waits. The

@@ -1,4 +1,4 @@
-"""The way from what the compiler says to diagnostics at the documents' places."""
+"""The compiler's messages as diagnostics at the documents' places."""
 
 from __future__ import annotations
 

@@ -1,2 +1,2 @@
-"""The way from a documented project to the text of its model: lowering, rewriting of document code,
-emission."""
+"""The emission of models: a documented project is lowered, its document code rewritten, and the C++ text
+written."""

@@ -1,4 +1,4 @@
-"""The way from the lowered model to one C++ file that a person can read, and back from its lines.
+"""The emission of the lowered model as one C++ file that a person can read, and the way back from its lines.
 
 The templates lay out; document code is put in afterwards, so that no text of a document is ever taken for a
 template or for a mark. The same program gives the same bytes.

@@ -1,4 +1,4 @@
-"""The way from a project's typed documents to the model that is emitted.
+"""The lowering of a project's typed documents to the model that is emitted.
 
 A pure function of the project. Mistakes of the documents come back as diagnostics, all at once.
 """

@@ -25,7 +25,7 @@ _REPEATED = re.compile(r"\b(?:for|while|do|goto)\b")
 
 
 class Copies(msgspec.Struct, frozen=True):
-    """The answer whether a step of a skill keeps `state` and `state_` apart from what comes after them."""
+    """The copies of `state` and `state_` that a step of a skill keeps apart from what comes after them."""
 
     keeps_state: bool
     keeps_state_: bool
