@@ -90,7 +90,13 @@ def programs_of_deployment(deployment: Deployment) -> tuple[Program, ...]:
         Program(name="middleware", module="aos_middleware", settings=middleware, is_restarted=True),
         *(_own(deployment, name, part) for name, part in file.programs.items()),
         *adapters,
-        Program(name="solver", module="aos_solver", settings=_solver_settings(deployment), stop_s=5.0),
+        Program(
+            name="solver",
+            module="aos_solver",
+            settings=_solver_settings(deployment),
+            stop_s=5.0,
+            is_restarted=True,
+        ),
     )
 
 

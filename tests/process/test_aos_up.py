@@ -254,7 +254,7 @@ def summary_of(deploy_file: Path) -> dict[str, Any]:
     return summary
 
 
-@pytest.mark.parametrize("victim", ["router", "registry", "middleware"])
+@pytest.mark.parametrize("victim", ["router", "registry", "middleware", "solver"])
 def test_a_service_that_dies_is_started_again_and_the_mission_goes_on(deploy_file: Path, victim: str) -> None:
     with up(short_mission(deploy_file)) as running:
         running.until("decision")

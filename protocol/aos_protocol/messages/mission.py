@@ -19,8 +19,10 @@ __all__ = [
     "History",
     "HistoryQuery",
     "Marginal",
+    "MissionBegun",
     "MissionQuery",
     "MissionState",
+    "ModelAdopted",
     "ModelCheck",
     "PredictedObservation",
     "ResumeMission",
@@ -42,6 +44,27 @@ class ModelCheck(Message, frozen=True):
 
 class StartMission(Message, frozen=True):
     """Starts the mission that the solver was configured for. A second start changes nothing."""
+
+
+class MissionBegun(Message, frozen=True):
+    """The journal's row with which a solver begins a mission, or takes it up: `epoch` counts these rows.
+
+    `revision` and `model_digest` are of the documents at this moment, `seed` is the mission's.
+    """
+
+    mission: str
+    epoch: int
+    seed: int
+    revision: int
+    model_digest: str
+
+
+class ModelAdopted(Message, frozen=True):
+    """The journal's row for a model that takes the place of another one while the mission runs."""
+
+    revision: int
+    model_digest: str
+    before: int
 
 
 class ResumeMission(Message, frozen=True):

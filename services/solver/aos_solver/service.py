@@ -25,6 +25,7 @@ from aos_protocol.messages import (
     MappingQuery,
     MappingState,
     Message,
+    MissionBegun,
     MissionQuery,
     MissionState,
     ModelCheck,
@@ -46,6 +47,7 @@ from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.hot_plug import ModelShelf, RunningModel
 from aos_solver.mission.loop import Mission
+from aos_solver.mission.memory import BEGUN, folded
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
@@ -84,6 +86,7 @@ class _Solver:
         self._keys = service.keys
         self._settings = settings
         self._journal = Journal.open(Path(settings.run_dir) / "journal.db")
+        self._memory = folded(self._journal.rows())
         self._shelf = ModelShelf(
             Path(settings.cache_dir),
             self._report_progress,
@@ -111,6 +114,8 @@ class _Solver:
             await bus.answer(keys.resume_mission, ResumeMission, self._resume)
             await self._service.ready()
             tasks.create_task(self._make_current())
+            if self._memory.epoch and not self._memory.has_ended:
+                tasks.create_task(self._start(StartMission(), ""))  # It goes on without being told.
             tasks.create_task(self._run_mission())
             tasks.create_task(self._follow_mappings())
             async for _, revision in announced:
@@ -150,14 +155,18 @@ class _Solver:
         return self._state()
 
     async def _answer_history(self, query: HistoryQuery, _: str) -> History:
-        records = self._mission.records if self._mission else []
+        records = self._mission.records if self._mission else self._memory.records
         return History(self._name, tuple(records[max(query.since, 0) :]))
 
     async def _check(self, question: CheckModel, _: str) -> ModelCheck:
         return ModelCheck(await self._shelf.check(question.project, self._running))
 
     def _state(self) -> MissionState:
-        return self._mission.state if self._mission else MissionState(self._name, "waiting", 0, 0.0)
+        if self._mission is not None:
+            return self._mission.state
+        if self._memory.has_ended and self._memory.state is not None:
+            return self._memory.state
+        return MissionState(self._name, "waiting", 0, 0.0)
 
     # --- models --------------------------------------------------------------------------------------
 
@@ -208,18 +217,29 @@ class _Solver:
     # --- the mission and its ports -------------------------------------------------------------------
 
     async def _run_mission(self) -> None:
+        if self._memory.has_ended:
+            return
         await self._started.wait()
         assert self._running is not None
+        memory = self._memory
+        begun = MissionBegun(
+            self._name,
+            memory.epoch + 1,
+            self._settings.seed,
+            self._running.revision,
+            self._running.digest,
+        )
+        self.journal(BEGUN, begun)
         terms = Terms(
             name=self._name,
-            epoch=self._next_epoch(),
+            epoch=begun.epoch,
             limits=self._settings_as(MissionLimits),
             search=self._search,
             failures=self._settings_as(FailureRules),
             activation_timeout_s=self._settings.activation_timeout_s,
             hold_s=self._settings.hold_s,
         )
-        self._mission = Mission(terms, self._running, self)
+        self._mission = Mission(terms, self._running, self, memory)
         await self._await_mappings(self._running.revision)
         state = await self._mission.run()
         log.info("the mission ended: %s, %s", state.ending, state.remark)
@@ -256,11 +276,6 @@ class _Solver:
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(timeout_s):
                 await self._changed.wait()
-
-    def _next_epoch(self) -> int:
-        epoch = 1 + len(self._journal.rows("epoch"))
-        self._journal.append("epoch", StartMission())
-        return epoch
 
     def journal(self, kind: str, payload: Message) -> None:
         self._journal.append(kind, payload)

@@ -19,6 +19,7 @@ from aos_protocol.messages import (
     BeliefSummary,
     DecisionRecord,
     MissionState,
+    ModelAdopted,
     Outcome,
 )
 from aos_solver.child.answers import BeliefUpdate
@@ -26,24 +27,33 @@ from aos_solver.mission.choosing import Choice, Chooser, Ended, Held
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.memory import MissionMemory
 from aos_solver.mission.ports import Ports
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.terms import Terms
 
 __all__ = ["Mission"]
 
+_NOTHING = MissionMemory()
+
 
 class Mission:
-    """One mission from the engine's belief to its ending; `run` or `run_or_raise` is called once.
+    """One mission to its ending, from the engine's belief or from where it was left.
+
+    `run` or `run_or_raise` is called once.
 
     `belief` is the newest one.
     """
 
     belief: BeliefSummary
 
-    def __init__(self, terms: Terms, model: RunningModel, ports: Ports) -> None:
+    def __init__(
+        self, terms: Terms, model: RunningModel, ports: Ports, memory: MissionMemory = _NOTHING
+    ) -> None:
+        """`memory` is what the mission has behind it, which has not ended."""
         self.state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
-        self.records: list[DecisionRecord] = []
+        self.records = memory.records
+        self._memory = memory
         self._terms = terms
         self._model = model
         self._ports = ports
@@ -77,20 +87,65 @@ class Mission:
     async def run_or_raise(self) -> None:
         """Decide and act until the mission ends, as `run`; AosError for a machine fault."""
         self.belief = await self._model.engine.summary()
+        if not await self._take_up():
+            return
         while (ending := self._ending()) is None:
-            self._model = await self._ports.newest_model(self._model)
+            await self._adopt(await self._ports.newest_model(self._model))
             choice = await self._choose()
             if isinstance(choice, Ended):
                 return self._end(choice.ending, choice.remark)
             decision = self._decide(choice)
             self._move_to("acting", decision.step, remark=decision.action)
             await self._terms.search.ponder(self._model.engine, decision.step, choice.plan.index)
-            await self._observe(decision, await self._act(decision))
-            if self._failures.to_end:
-                return self._end(Ending.SKILLS_FAILED, self._failures.to_end)
-            if self._failures.to_hold:
-                await self._hold(self._failures.to_hold, lambda: False)
+            if not await self._finish(decision, await self._act(decision)):
+                return
         self._end(ending, remark_of(ending, self.belief, self._terms.limits))
+
+    async def _take_up(self) -> bool:
+        """Brings the mission to where the memory ends, and the step that is not over to its end.
+
+        The belief is the posterior of the model that runs now, given every action and observation. Returns
+        whether the mission goes on.
+        """
+        for step in self._memory.steps:
+            outcome = step.observed.outcome
+            assert outcome is not None
+            self._budget.take_up(step.decision.constraints)
+            update = await self._updated_belief(step.decision, outcome)
+            self._take_failure(step.decision, outcome, update, self._s_of(step.observed.stamp_ns))
+            self.belief = update.summary
+            self.state = msgspec.structs.replace(self.state, step=step.decision.step)
+        if self._memory.pending is not None:
+            decision, intention, outcome = self._memory.pending
+            self._budget.take_up(decision.constraints)
+            self._move_to("acting", decision.step, remark=decision.action)
+            return await self._finish(decision, outcome or await self._act(decision, intention))
+        if self._memory.is_held and self._failures.to_hold:
+            await self._hold(self._failures.to_hold, lambda: False)
+        return self._goes_on()
+
+    async def _finish(self, decision: DecisionRecord, outcome: Outcome) -> bool:
+        """Takes the outcome of a decision; returns whether the mission goes on."""
+        await self._observe(decision, outcome)
+        if self._failures.to_hold:
+            await self._hold(self._failures.to_hold, lambda: False)
+        return self._goes_on()
+
+    def _goes_on(self) -> bool:
+        """Ends the mission where its failures call for that."""
+        if self._failures.to_end:
+            self._end(Ending.SKILLS_FAILED, self._failures.to_end)
+        return not self._failures.to_end
+
+    async def _adopt(self, model: RunningModel) -> None:
+        if model is not self._model:
+            before, self._model = self._model, model
+            self._ports.journal("adopted", ModelAdopted(model.revision, model.digest, before.revision))
+
+    def _s_of(self, stamp_ns: int) -> float:
+        """The monotonic time of a moment in the past."""
+        clock = self._ports.clock
+        return clock.monotonic_s() - (clock.now_ns() - stamp_ns) / 1e9
 
     def _ending(self) -> Ending | None:
         """The ending that the belief calls for, or else the one that the world has come to."""
@@ -155,37 +210,37 @@ class Mission:
         self._publish(record)
         return record
 
-    async def _act(self, decision: DecisionRecord) -> Outcome:
-        request = Activate(
+    async def _act(self, decision: DecisionRecord, intention: Activate | None = None) -> Outcome:
+        """The outcome of a decision's activation; what was intended before is asked for as it was."""
+        request = self._request(decision)
+        if intention is not None:
+            request = msgspec.structs.replace(intention, epoch=self._terms.epoch)
+        self._ports.journal("intended", request)
+        outcome = await self._ports.activate(request, decision.action)
+        self._ports.journal("outcome", outcome)
+        return outcome
+
+    def _request(self, decision: DecisionRecord) -> Activate:
+        return Activate(
             ActivationId(decision.mission, decision.step),
             decision.skill,
             decision.parameters,
             self._failures.rule(decision.skill).timeout_s or self._terms.activation_timeout_s,
             decision.revision,
             self._model.engine.variables_of(decision.action),
-            decision.epoch,
+            self._terms.epoch,
         )
-        self._ports.journal("intended", request)
-        outcome = await self._ports.activate(request, decision.action)
-        self._ports.journal("outcome", outcome)
-        return outcome
 
     async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> None:
         before_s = self._ports.clock.monotonic_s()
         update = await self._updated_belief(decision, outcome)
         update_s = self._ports.clock.monotonic_s() - before_s
-        remark = self._failures.take(
-            decision,
-            outcome,
-            is_excluded=update.is_excluded,
-            surprise=update.surprise,
-            now_s=self._ports.clock.monotonic_s(),
-            announced=self._ports.announced,
-        )
+        remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
         record = msgspec.structs.replace(
             decision,
             sequence=len(self.records),
             stamp_ns=self._ports.clock.now_ns(),
+            epoch=self._terms.epoch,
             belief=update.summary,
             outcome=outcome,
             surprise=update.surprise,
@@ -195,6 +250,18 @@ class Mission:
         )
         self._publish(record)
         self.belief = update.summary
+
+    def _take_failure(
+        self, decision: DecisionRecord, outcome: Outcome, update: BeliefUpdate, now_s: float
+    ) -> str:
+        return self._failures.take(
+            decision,
+            outcome,
+            is_excluded=update.is_excluded,
+            surprise=update.surprise,
+            now_s=now_s,
+            announced=self._ports.announced,
+        )
 
     async def _updated_belief(self, decision: DecisionRecord, outcome: Outcome) -> BeliefUpdate:
         """The belief after an outcome; without an observation by how probable it is that the skill ran."""

@@ -66,6 +66,11 @@ class RiskBudget:
         self._remaining = [max(constraint.left - constraint.risk, 0.0) for constraint in spent]
         return spent
 
+    def take_up(self, constraints: Sequence[ConstraintRisk]) -> None:
+        """Leaves of the budget what a decision of before has left."""
+        if constraints:
+            self._remaining = [max(constraint.left - constraint.risk, 0.0) for constraint in constraints]
+
     def remark(self, risks: Risks) -> str:
         """Says why no action can be chosen."""
         refused = []
