@@ -68,7 +68,7 @@ def exit_code_of_error(error: AosError) -> ExitCode:
 
 
 def _before_the_mission(code: str) -> ExitCode:
-    if code.startswith(("AOS1", "AOS32")) or code in ("AOS201", "AOS801", "AOS808"):
+    if code.startswith(("AOS1", "AOS32")) or code in ("AOS201", "AOS801", "AOS808", "AOS810"):
         return ExitCode.DOCUMENTS_WRONG
     if code.startswith(("AOS6", "AOS8")) or code in ("AOS202", "AOS203", "AOS701"):
         return ExitCode.NOT_STARTED

@@ -24,6 +24,7 @@ from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
 from aos_deploy.run_end import settled
 from aos_deploy.supervisor import Supervisor, supervised
+from aos_deploy.taking_up import TakenUp
 from aos_deploy.verdict import Account, Verdict
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError
@@ -49,15 +50,26 @@ _BUILD_TIMEOUT_S = 600.0
 
 
 class MissionRun:
-    """Runs a deployment once. `report` is told what happens, as it happens."""
+    """Runs a deployment once, or goes on with a run that is `taken_up`. `report` is told what happens."""
 
-    def __init__(self, deployment: Deployment, report: Report, clock: Clock) -> None:
+    def __init__(
+        self,
+        deployment: Deployment,
+        report: Report,
+        clock: Clock,
+        *,
+        taken_up: TakenUp | None = None,
+        is_played: bool = False,
+    ) -> None:
         self._deployment = deployment
         self._report = report
         self._clock = clock
+        self._taken_up = taken_up
+        self._is_played = is_played or (taken_up is not None and taken_up.record.is_played)
         self._begun_s = clock.monotonic_s()
         self.error: AosError | None = None
-        self._started = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
+        now = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
+        self._started = now if taken_up is None else taken_up.record.started
         self._supervisor: Supervisor | None = None
         self._seen = Account()
         self._own_pushes: set[str] = set()
@@ -75,7 +87,7 @@ class MissionRun:
             return await self._run_at(endpoint)
 
     async def _run_at(self, endpoint: str) -> Summary:
-        run = RunDirectory.create(self._deployment.runs, self._deployment.file.robot, self._clock.now_ns())
+        run = self._run_directory()
         self._report(Told(f"run directory {from_here(run.path)}"))
         was_interrupted = False
         try:
@@ -99,6 +111,11 @@ class MissionRun:
         self._report(Told(f"{verdict.ending} after {took}; everything is kept in {from_here(run.path)}"))
         return summary
 
+    def _run_directory(self) -> RunDirectory:
+        if self._taken_up is not None:
+            return self._taken_up.run
+        return RunDirectory.create(self._deployment.runs, self._deployment.file.robot, self._clock.now_ns())
+
     def kill(self) -> None:
         """Ends every process without waiting for it."""
         if self._supervisor is not None:
@@ -110,6 +127,8 @@ class MissionRun:
             robot=deployment.file.robot, service="", endpoint=endpoint, run_dir=str(run.path)
         )
         programs = programs_of_deployment(deployment)
+        for program in programs:
+            run.forget_fault(program.name)
         await asyncio.to_thread(check_constraints_of, deployment)
         try:
             async with supervised(programs, base, run, self._report, self._clock) as supervisor:
@@ -148,6 +167,8 @@ class MissionRun:
         )
 
     async def _push_bundles(self, supervisor: Supervisor) -> None:
+        if self._taken_up is not None and self._taken_up.has_begun:
+            return  # The catalogue has them, and what came after them.
         await supervisor.until_ready("registry")
         for bundle in self._deployment.bundles:
             await self._push(supervisor, bundle)
@@ -212,6 +233,7 @@ class MissionRun:
                 started=self._started,
                 pid=os.getpid(),
                 pids=supervisor.pids,
+                is_played=self._is_played,
             )
         )
 

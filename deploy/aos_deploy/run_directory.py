@@ -32,7 +32,7 @@ LATEST = "latest"
 
 
 class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """`run.json`. `pid` is that of aos-up."""
+    """`run.json`. `pid` is that of aos-up. `is_played` says that skills are played by their documents."""
 
     robot: str
     endpoint: str
@@ -41,6 +41,7 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     started: str
     pid: int
     pids: dict[str, int] = {}
+    is_played: bool = False
 
 
 class ProcessEnd(msgspec.Struct, frozen=True):
@@ -85,6 +86,8 @@ class RunDirectory:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.keeps_settings = False
+        """True where services have the settings that they had when the run was started."""
         self._lock: int | None = None
 
     @classmethod
@@ -133,6 +136,8 @@ class RunDirectory:
     def write_settings(self, service: str, settings: dict[str, Any]) -> Path:
         """Writes the settings of a service, and returns their path; StorageError AOS701 if that cannot be."""
         path = self.path / "settings" / f"{service}.json"
+        if self.keeps_settings and path.exists():
+            return path
         with _kept(path):
             path.write_bytes(_pretty(settings))
         return path

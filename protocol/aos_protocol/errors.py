@@ -136,6 +136,7 @@ CODES: dict[str, str] = {
     "AOS807": "a path that nobody serves",
     "AOS808": "an experiment or a file of mission tests is not valid",
     "AOS809": "a Ray cluster that cannot be used",
+    "AOS810": "a run that cannot be taken up",
 }
 """Every code with its meaning; docs/errors.md is made from this table."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import re
@@ -262,6 +263,28 @@ def test_a_service_that_dies_is_started_again_and_the_mission_goes_on(deploy_fil
         assert running.rest() in ENDINGS.values()
     assert max(event.get("step", 0) for event in running.events) > 1
     assert f"{victim}" in [end["name"] for end in summary_of(deploy_file)["process_ends"]]
+
+
+def test_a_run_whose_aos_up_was_killed_goes_on_where_it_was(deploy_file: Path) -> None:
+    with up(short_mission(deploy_file)) as running:
+        running.until("decision")
+        os.kill(running.process.pid, signal.SIGKILL)
+        running.process.wait()
+    asyncio.run(until_ended(running.pids))
+    run = latest(deploy_file)
+    with up(run, "--resume") as resumed:
+        assert resumed.rest() in ENDINGS.values()
+    assert latest(deploy_file) == run
+    steps = [event["step"] for event in resumed.events if event["event"] == "decision"]
+    assert steps == sorted(steps)
+    assert steps[0] == 1
+    with Journal.read(run / "journal.db") as journal:
+        begun = [json.loads(row.payload)["epoch"] for row in journal.rows("begun")]
+    assert begun == [1, 2]
+    assert subprocess.run([BIN / "aos", "check", run], capture_output=True, check=False).returncode == 0
+    with up(run, "--resume") as refused_run:
+        assert refused_run.rest() == 1
+        assert "AOS810" in refused_run.error_text()
 
 
 def test_the_engine_child_may_be_killed(deploy_file: Path) -> None:

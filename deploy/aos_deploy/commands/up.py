@@ -27,7 +27,15 @@ def register(app: typer.Typer) -> None:
 
 
 def up(
-    deploy: Annotated[Path, typer.Argument(metavar="DEPLOY", help="The deploy file")],
+    deploy: Annotated[
+        Path | None, typer.Argument(metavar="DEPLOY", help="The deploy file; with --resume a run directory")
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume", help="Go on with a run whose aos-up has died, by default with the last one in ./runs"
+        ),
+    ] = False,
     seed: Annotated[
         int | None, typer.Option(min=0, help="Seed of the planner and of the world, in place of the file's")
     ] = None,
@@ -62,13 +70,22 @@ def up(
     import asyncio
 
     from aos_deploy.deploy_file import check_endpoint, read_deploy_file, without_a_robot
+    from aos_deploy.living_runs import RUNS
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
     from aos_deploy.needed_here import check_needed_here
+    from aos_deploy.run_directory import LATEST
     from aos_deploy.serve_run import ServeRun
+    from aos_deploy.taking_up import take_up
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
 
-    deployment = read_deploy_file(deploy)
+    if resume:
+        _refuse_beside_resume(seed=seed, listen=listen, runs=runs, model=model or None, serve=serve)
+        deployment, taken_up = take_up(deploy or RUNS / LATEST)
+    elif deploy is None:
+        raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
+    else:
+        deployment, taken_up = read_deploy_file(deploy), None
     file = deployment.file
     if seed is not None:
         file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
@@ -81,10 +98,10 @@ def up(
     if model:
         deployment = without_a_robot(deployment)
     check_needed_here(deployment)
-    title = f"{file.robot} · {deploy.name}"
+    title = f"{file.robot} · {deployment.path.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
     mission: MissionRun | ServeRun = (
-        MissionRun(deployment, view, SystemClock())
+        MissionRun(deployment, view, SystemClock(), taken_up=taken_up, is_played=model)
         if serve is None
         else ServeRun(deployment, serve, view, SystemClock())
     )
@@ -93,3 +110,11 @@ def up(
     if mission.error is not None:
         print_fault("aos-up", mission.error)
     raise typer.Exit(code)
+
+
+def _refuse_beside_resume(**options: object) -> None:
+    """BadParameter for an option that a run which goes on has already."""
+    given = [f"--{name}" for name, value in options.items() if value is not None]
+    if given:
+        text = "a run that goes on has what it was started with"
+        raise typer.BadParameter(text, param_hint=", ".join(given))

@@ -1,0 +1,67 @@
+"""A run whose `aos-up` has died, made ready to go on: the same folder, settings and documents."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.deploy_file import Deployment, read_deploy_file, without_a_robot
+from aos_deploy.run_directory import RunDirectory, RunRecord
+from aos_protocol.errors import DeployError
+from aos_runtime.journal import Journal
+from aos_solver.mission.memory import MissionMemory, folded
+
+__all__ = ["TakenUp", "take_up"]
+
+
+class TakenUp(msgspec.Struct, frozen=True):
+    """A run that goes on: its folder, which is locked now, and its record."""
+
+    run: RunDirectory
+    record: RunRecord
+    has_begun: bool
+    """True where the mission had begun, so that the documents are in the catalogue."""
+
+
+def take_up(path: Path) -> tuple[Deployment, TakenUp]:
+    """The deployment of a run as it was started, and the run.
+
+    DeployError AOS801 if the path is no run, AOS810 if the run goes on or its mission has ended. StorageError
+    AOS702 if its journal is damaged.
+    """
+    run = RunDirectory(path.resolve())
+    record = run.read_record()
+    if not run.hold():
+        raise DeployError(
+            f"{run.path.name} goes on",
+            code="AOS810",
+            hint="Follow it with `aos decisions`, or end it with a signal to its aos-up",
+        )
+    memory = _memory(run)
+    if memory.has_ended and memory.state is not None:
+        raise DeployError(
+            f"{run.path.name} has ended: {memory.state.ending}",
+            code="AOS810",
+            hint="Start a new run with aos-up and the deploy file",
+        )
+    run.keeps_settings = True
+    deployment = read_deploy_file(Path(record.deploy_file))
+    if record.is_played:
+        deployment = without_a_robot(deployment)
+    file = deployment.file
+    file = msgspec.structs.replace(
+        file,
+        solver=msgspec.structs.replace(file.solver, seed=record.seed),
+        bus=msgspec.structs.replace(file.bus, listen=record.endpoint),
+    )
+    deployment = msgspec.structs.replace(deployment, file=file, runs=run.path.parent)
+    return deployment, TakenUp(run, record, memory.epoch > 0)
+
+
+def _memory(run: RunDirectory) -> MissionMemory:
+    path = run.path / "journal.db"
+    if not path.exists():
+        return MissionMemory()  # It died before the solver was there.
+    with Journal.read(path) as journal:
+        return folded(journal.rows())
