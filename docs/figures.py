@@ -2,7 +2,7 @@
 
 A page has one table of figures, between `<!-- figures -->` and `<!-- end -->`. The table's head says when
 it was measured, at which commit and on which machine, and the table has what the commands print. `linting`
-takes some minutes and `performance` ten, longer beside other work. `--show` prints and changes no page.
+takes some minutes, `performance` ten and `reliability` one, longer beside other work. `--show` prints and changes no page.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,11 +40,17 @@ LINTING = (
         "no crash, each below 1 s", 20,
     ),
 )  # fmt: skip
+RELIABILITY = (
+    Row(
+        "a long history reaches a late joiner",
+        ("python", "-m", "tests.long_history"), "in order; either side grows below 50 MB", 3,
+    ),
+)  # fmt: skip
 PERFORMANCE = ("aos", "bench", "--quick", "--metric", "steps", "--metric", "simulations", "--markdown")
 
 
-def linting() -> str:
-    """The rows of `LINTING`, measured now."""
+def measured(rows: tuple[Row, ...]) -> str:
+    """A table of rows, measured now."""
     machine = this_machine("", 0, 0.0)
     where = f"{machine.processor}, {machine.cores} cores, load {machine.load:.1f}"
     lines = [
@@ -52,7 +59,7 @@ def linting() -> str:
         "| What | Command | Result | Target |",
         "| --- | --- | --- | --- |",
     ]
-    for row in LINTING:
+    for row in rows:
         printed = [line.strip() for line in _printed(row.command).splitlines() if line.strip()]
         result = ", ".join(printed[-row.lines :])
         lines.append(f"| {row.what} | `{' '.join(row.command)}` | {result} | {row.target} |")
@@ -64,7 +71,11 @@ def performance() -> str:
     return f"`{' '.join(PERFORMANCE)}`, commit {_commit()}.\n{_printed(PERFORMANCE).strip()}"
 
 
-FIGURES = {"linting": linting, "performance": performance}
+FIGURES = {
+    "linting": partial(measured, LINTING),
+    "performance": performance,
+    "reliability": partial(measured, RELIABILITY),
+}
 
 
 def _printed(command: tuple[str, ...]) -> str:

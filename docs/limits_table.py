@@ -137,6 +137,10 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "ending `step_limit`", "`mission.step_limit`",
         ),
         Row(
+            "one answer with decision records",
+            "aos_solver.mission.history.PAGE_RECORDS", "", "the next page has the rest",
+        ),
+        Row(
             "an activation", "aos_deploy.deploy_file.MissionPart.activation_timeout_s", "s",
             "outcome `timed_out`", "`mission.activation_timeout_s`, `max_duration`",
         ),

@@ -7,11 +7,12 @@ async with AosClient.connect("tcp/127.0.0.1:7447", "armadillo") as aos:
 
 from __future__ import annotations
 
+import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
-from aos_protocol.errors import BusError
+from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     BundleReport,
@@ -28,6 +29,11 @@ from aos_runtime.subscription import Subscription, merged
 __all__ = ["AosClient", "DecisionFeed"]
 
 _HISTORY_TIMEOUT_S = 5.0
+_PAGE_RECORDS = 1000
+_HISTORY_TRIES = 3
+"""A solver that builds or plans on all cores may be late with an answer."""
+
+_log = logging.getLogger("aos.client")
 
 SOLVER_AWAY_S = 15.0
 """A solver that is started again is back within this time."""
@@ -92,11 +98,11 @@ class AosClient:
                 if isinstance(event, MissionState):
                     state = event
                 is_over = state is not None and state.phase == "ended"
-                ready = feed.take(event) if isinstance(event, DecisionRecord) else []
-                if feed.has_gap or event is True or is_over:
-                    ready += feed.take_history(await self._history(feed.next_sequence))
-                for record in ready:
+                for record in feed.take(event) if isinstance(event, DecisionRecord) else ():
                     yield record
+                if feed.has_gap or event is True or is_over:
+                    async for record in self._missing(feed):
+                        yield record
                 if state is not None:
                     yield state
                 if isinstance(event, BundleReport):
@@ -104,14 +110,44 @@ class AosClient:
                 if is_over:
                     return
 
-    async def _history(self, since: int) -> History:
-        """Asks the solver for its records; none if it has gone."""
-        try:
-            return await self.bus.ask(
-                self.keys.decision_history, HistoryQuery(since), History, timeout_s=_HISTORY_TIMEOUT_S
-            )
-        except BusError:
-            return History("", ())
+    async def history(self) -> AsyncIterator[DecisionRecord]:
+        """Every record that there is by now, page after page.
+
+        NobodyAnswersError if there is no solver; BusError if it does not answer.
+        """
+        page = await self._page(0)
+        while page.records:
+            for record in page.records:
+                yield record
+            if not page.has_more:
+                return
+            page = await self._page(page.records[-1].sequence + 1)
+
+    async def _missing(self, feed: DecisionFeed) -> AsyncIterator[DecisionRecord]:
+        """The records from the history that the feed lacks; none if the solver has gone."""
+        has_more = True
+        while has_more:
+            since = feed.next_sequence
+            try:
+                page = await self._page(since)
+            except (NobodyAnswersError, LostAnswerError):
+                return
+            except BusError as error:
+                _log.warning("the history from record %d on is missing: %s", since, error)
+                return
+            for record in feed.take_history(page):
+                yield record
+            # Those of another mission begin anew.
+            has_more = feed.next_sequence < since or (page.has_more and feed.next_sequence > since)
+
+    async def _page(self, since: int) -> History:
+        key, query = self.keys.decision_history, HistoryQuery(since, _PAGE_RECORDS)
+        for _ in range(_HISTORY_TRIES - 1):
+            try:
+                return await self.bus.ask(key, query, History, timeout_s=_HISTORY_TIMEOUT_S)
+            except LateAnswerError as error:
+                _log.info("%s; asked again", error)
+        return await self.bus.ask(key, query, History, timeout_s=_HISTORY_TIMEOUT_S)
 
     async def _state_if_there(self) -> MissionState | None:
         try:

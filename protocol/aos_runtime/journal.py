@@ -130,6 +130,15 @@ class Journal:
         assert cursor.lastrowid is not None
         return cursor.lastrowid
 
+    @property
+    def last(self) -> int:
+        """The number of the last row, 0 in an empty journal."""
+        try:
+            (last,) = self._connection.execute("SELECT coalesce(max(seq), 0) FROM entries").fetchone()
+        except sqlite3.Error as error:
+            raise _fault("AOS702", self._path, error) from error
+        return int(last)
+
     def rows(self, kind: str | None = None, since: int = 0) -> list[JournalRow]:
         """The rows numbered `since` and above, of one kind or of all."""
         return list(self.walk(kind, since))

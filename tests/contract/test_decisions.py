@@ -51,6 +51,9 @@ class Storyteller:
     def __init__(self, bus: Bus, keys: Keys) -> None:
         self.told: list[DecisionRecord] = []
         self.state = MissionState("m", "acting", 1, 0.5)
+        self.page = 1000
+        self.pages = 0
+        self.is_late = False
         self._bus = bus
         self._keys = keys
 
@@ -70,7 +73,12 @@ class Storyteller:
         self._bus.tell(self._keys.mission_state, self.state)
 
     async def _history(self, query: HistoryQuery, _: str) -> Message:
-        return History("m", tuple(self.told[query.since :]))
+        if self.is_late:
+            self.is_late = False
+            await asyncio.Event().wait()
+        end = query.since + self.page
+        self.pages += 1
+        return History("m", tuple(self.told[query.since : end]), has_more=len(self.told) > end)
 
     async def _state(self, _: MissionQuery, __: str) -> Message:
         return self.state
@@ -107,6 +115,28 @@ async def test_who_joins_late_gets_everything_from_the_first_step(
     solver.decide()
     solver.end()
     assert [decision.sequence async for decision in following] == [5]
+
+
+async def test_a_long_history_comes_page_after_page(client: AosClient, solver: Storyteller) -> None:
+    solver.page = 3
+    await solver.appear()
+    for _ in range(10):
+        solver.decide()
+    assert [record.sequence async for record in client.history()] == list(range(10))
+    assert solver.pages == 4
+    solver.end()
+    assert await sequences(client) == list(range(10))
+
+
+async def test_a_history_that_is_late_is_asked_for_again(
+    client: AosClient, solver: Storyteller, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("aos_runtime.client._HISTORY_TIMEOUT_S", 0.3)
+    await solver.appear()
+    solver.decide(is_lost=True)
+    solver.end()
+    solver.is_late = True
+    assert [record.sequence async for record in client.history()] == [0]
 
 
 async def test_who_comes_before_the_solver_waits_for_it(client: AosClient, solver: Storyteller) -> None:
@@ -184,6 +214,24 @@ def test_a_feed_gives_each_record_once_and_in_order() -> None:
     history = History("m", (record(1), record(2), record(3)))
     assert [r.sequence for r in feed.take_history(history)] == [1, 2, 3]
     assert not feed.has_gap
+
+
+async def test_a_solver_of_another_mission_is_followed_from_its_first_record(
+    endpoint: str, client: AosClient, solver: Storyteller, keys: Keys
+) -> None:
+    async with await Bus.open(endpoint, sender="first") as mortal:
+        first = Storyteller(mortal, keys)
+        await first.appear()
+        for _ in range(3):
+            first.decide()
+        following = client.decisions()
+        assert [(await anext(following)).sequence for _ in range(3)] == [0, 1, 2]
+    solver.page = 2
+    solver.told = [record(number, mission="next") for number in range(5)]
+    await solver.appear()
+    solver.end()
+    told = [decision async for decision in following]
+    assert [(each.mission, each.sequence) for each in told] == [("next", number) for number in range(5)]
 
 
 def test_another_mission_starts_from_its_first_record() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
@@ -12,15 +12,12 @@ from aos_deploy.living_runs import chosen_run
 from aos_deploy.run_directory import RunDirectory
 from aos_deploy.running_system import System, on_system
 from aos_deploy.views.lines import lines_of
-from aos_protocol.errors import StorageError
-from aos_protocol.messages import DecisionRecord, History, HistoryQuery, MissionState
+from aos_protocol.messages import DecisionRecord, MissionState
 
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
 
 __all__ = ["register"]
-
-_ANSWER_TIMEOUT_S = 5.0
 
 Show = Callable[[DecisionRecord | MissionState], None]
 
@@ -68,29 +65,21 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
     return [f"         {event.planner}: {event.why}"]
 
 
-def _journaled(directory: RunDirectory) -> list[DecisionRecord | MissionState]:
+def _journaled(directory: RunDirectory) -> Iterator[DecisionRecord | MissionState]:
     """The decisions of a mission that is over, and how it ended."""
+    from aos_deploy.verdict import message_of_row
     from aos_runtime.journal import Journal
 
-    events: list[DecisionRecord | MissionState] = []
-    try:
-        with Journal.read(directory.path / "journal.db") as journal:
-            for row in journal.rows():
-                if row.kind == "decision":
-                    events.append(msgspec.json.decode(row.payload, type=DecisionRecord))
-                elif row.kind == "mission":
-                    state = msgspec.json.decode(row.payload, type=MissionState)
-                    events += [state] if state.phase == "ended" else []
-    except msgspec.MsgspecError as error:
-        raise StorageError(f"the journal in {directory.path}: {error}", code="AOS702") from error
-    return events
+    with Journal.read(directory.path / "journal.db") as journal:
+        for row in journal.walk():
+            event = message_of_row(row)
+            if isinstance(event, DecisionRecord) or (event is not None and event.phase == "ended"):
+                yield event
 
 
 async def _stream(aos: AosClient, show: Show, *, is_following: bool) -> None:
     if not is_following:
-        key = aos.keys.decision_history
-        history = await aos.bus.ask(key, HistoryQuery(), History, timeout_s=_ANSWER_TIMEOUT_S)
-        for record in history.records:
+        async for record in aos.history():
             show(record)
         return
     async for event in aos.follow():

@@ -229,13 +229,21 @@ class DecisionRecord(Message, frozen=True):
 
 
 class HistoryQuery(Message, frozen=True):
-    """Asks for the decision records with a sequence number of at least `since`."""
+    """Asks for the decision records with a sequence number of at least `since`, at most `limit` of them.
+
+    With a limit of 0 there are as many as the answer's size allows.
+    """
 
     since: int = 0
+    limit: int = 0
 
 
 class History(Message, frozen=True):
-    """Decision records in order of their sequence numbers, and the mission they belong to."""
+    """Decision records in order of their sequence numbers, and the mission they belong to.
+
+    An answer is one page: where it `has_more`, the next one begins after its last record.
+    """
 
     mission: str
     records: tuple[DecisionRecord, ...]
+    has_more: bool = False

@@ -45,6 +45,7 @@ from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.failures import FailureRules
+from aos_solver.mission.history import history_page
 from aos_solver.mission.hot_plug import ModelShelf, RunningModel
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import BEGUN, folded
@@ -85,8 +86,9 @@ class _Solver:
         self._bus = service.bus
         self._keys = service.keys
         self._settings = settings
-        self._journal = Journal.open(Path(settings.run_dir) / "journal.db")
-        self._memory = folded(self._journal.rows())
+        self._journal_path = Path(settings.run_dir) / "journal.db"
+        self._journal = Journal.open(self._journal_path)
+        self._memory = folded(self._journal.walk())
         self._shelf = ModelShelf(
             Path(settings.cache_dir),
             self._report_progress,
@@ -155,8 +157,7 @@ class _Solver:
         return self._state()
 
     async def _answer_history(self, query: HistoryQuery, _: str) -> History:
-        records = self._mission.records if self._mission else self._memory.records
-        return History(self._name, tuple(records[max(query.since, 0) :]))
+        return await asyncio.to_thread(history_page, self._journal_path, self._name, query)
 
     async def _check(self, question: CheckModel, _: str) -> ModelCheck:
         return ModelCheck(await self._shelf.check(question.project, self._running))

@@ -1,0 +1,65 @@
+"""The decision records of a mission, page by page out of its journal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from aos_protocol.errors import StorageError
+from aos_protocol.messages import DecisionRecord, History, HistoryQuery
+from aos_runtime.journal import Journal, JournalRow
+
+__all__ = ["PAGE_BYTES", "PAGE_RECORDS", "history_page"]
+
+PAGE_BYTES = 2**20
+"""A page ends with the record that exceeds it. As objects it takes some ten times the memory."""
+PAGE_RECORDS = 1000
+
+
+T = TypeVar("T")
+
+
+class _Numbered(msgspec.Struct, frozen=True):
+    """The part of a record that its place depends on."""
+
+    sequence: int
+
+
+def history_page(journal: Path, mission: str, query: HistoryQuery) -> History:
+    """The records that the query asks for, as many as fit a page; StorageError AOS702 for a damaged row.
+
+    The memory it takes is that of a page, however long the journal is.
+    """
+    limit = min(query.limit or PAGE_RECORDS, PAGE_RECORDS)
+    records: list[DecisionRecord] = []
+    size_bytes = 0
+    with Journal.read(journal) as rows:
+        for row in _rows_since(rows, query.since):
+            if len(records) == limit or size_bytes >= PAGE_BYTES:
+                return History(mission, tuple(records), has_more=True)
+            records.append(_decoded(row, DecisionRecord))
+            size_bytes += len(row.payload)
+    return History(mission, tuple(records))
+
+
+def _rows_since(journal: Journal, sequence: int) -> Iterator[JournalRow]:
+    """The rows of the records from a sequence number on, found by halving: the numbers rise with the rows."""
+    low, high = 1, journal.last + 1
+    while low < high:
+        middle = (low + high) // 2
+        row = next(journal.walk("decision", middle), None)
+        if row is None or _decoded(row, _Numbered).sequence >= sequence:
+            high = middle
+        else:
+            low = row.seq + 1
+    return journal.walk("decision", low)
+
+
+def _decoded(row: JournalRow, kind: type[T]) -> T:
+    try:
+        return msgspec.json.decode(row.payload, type=kind)
+    except msgspec.MsgspecError as error:
+        raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error

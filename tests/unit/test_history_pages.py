@@ -1,0 +1,91 @@
+"""Histories in pages, out of a journal: every record once, in order, whatever stands between them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_protocol.errors import StorageError
+from aos_protocol.messages import BeliefSummary, DecisionRecord, HistoryQuery, MissionState
+from aos_runtime.journal import Journal
+from aos_solver.mission import history
+from aos_solver.mission.history import history_page
+
+COUNT = 23
+
+
+def record(sequence: int) -> DecisionRecord:
+    return DecisionRecord(
+        sequence=sequence,
+        stamp_ns=0,
+        mission="m",
+        epoch=1,
+        step=sequence // 2 + 1,
+        action="look",
+        skill="look",
+        parameters={},
+        model_digest="d",
+        revision=1,
+        seed=1,
+        simulations=1,
+        horizon=1,
+        planning_s=0.0,
+        actions=(),
+        predicted=(),
+        belief=BeliefSummary((), 0.0, 0.0, 0.0, 1, True),
+    )
+
+
+@pytest.fixture
+def journal(tmp_path: Path) -> Path:
+    """Records with none, one or more rows of other kinds between them."""
+    path = tmp_path / "journal.db"
+    with Journal.open(path, survives_power_loss=False) as rows:
+        for sequence in range(COUNT):
+            for _ in range(sequence % 4):
+                rows.append("mission", MissionState("m", "planning", 1, 0.0))
+            rows.append("decision", record(sequence))
+    return path
+
+
+def sequences(journal: Path, since: int, limit: int = 0) -> tuple[list[int], bool]:
+    page = history_page(journal, "m", HistoryQuery(since, limit))
+    assert page.mission == "m"
+    return [each.sequence for each in page.records], page.has_more
+
+
+@pytest.mark.parametrize("limit", [1, 2, 7, COUNT - 1, COUNT])
+def test_page_after_page_has_every_record_once_and_in_order(journal: Path, limit: int) -> None:
+    told: list[int] = []
+    has_more = True
+    while has_more:
+        page, has_more = sequences(journal, len(told), limit)
+        assert len(page) == min(limit, COUNT - len(told))
+        told += page
+    assert told == list(range(COUNT))
+
+
+@pytest.mark.parametrize("since", range(-1, COUNT + 2))
+def test_a_page_begins_where_it_is_asked_to(journal: Path, since: int) -> None:
+    assert sequences(journal, since) == (list(range(max(since, 0), COUNT)), False)
+
+
+def test_a_page_is_no_larger_than_its_size_and_one_record(
+    journal: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(history, "PAGE_BYTES", 1)
+    assert sequences(journal, 5) == ([5], True)
+    assert sequences(journal, COUNT - 1) == ([COUNT - 1], False)
+
+
+def test_a_mission_without_a_decision_has_an_empty_history(tmp_path: Path) -> None:
+    with Journal.open(tmp_path / "journal.db"):
+        assert sequences(tmp_path / "journal.db", 0) == ([], False)
+
+
+def test_a_damaged_record_is_told_with_its_row(journal: Path) -> None:
+    journal.write_bytes(journal.read_bytes().replace(b'"sequence":5,', b'"sequence":x,'))
+    with pytest.raises(StorageError, match=r"row \d+ of the journal: JSON is malformed") as raised:
+        sequences(journal, 5)
+    assert raised.value.code == "AOS702"
