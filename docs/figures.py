@@ -2,7 +2,8 @@
 
 A page has one table of figures, between `<!-- figures -->` and `<!-- end -->`. The table's head says when
 it was measured, at which commit and on which machine, and the table has what the commands print. `linting`
-takes some minutes, `performance` ten and `reliability` one, longer beside other work. `--show` prints and changes no page.
+takes some minutes, `performance` ten and `reliability` one, longer beside other work. `--show` prints and
+changes no page.
 """
 
 from __future__ import annotations
