@@ -19,7 +19,8 @@ DEADLINE_S = 20.0
 
 
 async def talk(domain: int) -> None:
-    """AssertionError if the other program is not found or says something else, TimeoutError if nothing."""
+    """Raises AssertionError if the other program is not found or says something else, TimeoutError if
+    nothing."""
     async with DdsNode(RosTypes(), domain=domain) as node:
         received: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
         found = await node.topic("/from_fast", DEADLINE_S)

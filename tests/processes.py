@@ -68,5 +68,5 @@ def has_listener(port: int) -> bool:
 
 
 def kill(pid: int) -> None:
-    """SIGKILL."""
+    """Kills the process with SIGKILL."""
     os.kill(pid, signal.SIGKILL)

@@ -62,7 +62,7 @@ class Walk:
             self._background.communicate()
 
     def do(self, step: Step) -> None:
-        """CalledProcessError or TimeoutExpired if a command does not do what the page says."""
+        """Raises CalledProcessError or TimeoutExpired if a command does not do what the page says."""
         if step.kind.startswith("file: "):
             self._write(step.kind.removeprefix("file: "), step.text)
         elif step.kind == "run in the background":

@@ -29,7 +29,7 @@ __all__ = ["Wrong", "WrongRobot", "tried_by_model", "tried_in_physics", "wrong_r
 
 
 class WrongRobot(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """See the head of `wrong_robots.yaml`."""
+    """A robot of `wrong_robots.yaml`; see its head."""
 
     does: tuple[str, ...] = ()
     believes: str = "scripted"

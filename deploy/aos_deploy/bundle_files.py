@@ -45,7 +45,7 @@ def project_of(deployment: Deployment) -> Project:
 
 
 def check_constraints_of(deployment: Deployment) -> None:
-    """DeployError AOS801 with what is wrong with the constraints; the registry tells of documents."""
+    """Raises DeployError AOS801 with what is wrong with the constraints; the registry tells of documents."""
     if not deployment.constraints:
         return
     try:

@@ -77,7 +77,7 @@ def up_main() -> NoReturn:
 
 
 def _needed_modules(arguments: Sequence[str]) -> list[str]:
-    """Only the module of the command that is called, so that others' imports cost nothing."""
+    """Returns only the module of the command that is called, so that others' imports cost nothing."""
     words = arguments or _words_to_complete()
     called = [module for module, names in _COMMANDS.items() if words and words[0] in names]
     return called or list(_COMMANDS)

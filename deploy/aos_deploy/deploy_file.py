@@ -199,7 +199,8 @@ def without_a_robot(deployment: Deployment, faults: Mapping[str, float] | None =
 
 
 def check_endpoint(endpoint: str) -> None:
-    """DeployError AOS801 unless it is one of this machine alone: everything else needs protection first."""
+    """Raises DeployError AOS801 unless it is one of this machine alone: everything else needs protection
+    first."""
     if not _ENDPOINT.fullmatch(endpoint):
         raise DeployError(
             f"{endpoint!r} is not an endpoint of this machine",

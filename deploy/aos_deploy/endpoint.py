@@ -67,7 +67,7 @@ def _has_taken(name: socket.socket, port: int) -> bool:
 
 
 def _try_to_bind(address: str, port: int) -> None:
-    """OSError if somebody listens there."""
+    """Raises OSError if somebody listens there."""
     family = socket.AF_INET6 if "[" in address else socket.AF_INET
     with socket.socket(family) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -15,7 +15,8 @@ __all__ = ["check_needed_here", "needs_of"]
 
 
 def check_needed_here(deployment: Deployment) -> None:
-    """DeployError AOS805 for a package or ssh that is missing, AOS802 for a program that is not there."""
+    """Raises DeployError AOS805 for a package or ssh that is missing, AOS802 for a program that is not
+    there."""
     for _, _, check in needs_of(deployment):
         check()
 

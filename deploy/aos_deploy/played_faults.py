@@ -26,7 +26,7 @@ class PlayedFaults(msgspec.Struct, frozen=True):
     chances: Mapping[str, float] = {}
 
     def check(self, skills: Iterable[str]) -> None:
-        """DeployError for a fault or a skill that is not known, and for what is no probability."""
+        """Raises DeployError for a fault or a skill that is not known, and for what is no probability."""
         known = sorted(skills)
         for name, chance in self.chances.items():
             skill, _, fault = name.rpartition(".")

@@ -52,7 +52,8 @@ _WHERE = "Paths of commands are relative to the deploy file's folder"
 
 
 def check_command(name: str, command: tuple[str, ...], folder: Path) -> None:
-    """DeployError AOS802 if the first word of a command names nothing that can be started in the folder."""
+    """Raises DeployError AOS802 if the first word of a command names nothing that can be started in the
+    folder."""
     program = command[0]
     is_python = re.fullmatch(r"python[0-9.]*", Path(program).name)
     if is_python and command[1:] and command[1].endswith(".py") and not (folder / command[1]).is_file():

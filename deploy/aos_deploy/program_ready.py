@@ -45,7 +45,7 @@ async def until_seen_ready(ready: ReadyPart, log: Path, log_start: int, folder: 
 
 
 async def check_port_is_free(name: str, ready: ReadyPart | None) -> None:
-    """DeployError AOS802 if somebody else serves the port by which the program is to be seen."""
+    """Raises DeployError AOS802 if somebody else serves the port by which the program is to be seen."""
     if ready is not None and ready.port is not None and await _is_served(ready.address, ready.port):
         where = f"{ready.address}:{ready.port}"
         raise DeployError(

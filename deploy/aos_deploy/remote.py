@@ -67,7 +67,7 @@ _HINTS = {
 
 
 def check_ssh(adapter: str, host: str) -> None:
-    """DeployError AOS805 if this machine has no ssh."""
+    """Raises DeployError AOS805 if this machine has no ssh."""
     if shutil.which("ssh") is None:
         raise DeployError(
             f"the adapter {adapter} is to run on {host}, and there is no program ssh here",

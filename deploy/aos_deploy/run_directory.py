@@ -187,7 +187,7 @@ class RunDirectory:
             link.replace(self.path.with_name(LATEST))
 
     def read_record(self) -> RunRecord:
-        """DeployError AOS801 if this is not a run directory."""
+        """Returns the record; DeployError AOS801 if this is not a run directory."""
         path = self.path / "run.json"
         try:
             return msgspec.json.decode(path.read_bytes(), type=RunRecord)
@@ -199,7 +199,7 @@ class RunDirectory:
         _write_whole(self.path / "summary.json", _pretty(summary))
 
     def read_summary(self) -> Summary | None:
-        """None while the mission runs, or if aos-up was killed."""
+        """Returns the summary; None while the mission runs, or if aos-up was killed."""
         try:
             return msgspec.json.decode((self.path / "summary.json").read_bytes(), type=Summary)
         except (OSError, msgspec.MsgspecError):

@@ -97,7 +97,8 @@ class Bundle(msgspec.Struct, frozen=True):
         return next((occurrence for occurrence in self.of(symbol) if occurrence.is_declaration), None)
 
     def check_rename(self, symbol: Symbol, new_name: str) -> None:
-        """UnrenamableError where the bundle would mean something else, or nothing, with the new name."""
+        """Raises UnrenamableError where the bundle would mean something else, or nothing, with the new
+        name."""
         if symbol.kind not in (SymbolKind.VARIABLE, SymbolKind.VALUE):
             raise UnrenamableError("only state variables and enum members can be renamed")
         if not self.is_whole:

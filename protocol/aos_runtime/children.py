@@ -101,7 +101,7 @@ class Child:
 
     @property
     def returncode(self) -> int | None:
-        """None while it runs; the exit status, or minus the signal that ended it."""
+        """The exit status, or minus the signal that ended it; None while it runs."""
         return self._process.returncode
 
     @property
@@ -136,7 +136,8 @@ class Child:
         return True
 
     async def stop(self, grace_s: float = 2.0) -> int:
-        """SIGTERM to its group, SIGKILL after `grace_s`; its return code. Stopping twice does nothing.
+        """Sends SIGTERM to its group, and SIGKILL after `grace_s`; returns its return code. Stopping twice
+        does nothing.
 
         Give a guarded command more than the guard's own grace.
         """
@@ -147,7 +148,7 @@ class Child:
         return await self.wait()
 
     def kill(self) -> None:
-        """SIGKILL to its group, now."""
+        """Sends SIGKILL to its group, now."""
         self._signal(signal.SIGKILL)
 
     def end_at_once(self) -> None:

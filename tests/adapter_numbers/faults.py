@@ -135,7 +135,7 @@ async def _serve_wrongly(bus: Bus, made: Harness, name: str) -> None:
         if name == "floods its topic":
             await flood()
         if name == "replies for another id":
-            return SkillResult(request.id.__class__("another", 1, request.id.step), {})
+            return SkillResult(request.id.__class__("another", request.id.step), {})
         response = "whatever" if name == "unknown response" else ""
         return SkillResult(request.id, {}, {"/level": numbers["sent"]}, response)
 

@@ -13,10 +13,11 @@ ROOT = Path(__file__).parents[2]
 
 FRAGMENTS = re.compile(
     r"(about|after|as|at|back|before|below|beside|between|by|for|from|how|in|kept|not|of|on|out|that|to|told"
-    r"|until|up|what|when|where|whether|which|who|whom|whose|why|with|within|without)\b",
+    r"|until|up|what|when|where|whether|which|who|whom|whose|why|with|within|without)\b"
+    r"|AOS\d+|\w+Error\b",
     re.IGNORECASE,
 )
-"""A docstring that begins with one of these words has its subject somewhere else, or none."""
+"""A docstring that begins with one of these words, or with an error, has its verb somewhere else, or none."""
 
 _SENTENCE_ENDS = (".", "?", ":")
 
@@ -54,6 +55,8 @@ def fault_of(text: str) -> str:
         ("Whether it holds.", False),
         ("Of both, the larger one.", False),
         ("whether it holds.", False),
+        ("DeployError if it is missing.", False),
+        ("Raises DeployError if it is missing.", True),
         ("Returns the sum", False),
         ("", False),
     ],

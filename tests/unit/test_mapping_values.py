@@ -18,7 +18,7 @@ from aos_middleware.values import (
 
 
 class RosMessage:
-    """Shaped like a ROS 1 message class: fields in `__slots__`."""
+    """A class with the shape of a ROS 1 message class: fields in `__slots__`."""
 
     __slots__ = ("_connection", "header", "x")
 

@@ -257,7 +257,7 @@ def _check_place(on: str, system_seeds: int) -> None:
 
 
 def _check_installed() -> None:
-    """DeployError AOS805 before anything has run, if the report could not be made in the end."""
+    """Raises DeployError AOS805 before anything has run, if the report could not be made in the end."""
     for package in ("matplotlib", "markdown_it"):
         if find_spec(package) is None:
             raise DeployError(

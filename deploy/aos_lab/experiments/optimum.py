@@ -70,7 +70,7 @@ async def optimum_of(deployment: Deployment) -> Optimum:
 
 
 def regret_of(optimum: Optimum, trials: Sequence[Trial]) -> Regret | None:
-    """None where the missions' values are all the same, or unknown."""
+    """Returns the regret; None where the missions' values are all the same, or unknown."""
     values = [value for trial in trials if not trial.fault and (value := optimum.value_of(trial)) is not None]
     mean = interval_of_mean(values)
     if mean is None or max(values) == min(values):

@@ -48,7 +48,7 @@ class _Reader:
         self._last_rule: dict[tuple[str, int, int], Word] = {}
 
     def read(self, statements: Sequence[Statement]) -> ExplicitModel | None:
-        """None where what is needed to go on is missing."""
+        """Reads the statements into a model; None where what is needed to go on is missing."""
         keywords = {statement.keyword.text for statement in statements}
         for kind in ("discount", "states", "actions", "observations"):
             if kind not in keywords:

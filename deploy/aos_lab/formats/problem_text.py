@@ -65,7 +65,7 @@ class ProblemFindings:
         return bool(self._found)
 
     def raise_if_any(self) -> None:
-        """DocumentError with everything found."""
+        """Raises DocumentError with everything found."""
         if self._found:
             found = tuple(sorted(self._found, key=lambda finding: finding.span))
             message, hint = f"{self._name} has mistakes", "Mend the places named above"

@@ -47,7 +47,7 @@ class ScriptPlayer:
 
     @classmethod
     async def prepared(cls, deployment: Deployment, script: Sequence[str], out: Path) -> ScriptPlayer:
-        """DeployError where there is no simulated world, or no such action."""
+        """Prepares a player; DeployError where there is no simulated world, or no such action."""
         if deployment.world is None:
             raise DeployError(
                 f"{deployment.path} names no world for a script", hint="Name a world file under `world:`"

@@ -29,7 +29,7 @@ misspelling. Any function of C++ may stand there as well."""
 def check_built_in(
     call: Call, code: str, declared: Collection[str], span_of: Callable[[Extent], Span], findings: Findings
 ) -> None:
-    """AOS110 for a built-in that is not there, lacks its owner, or has it in another spelling."""
+    """Reports AOS110 for a built-in that is not there, lacks its owner, or has it in another spelling."""
     owner, name = call.name[0] if len(call.name) == 2 else "", call.name[-1] if call.name else ""
     span = span_of(call.function)
     text = code[call.function.start : call.function.end]

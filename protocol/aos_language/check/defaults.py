@@ -13,7 +13,8 @@ __all__ = ["check_defaults"]
 
 
 def check_defaults(environment: Environment, findings: Findings) -> None:
-    """AOS141 for a default that sets other variables only, and for an element that several defaults set."""
+    """Reports AOS141 for a default that sets other variables only, and for an element that several
+    defaults set."""
     first: dict[str, tuple[str, Span]] = {}
     for variable in environment.variables:
         writes = _writes(variable)

@@ -33,7 +33,8 @@ def check_endings(environment: Environment, findings: Findings) -> None:
 
 
 def check_goals(environment: Environment, findings: Findings) -> None:
-    """AOS139 where no ending can be a goal. Tasks that go on have none, so without endings it is a remark."""
+    """Reports AOS139 where no ending can be a goal. Tasks that go on have none, so without endings it is a
+    remark."""
     endings = [special for special in environment.special_states if _may_end(special)]
     if not endings:
         message = "no special state ends the mission: it runs until its step limit"

@@ -12,7 +12,7 @@ __all__ = ["check_given_observation", "check_reported_variables", "names_in_give
 
 
 def check_given_observation(model: SkillModel, mapping: AbstractionMapping, findings: Findings) -> None:
-    """AOS110 for each local variable that the code names and that has no type of C++."""
+    """Reports AOS110 for each local variable that the code names and that has no type of C++."""
     locals_ = {variable.name: variable for variable in mapping.local_variables}
     for block in given_observation_blocks(model):
         cpp = read_block(block)
@@ -31,7 +31,8 @@ def check_given_observation(model: SkillModel, mapping: AbstractionMapping, find
 def check_reported_variables(
     mapping: AbstractionMapping, environment: Environment, findings: Findings
 ) -> None:
-    """AOS134 for each local variable that sets a state variable by its name alone, perhaps by accident."""
+    """Reports AOS134 for each local variable that sets a state variable by its name alone, perhaps by
+    accident."""
     for variable in mapping.local_variables:
         if variable.name in reported_variables(mapping, environment):
             message = f"after each run the state variable {variable.name} is what this local variable is"

@@ -242,7 +242,8 @@ def _check_parameter(variable: LocalVariable, model: SkillModel, scope: Scope, f
 
 
 def _check_passed_on(mapping: AbstractionMapping, model: SkillModel, findings: Findings) -> None:
-    """AOS140 for each parameter of the skill that no local variable takes: the robot never hears of it."""
+    """Reports AOS140 for each parameter of the skill that no local variable takes: the robot never hears
+    of it."""
     passed = {
         variable.parameter_path.split(".")[0]
         for variable in mapping.local_variables

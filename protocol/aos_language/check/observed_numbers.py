@@ -17,12 +17,12 @@ _NUMBERS = ("bool", "int", "float", "double")
 
 
 def check_environment_reports(environment: Environment, findings: Findings) -> None:
-    """AOS138 for each use of `__observed` in an environment document, which reports nothing."""
+    """Reports AOS138 for each use of `__observed` in an environment document, which reports nothing."""
     _check_other_sections(environment_blocks(environment), findings)
 
 
 def check_reports(model: SkillModel, findings: Findings) -> None:
-    """AOS138 for everything but reports of draws in the dynamic model."""
+    """Reports AOS138 for everything but reports of draws in the dynamic model."""
     blocks = list(skill_blocks(model))
     _check_other_sections((block for block in blocks if block.role is not DYNAMIC), findings)
     kinds: dict[str, bool] = {}
@@ -44,7 +44,7 @@ def check_reports(model: SkillModel, findings: Findings) -> None:
 def check_observed_numbers(
     model: SkillModel, mapping: AbstractionMapping, environment: Environment | None, findings: Findings
 ) -> None:
-    """AOS136 for each number that the mapping cannot give."""
+    """Reports AOS136 for each number that the mapping cannot give."""
     variables = {variable.name: variable for variable in mapping.local_variables}
     reported = reported_variables(mapping, environment) if environment is not None else ()
     for number in reported_numbers(model):

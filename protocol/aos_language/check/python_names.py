@@ -137,7 +137,7 @@ def check_names(
     findings: Findings,
     severity: Severity = Severity.ERROR,
 ) -> None:
-    """AOS110 for each name of the snippet that nothing gives."""
+    """Reports AOS110 for each name of the snippet that nothing gives."""
     if names.is_open or any(alias.name == "*" for alias in ast.walk(tree) if isinstance(alias, ast.alias)):
         return
     known = names.known | _bound_names(tree)

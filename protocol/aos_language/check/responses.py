@@ -79,7 +79,8 @@ def check_responses(
 def _check_any_response(
     model: SkillModel, mapping: AbstractionMapping, read: list[tuple[Block, Cpp]], findings: Findings
 ) -> bool:
-    """AOS117 for a model that never says what comes back, where the mapping always gives a word: True if so.
+    """Reports AOS117 for a model that never says what comes back, where the mapping always gives a word: True
+    if so.
 
     Such a model gives `DefaultObservation` in every run, so that what really comes is impossible.
     """

@@ -19,7 +19,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 def check_shared_code(environment: Environment, scope: Scope, findings: Findings) -> None:
-    """AOS145 for what cannot be shared, AOS126 for names that mean something else."""
+    """Reports AOS145 for what cannot be shared, AOS126 for names that mean something else."""
     snippet = environment.shared_code
     if snippet is None:
         return
@@ -46,7 +46,8 @@ def check_shared_code(environment: Environment, scope: Scope, findings: Findings
 def check_shared_names_are_used(
     environment: Environment, models: Iterable[SkillModel], findings: Findings
 ) -> None:
-    """AOS133 for each constant and function that no code names, and for enums of which nothing is named."""
+    """Reports AOS133 for each constant and function that no code names, and for enums of which nothing is
+    named."""
     snippet = environment.shared_code
     if snippet is None:
         return

@@ -23,7 +23,8 @@ _CHANGING = frozenset({
 def check_shared_mapping_code(
     snippet: Snippet, mappings: Iterable[AbstractionMapping], scope: Scope, findings: Findings
 ) -> None:
-    """AOS121 for what is no Python or keeps something, AOS110 for unknown names, AOS133 for unused ones."""
+    """Reports AOS121 for what is no Python or keeps something, AOS110 for unknown names, AOS133 for unused
+    ones."""
     tree = parsed(snippet, "exec", findings)
     if not isinstance(tree, ast.Module):
         return

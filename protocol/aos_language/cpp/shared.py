@@ -331,7 +331,7 @@ def _only_read(parameter: tree_sitter.Node) -> bool:
 
 
 def _parameter_name(parameter: tree_sitter.Node) -> str:
-    """Empty for one without a name."""
+    """Returns the name of a parameter; empty for one without a name."""
     names = [_text(part) for part in _declarators(parameter.child_by_field_name("declarator"))]
     return names[-1] if names and names[-1].isidentifier() else ""
 

@@ -32,7 +32,7 @@ class _Open(msgspec.Struct):
     code: Snippet | None = None
 
     def closed(self) -> Assignment | None:
-        """None where nothing in it has an effect."""
+        """Returns the assignment of the block; None where nothing in it has an effect."""
         if not (self.temporary or self.over_previous or self.over_next or self.code):
             return None
         loops = tuple(self.over_previous), tuple(self.over_next)

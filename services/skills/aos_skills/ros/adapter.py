@@ -139,7 +139,8 @@ class RosAdapter:
                 _log.warning("nobody serves %s any more", way.name)
 
     def _say_what_is_missing(self) -> None:
-        """Once for each change; `aos-up` shows the end of the log if a path stays without a server."""
+        """Logs once for each change what is missing; `aos-up` shows the end of the log if a path stays
+        without a server."""
         missing = [way.name for way in self._ways.values() if not self.node.kind_of(way.name)]
         if not missing:
             return

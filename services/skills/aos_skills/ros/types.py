@@ -130,7 +130,7 @@ class RosTypes:
         return self._hashes[type_name]
 
     def check(self, type_name: str) -> None:
-        """DeployError AOS806 if the type, or one that it uses, is not known."""
+        """Raises DeployError AOS806 if the type, or one that it uses, is not known."""
         self._know(type_name)
 
     def fields(self, type_name: str) -> tuple[Field, ...]:

@@ -184,7 +184,7 @@ class Node(Ros2Node):
         return self.types.hash(type_name)
 
     def _same_definition(self, theirs: Endpoint) -> None:
-        """SkillError AOS509 unless a node's type is defined as here."""
+        """Raises SkillError AOS509 unless a node's type is defined as here."""
         own = self.types.hash(theirs.type_name)
         if NO_HASH not in (theirs.type_hash, own) and theirs.type_hash != own:
             raise SkillError(

@@ -151,7 +151,7 @@ class Attachment(NamedTuple):
 
     @classmethod
     def read(cls, data: bytes) -> Attachment | None:
-        """None if it is not in this form, as those of releases before 0.2.4."""
+        """Reads it from bytes; None if it is not in this form, as those of releases before 0.2.4."""
         if len(data) != 33 or data[16] != 16:
             return None
         number, sent_ns, _ = struct.unpack_from("<qqB", data)

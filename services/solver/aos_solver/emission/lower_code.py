@@ -136,7 +136,7 @@ class Pieces:
         return piece
 
     def check(self, snippet: Snippet, cpp: Cpp) -> None:
-        """AOS108 and AOS124 for what could leave its function, and what cannot be replayed."""
+        """Reports AOS108 and AOS124 for what could leave its function, and what cannot be replayed."""
         for fault in cpp.faults:
             if fault.kind is not FaultKind.SYNTAX:
                 span = snippet.locate(fault.extent.line, fault.extent.column)

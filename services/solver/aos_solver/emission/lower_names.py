@@ -33,7 +33,7 @@ _OF_EMITTED_ENVIRONMENTS = frozenset({
 
 
 def check_names(project: Project, findings: Findings) -> None:
-    """AOS126 for every declared name that C++ or the emitted model needs for itself."""
+    """Reports AOS126 for every declared name that C++ or the emitted model needs for itself."""
     global_names = _OF_EMITTED_SKILLS | _OF_EMITTED_ENVIRONMENTS
     for enum in project.environment.enums:
         for value in enum.values:

@@ -91,10 +91,10 @@ class QuietPorts:
         """Nothing is kept."""
 
     def publish_record(self, record: DecisionRecord) -> None:
-        """Nobody listens."""
+        """Does nothing: nobody listens."""
 
     def publish_state(self, state: MissionState) -> None:
-        """Nobody listens."""
+        """Does nothing: nobody listens."""
 
     async def newest_model(self, running: RunningModel) -> RunningModel:
         """The same model."""

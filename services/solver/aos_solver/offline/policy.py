@@ -81,7 +81,7 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
         return {text: number for number, text in enumerate(self.header.states)}
 
     def check_model(self, digest: str) -> None:
-        """PlanningError AOS322 unless it was solved for the model with this digest."""
+        """Raises PlanningError AOS322 unless it was solved for the model with this digest."""
         if digest != self.header.model_digest:
             raise PlanningError(
                 f"the policy was solved for other documents of {self.header.model}",

@@ -71,7 +71,7 @@ class Camera:
         self._next_frame_s = 0.0
 
     def watch(self) -> None:
-        """Called at every simulation step; takes a frame for the animated picture when it is time."""
+        """Takes a frame for the animated picture when it is time; it is called at every simulation step."""
         if self._scene.time_s >= self._next_frame_s:
             self._next_frame_s = self._scene.time_s + FRAME_EVERY_S
             # Shadows take as long as all the rest, and twenty frames a minute cost more than the physics.
