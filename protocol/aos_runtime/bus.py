@@ -10,18 +10,20 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import zenoh
 from zenoh.handlers import Callback
 
-from aos_protocol.codec import decode, decode_fault, encode, encode_fault
-from aos_protocol.errors import AosError, BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
+from aos_protocol.codec import decode, encode, encode_fault
+from aos_protocol.errors import AosError, BusError, LostAnswerError
 from aos_protocol.messages import Message
 from aos_runtime.bus_config import LEASE_S, client_config
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.older_python import timeout
+from aos_runtime.question import RECEIPT, STRAYS_S, Question
 from aos_runtime.server_watch import ServerWatch
 from aos_runtime.subscription import Subscription, Undeclare
 
@@ -46,17 +48,6 @@ _LINK_S = 0.05
 _UNANSWERED_S = 1.0
 """An open question asks this often whether its key is served still, and waits this long for an answer under
 way whose giver has left."""
-
-_TAKEN = b"taken"
-"""The attachment of a question that asks for a receipt, and of the receipt: a first, empty reply. Somebody
-who knows neither asks without, and answers without."""
-
-_ZENOH_TIMEOUT = b"Timeout"
-"""Zenoh's own error reply, the only one that is not an envelope."""
-
-MAX_STRAYS = 10
-STRAYS_S = 60.0
-"""A question hears of late replies this long after its deadline, where somebody wants to know."""
 
 _log = logging.getLogger("aos.bus")
 
@@ -145,62 +136,29 @@ class Bus:
         malformed or of another protocol version; the handler's own AosError if it raised one.
         """
         payload = encode(message, sender=self.sender, stamp_ns=self._clock.now_ns())
-        answer: asyncio.Future[tuple[bool, bytes] | None] = self._loop.create_future()
-        is_taken = False
-
-        strays = 0
-
-        def settle(result: tuple[bool, bytes] | None) -> None:
-            nonlocal strays
-            if not answer.done():
-                answer.set_result(result)
-            elif on_stray is not None and result is not None and strays < MAX_STRAYS:
-                strays += 1
-                if result[1] != _ZENOH_TIMEOUT:
-                    on_stray("late" if answer.cancelled() else "repeated", _stray(result, key, reply))
-
-        def take() -> None:
-            nonlocal is_taken
-            is_taken = True
-
-        def on_reply(received: zenoh.Reply) -> None:
-            if received.ok is not None and received.ok.attachment is not None:
-                self._loop.call_soon_threadsafe(take)
-                return
-            if received.ok is not None:
-                result = (True, received.ok.payload.to_bytes())
-            else:
-                result = (False, received.err.payload.to_bytes() if received.err else b"")
-            self._loop.call_soon_threadsafe(settle, result)
-
+        question = Question(key, reply, timeout_s, on_stray)
+        hears_strays = on_stray is not None
         self._check_open()
         self._session.get(
             key,
-            Callback(on_reply, partial(self._loop.call_soon_threadsafe, settle, None), indirect=False),
+            question.replies,
             payload=payload,
-            attachment=_TAKEN,
-            timeout=timeout_s if on_stray is None else timeout_s + STRAYS_S,
+            attachment=RECEIPT,
+            timeout=timeout_s + STRAYS_S if hears_strays else timeout_s,
             # Not `express`: one question in ten whose answerer died was then never told to be lost.
             # Otherwise a reply is held back until every responder has finished.
             consolidation=zenoh.ConsolidationMode.NONE,
         )
         watch = ServerWatch(self._session, key)
         try:
-            async with timeout(timeout_s + _LATE_S if on_stray is None else timeout_s):
-                await self._wait_while_served(watch, answer)
-                result = answer.result()
-        except TimeoutError:
-            result = (False, _ZENOH_TIMEOUT)
+            with suppress(TimeoutError):
+                async with timeout(timeout_s if hears_strays else timeout_s + _LATE_S):
+                    await self._wait_while_served(watch, question.settled)
         finally:
-            answer.cancel()
+            question.settled.cancel()
             if not self._is_closed:
                 watch.end()
-        if result is None and is_taken:
-            raise LostAnswerError(
-                f"who took the question on {key} ended before the answer",
-                hint="See the logs of the services for what ended",
-            )
-        return _read_answer(result, key, reply, timeout_s)
+        return question.answer()
 
     async def answer(
         self, key: str, request: type[M], handler: Callable[[M, str], Awaitable[Message]]
@@ -376,7 +334,7 @@ class Bus:
             key = str(query.key_expr)
             try:
                 if query.attachment is not None:
-                    query.reply(query.key_expr, b"", attachment=_TAKEN, express=True)
+                    query.reply(query.key_expr, b"", attachment=RECEIPT, express=True)
                 if "*" in key:
                     raise BusError(f"a question to {key} has no one answer", code="AOS602")
                 payload = query.payload.to_bytes() if query.payload is not None else b""
@@ -402,25 +360,6 @@ class Bus:
             query.reply_err(encode_fault(error, sender=self.sender, stamp_ns=self._clock.now_ns()))
         except (zenoh.ZError, BusError) as failure:
             _log.warning("the refusal on %s was not delivered: %s", query.key_expr, failure)
-
-
-def _read_answer(result: tuple[bool, bytes] | None, key: str, reply: type[R], timeout_s: float) -> R:
-    if result is None:
-        hint = "Is the service that should answer running?"
-        raise NobodyAnswersError(f"nobody answers {key}", hint=hint)
-    is_answer, payload = result
-    if is_answer:
-        return decode(payload, reply)
-    if payload == _ZENOH_TIMEOUT:
-        raise LateAnswerError(f"no answer on {key} within {timeout_s:g} s")
-    raise decode_fault(payload)
-
-
-def _stray(result: tuple[bool, bytes], key: str, reply: type[R]) -> R | AosError:
-    try:
-        return _read_answer(result, key, reply, 0.0)
-    except AosError as error:
-        return error
 
 
 def _ignore(_: object) -> None:

@@ -12,7 +12,7 @@ import signal
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import IO, Any, Self, TypedDict, Unpack
 
 import msgspec
 
@@ -28,6 +28,14 @@ Stdio = int | IO[Any] | None
 _LAUNCH_GUARD = (
     "import sys; sys.path.insert(0, sys.argv[1]); from aos_runtime.guard import main; main(sys.argv[2:])"
 )
+
+
+class Streams(TypedDict, total=False):
+    """The standard streams of a child, as `subprocess` takes them."""
+
+    stdin: Stdio
+    stdout: Stdio
+    stderr: Stdio
 
 
 class Limits(msgspec.Struct, frozen=True, kw_only=True):
@@ -71,22 +79,23 @@ class Child:
         name: str = "",
         cwd: str | os.PathLike[str] | None = None,
         env: Mapping[str, str] | None = None,
-        stdin: Stdio = asyncio.subprocess.DEVNULL,
-        stdout: Stdio = None,
-        stderr: Stdio = None,
         pass_fds: Iterable[int] = (),
         stream_limit_bytes: int = 2**16,
+        **streams: Unpack[Streams],
     ) -> Self:
-        """Starts `argv`; `env` adds to this process's environment. DeployError AOS802 if it cannot be."""
+        """Starts `argv`; `env` adds to this process's environment. DeployError AOS802 if it cannot be.
+
+        It has no input, and this process's own output and error output, where `streams` says nothing else.
+        """
         environment = {**os.environ, **(env or {}), PARENT_VARIABLE: str(os.getpid())}
         try:
             process = await asyncio.create_subprocess_exec(
                 *argv,
                 cwd=cwd,
                 env=environment,
-                stdin=stdin,
-                stdout=stdout,
-                stderr=stderr,
+                stdin=streams.get("stdin", asyncio.subprocess.DEVNULL),
+                stdout=streams.get("stdout"),
+                stderr=streams.get("stderr"),
                 pass_fds=tuple(pass_fds),
                 limit=stream_limit_bytes,
                 start_new_session=True,

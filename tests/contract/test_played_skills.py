@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractAsyncContextManager
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -40,23 +43,23 @@ async def outcome_of(system: System) -> Outcome:
     return await system.activate("sense")
 
 
+StartSystem = Callable[..., AbstractAsyncContextManager[System]]
+
+
+@pytest.fixture
+def start(bus: Bus, other: Bus, keys: Keys, tmp_path: Path, endpoint: str, bundles: Path) -> StartSystem:
+    """Starts the middleware with these settings."""
+    return partial(running_system, bus, other, keys, tmp_path, endpoint, bundles / "armadillo-finer")
+
+
 @pytest.mark.parametrize(
     ("played", "status", "calls"),
     [((), "failed", 0), (("/sense",), "observed", 1), (("*",), "observed", 1), (("/look",), "failed", 0)],
 )
 async def test_a_played_skill_needs_no_fields_and_a_real_one_is_not_called_without(
-    bus: Bus,
-    other: Bus,
-    keys: Keys,
-    tmp_path: Path,
-    endpoint: str,
-    bundles: Path,
-    played: tuple[str, ...],
-    status: str,
-    calls: int,
+    start: StartSystem, played: tuple[str, ...], status: str, calls: int
 ) -> None:
-    bundle = bundles / "armadillo-finer"
-    async with running_system(bus, other, keys, tmp_path, endpoint, bundle, played=played) as system:
+    async with start(played=played) as system:
         outcome = await outcome_of(system)
         assert (outcome.status, len(system.adapter.calls)) == (status, calls)
         assert outcome.response == ("done" if calls else "")

@@ -14,6 +14,7 @@ from ros1_core import PYTHON, roscore, skip_without_ros1
 
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_runtime.children import Child, guarded
+from aos_skills.ros.node import ActionRequest, ServiceRequest
 from aos_skills.ros1.node import Ros1Node
 
 ROBOT = Path(__file__).resolve().parents[1] / "ros1_robot.py"
@@ -54,30 +55,36 @@ async def node(master: str) -> AsyncIterator[Ros1Node]:
 
 async def test_services_answer_and_their_errors_are_told(robot: Child, node: Ros1Node) -> None:
     stop = {"success": True, "message": "stands"}
-    assert await node.call("/robot/stop", {}, timeout_s=HANG_S, discovery_s=HANG_S) == stop
+    assert await node.call(ServiceRequest("/robot/stop", {}, timeout_s=HANG_S, discovery_s=HANG_S)) == stop
     with pytest.raises(SkillError, match="the brake is worn") as raised:
-        await node.call("/robot/stop", {}, timeout_s=HANG_S)
+        await node.call(ServiceRequest("/robot/stop", {}, timeout_s=HANG_S))
     assert raised.value.code == "AOS510"
     with pytest.raises(SkillError, match="is of type std_srvs/Trigger, not std_srvs/SetBool"):
-        await node.call("/robot/stop", {}, type_name="std_srvs/srv/SetBool", timeout_s=HANG_S)
+        await node.call(ServiceRequest("/robot/stop", {}, type_name="std_srvs/srv/SetBool", timeout_s=HANG_S))
     with pytest.raises(SkillError, match="std_srvs/TriggerRequest has no field speed"):
-        await node.call("/robot/stop", {"speed": 1}, timeout_s=HANG_S)
+        await node.call(ServiceRequest("/robot/stop", {"speed": 1}, timeout_s=HANG_S))
 
 
 async def test_actions_give_feedback_end_fail_and_are_cancelled(robot: Child, node: Ros1Node) -> None:
     await until(node, "/robot/drive", "action")
     feedback: list[Any] = []
-    end = await node.run_action("/robot/drive", {"goal": 5}, timeout_s=HANG_S, on_feedback=feedback.append)
+    end = await node.run_action(
+        ActionRequest("/robot/drive", {"goal": 5}, timeout_s=HANG_S, on_feedback=feedback.append)
+    )
     assert end == ("succeeded", {"result": 5})
     assert {"feedback": 4} in feedback
-    assert (await node.run_action("/robot/drive", {"goal": -1}, timeout_s=HANG_S)).status == "aborted"
+    assert (
+        await node.run_action(ActionRequest("/robot/drive", {"goal": -1}, timeout_s=HANG_S))
+    ).status == "aborted"
     cancelled = asyncio.Event()
     end = await node.run_action(
-        "/robot/drive",
-        {"goal": 10_000},
-        timeout_s=HANG_S,
-        cancelled=cancelled,
-        on_feedback=lambda _: cancelled.set(),
+        ActionRequest(
+            "/robot/drive",
+            {"goal": 10_000},
+            timeout_s=HANG_S,
+            cancelled=cancelled,
+            on_feedback=lambda _: cancelled.set(),
+        )
     )
     assert end.status == "canceled"
     assert end.result["result"] < 10_000
@@ -96,7 +103,11 @@ async def test_a_robot_that_is_killed_in_the_middle_is_noticed(robot: Child, nod
     await until(node, "/robot/drive", "action")
     started = asyncio.Event()
     driving = asyncio.create_task(
-        node.run_action("/robot/drive", {"goal": 10_000}, timeout_s=60.0, on_feedback=lambda _: started.set())
+        node.run_action(
+            ActionRequest(
+                "/robot/drive", {"goal": 10_000}, timeout_s=60.0, on_feedback=lambda _: started.set()
+            )
+        )
     )
     await started.wait()
     robot.kill()

@@ -19,7 +19,7 @@ pytest.importorskip("rosbags", reason="needs the extra `ros`")
 
 from aos_protocol.errors import BusError, DeployError, SkillError
 from aos_runtime.parent import PARENT_VARIABLE
-from aos_skills.ros.node import Qos
+from aos_skills.ros.node import ActionRequest, Qos, ServiceRequest
 from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.node import Node
 from aos_skills.ros2.wire import Kind
@@ -75,7 +75,7 @@ async def count_up(
 
 async def test_a_service_is_called_by_its_name_alone(robot: Node, node: Node) -> None:
     robot.serve("/lab/add", ADD, add)
-    assert await node.call("/lab/add", {"a": 20, "b": 22}, timeout_s=HANG_S) == {"sum": 42}
+    assert await node.call(ServiceRequest("/lab/add", {"a": 20, "b": 22}, timeout_s=HANG_S)) == {"sum": 42}
 
 
 async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
@@ -84,14 +84,14 @@ async def test_a_service_that_nobody_serves_is_an_error_that_lists_those_there(
     robot.serve("/lab/add", ADD, add)
     await node.service_type("/lab/add", ADD, HANG_S)
     with pytest.raises(SkillError, match=r"no ROS 2 node serves /lab/sub .*/lab/add") as raised:
-        await node.call("/lab/sub", {}, timeout_s=HANG_S, discovery_s=0.05)
+        await node.call(ServiceRequest("/lab/sub", {}, timeout_s=HANG_S, discovery_s=0.05))
     assert raised.value.code == "AOS505"
 
 
 async def test_a_service_of_another_type_than_given_is_an_error(robot: Node, node: Node) -> None:
     robot.serve("/lab/add", ADD, add)
     with pytest.raises(SkillError, match=f"/lab/add is of type {ADD}, not std_srvs/srv/Trigger"):
-        await node.call("/lab/add", {}, type_name="std_srvs/srv/Trigger", timeout_s=HANG_S)
+        await node.call(ServiceRequest("/lab/add", {}, type_name="std_srvs/srv/Trigger", timeout_s=HANG_S))
 
 
 async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_silence(
@@ -103,7 +103,7 @@ async def test_a_type_that_is_defined_differently_there_is_an_error_and_not_sile
     async with opened(endpoint, "other", tmp_path) as other:
         other.serve("/lab/add", ADD, add)
         with pytest.raises(SkillError, match=r"the node other defines .*AddTwoInts .*differently") as raised:
-            await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S)
+            await node.call(ServiceRequest("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S))
     assert raised.value.code == "AOS509"
 
 
@@ -113,7 +113,7 @@ async def test_a_type_that_is_not_known_here_names_the_file_to_add(
     robot.serve("/lab/add", ADD, add)
     async with opened(endpoint, "ignorant", tmp_path) as ignorant:
         with pytest.raises(DeployError, match=r"example_interfaces/srv/AddTwoInts\.srv"):
-            await ignorant.call("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S)
+            await ignorant.call(ServiceRequest("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S))
 
 
 async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node: Node) -> None:
@@ -123,7 +123,7 @@ async def test_a_service_that_does_not_answer_is_over_in_time(robot: Node, node:
 
     robot.serve("/lab/add", ADD, never)
     with pytest.raises(SkillError, match=r"/lab/add did not answer within 0\.2 s") as raised:
-        await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=0.2)
+        await node.call(ServiceRequest("/lab/add", {"a": 1, "b": 2}, timeout_s=0.2))
     assert raised.value.code == "AOS503"
 
 
@@ -131,7 +131,7 @@ async def test_humble_has_no_hashes_and_is_understood(endpoint: str, node: Node)
     async with await Node.open(endpoint, RosTypes("humble", [INTERFACES]), name="old") as old:
         old.serve("/lab/add", ADD, add)
         assert (await node._server("/lab/add", ADD, HANG_S)).key.endswith("/TypeHashNotSupported")
-        assert await node.call("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S) == {"sum": 3}
+        assert await node.call(ServiceRequest("/lab/add", {"a": 1, "b": 2}, timeout_s=HANG_S)) == {"sum": 3}
 
 
 async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node, node: Node) -> None:
@@ -153,7 +153,9 @@ async def test_messages_arrive_and_late_comers_get_what_was_latched(robot: Node,
 async def test_an_action_gives_feedback_and_its_result(robot: Node, node: Node) -> None:
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     feedback: list[Any] = []
-    end = await node.run_action("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S, on_feedback=feedback.append)
+    end = await node.run_action(
+        ActionRequest("/lab/fibonacci", {"order": 6}, timeout_s=HANG_S, on_feedback=feedback.append)
+    )
     assert end == ("succeeded", {"sequence": [0, 1, 1, 2, 3, 5]})
     assert feedback[-1] == {"sequence": [0, 1, 1, 2, 3, 5]}
 
@@ -162,11 +164,13 @@ async def test_an_action_is_cancelled_with_a_handshake(robot: Node, node: Node) 
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
     cancelled = asyncio.Event()
     end = await node.run_action(
-        "/lab/fibonacci",
-        {"order": 1000},
-        timeout_s=HANG_S,
-        cancelled=cancelled,
-        on_feedback=lambda _: cancelled.set(),
+        ActionRequest(
+            "/lab/fibonacci",
+            {"order": 1000},
+            timeout_s=HANG_S,
+            cancelled=cancelled,
+            on_feedback=lambda _: cancelled.set(),
+        )
     )
     assert end == ("canceled", {"sequence": [0, 1, 1]})
 
@@ -182,14 +186,14 @@ async def test_an_action_that_is_not_done_in_time_is_cancelled_at_the_robot(robo
     robot.serve_action("/lab/fibonacci", FIBONACCI, wait)
     await node.service_type("/lab/fibonacci/_action/get_result", "", HANG_S)
     with pytest.raises(SkillError, match=r"did not end within 2 s and was cancelled") as raised:
-        await node.run_action("/lab/fibonacci", {"order": 1000}, timeout_s=2.0)
+        await node.run_action(ActionRequest("/lab/fibonacci", {"order": 1000}, timeout_s=2.0))
     assert raised.value.code == "AOS503"
     assert ended.is_set()
 
 
 async def test_an_action_that_fails_is_aborted(robot: Node, node: Node) -> None:
     robot.serve_action("/lab/fibonacci", FIBONACCI, count_up)
-    end = await node.run_action("/lab/fibonacci", {"order": -1}, timeout_s=HANG_S)
+    end = await node.run_action(ActionRequest("/lab/fibonacci", {"order": -1}, timeout_s=HANG_S))
     assert end.status == "aborted"
 
 
@@ -199,10 +203,12 @@ async def test_a_robot_that_leaves_in_the_middle_is_noticed_at_once(endpoint: st
         started = asyncio.Event()
         running = asyncio.create_task(
             node.run_action(
-                "/lab/fibonacci",
-                {"order": 1000},
-                timeout_s=HANG_S,
-                on_feedback=lambda _: started.set(),
+                ActionRequest(
+                    "/lab/fibonacci",
+                    {"order": 1000},
+                    timeout_s=HANG_S,
+                    on_feedback=lambda _: started.set(),
+                )
             )
         )
         await started.wait()
@@ -221,7 +227,7 @@ async def answered(node: Node, service: str, fields: dict[str, Any]) -> dict[str
     async with asyncio.timeout(HANG_S):
         while True:
             try:
-                return await node.call(service, fields, timeout_s=HANG_S, discovery_s=HANG_S)
+                return await node.call(ServiceRequest(service, fields, timeout_s=HANG_S, discovery_s=HANG_S))
             except SkillError as error:
                 if error.code != "AOS504":
                     raise

@@ -44,6 +44,27 @@ def main() -> int:
         prog="python -m tests.exam", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     commands = parser.add_subparsers(dest="command", required=True)
+    _add_models(commands)
+    _add_others(commands)
+    arguments = parser.parse_args()
+    if arguments.command == "show":
+        print(pomdp_text(named_problem(arguments.problem, 1_000_000)))
+        return 0
+    if arguments.command == "budgets":
+        return asyncio.run(examine_budgets(arguments, cache_dir()))
+    if arguments.command == "documents":
+        return asyncio.run(examine_documents(arguments))
+    if arguments.command == "failures":
+        return asyncio.run(examine_failures(arguments, CACHE))
+    if arguments.command == "solve":
+        return asyncio.run(examine_solver(arguments))
+    if arguments.command == "values" and arguments.bundle:
+        return asyncio.run(examine_bundles(arguments))
+    return examine_engine(arguments)
+
+
+def _add_models(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Adds the commands about random models."""
     for name, text in (
         ("bounds", "hold claims against the truth"),
         ("regret", "play missions"),
@@ -82,6 +103,10 @@ def main() -> int:
                 metavar="DIR",
                 help="a bundle instead; may be repeated",
             )
+
+
+def _add_others(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Adds the commands about documents, robots and bundles."""
     command = commands.add_parser("documents", help="bundles of documents, compiled")
     command.add_argument("--models", type=int, default=40, metavar="N")
     command.add_argument("--seed", type=int, default=1, help="of the first bundle")
@@ -101,21 +126,6 @@ def main() -> int:
     command.add_argument("--seed", type=int, default=1)
     show = commands.add_parser("show", help="print a problem as .pomdp")
     show.add_argument("problem")
-    arguments = parser.parse_args()
-    if arguments.command == "show":
-        print(pomdp_text(named_problem(arguments.problem, 1_000_000)))
-        return 0
-    if arguments.command == "budgets":
-        return asyncio.run(examine_budgets(arguments, cache_dir()))
-    if arguments.command == "documents":
-        return asyncio.run(examine_documents(arguments))
-    if arguments.command == "failures":
-        return asyncio.run(examine_failures(arguments, CACHE))
-    if arguments.command == "solve":
-        return asyncio.run(examine_solver(arguments))
-    if arguments.command == "values" and arguments.bundle:
-        return asyncio.run(examine_bundles(arguments))
-    return examine_engine(arguments)
 
 
 if __name__ == "__main__":

@@ -103,13 +103,31 @@ def _files(
         *(["extrinsic_code:", *extrinsic, ""] if extrinsic else []),
         *(f"reward_code:\n{code}\n" for code in specials),
     ]
+    mapping = [
+        "project: chain",
+        "response: yes\nresponse_rule: said == 'yes'",
+        "response: no\nresponse_rule: True",
+        "module_activation: skill\npath: /act",
+        "local_variable: said\ntype: string\nfrom_ros_service_response: true\ncode:\nsaid = __input.text",
+    ]
+    return {
+        "chain.ef": "\n\n".join(environment[:4])
+        + "\n\n"
+        + "\n".join([environment[4], "", *environment[5:], ""]),
+        "act.sd": "\n".join([*_skill(registers[-1], sink, moves["state__"]), ""]),
+        "act.am": "\n\n".join([*mapping, ""]),
+    }
+
+
+def _skill(last: Register, sink: str, moves: Sequence[str]) -> list[str]:
+    """The lines of the skill document."""
     value = last.read("state")
     earned = {
         "reward": f"{value} == 1 ? 10 : -10",
         "draw": f"AOS.Bernoulli(0.2 + 0.6 * {value}) ? 10 : -10",
         "response": "state.answer == 2 - choice ? 10 : -10",
     }.get(sink, "1")
-    skill = [
+    return [
         "project: chain",
         "parameter: int choice",
         "",
@@ -122,7 +140,7 @@ def _files(
             else []
         ),
         "dynamic_model:",
-        *moves["state__"],
+        *moves,
         *(
             [f"__moduleResponse = {value} == 1 ? yes : no;"]
             if sink == "response"
@@ -131,20 +149,6 @@ def _files(
         "__reward = -0.1;",
         f"if (choice > 0) {{ state__.done = 1; __reward = {earned}; }}",
     ]
-    mapping = [
-        "project: chain",
-        "response: yes\nresponse_rule: said == 'yes'",
-        "response: no\nresponse_rule: True",
-        "module_activation: skill\npath: /act",
-        "local_variable: said\ntype: string\nfrom_ros_service_response: true\ncode:\nsaid = __input.text",
-    ]
-    return {
-        "chain.ef": "\n\n".join(environment[:4])
-        + "\n\n"
-        + "\n".join([environment[4], "", *environment[5:], ""]),
-        "act.sd": "\n".join([*skill, ""]),
-        "act.am": "\n\n".join([*mapping, ""]),
-    }
 
 
 def _world(length: int, sink: str, share: float) -> World:

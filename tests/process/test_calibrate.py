@@ -65,7 +65,7 @@ def recorded(folder: Path, deploy_file: str, first_seed: int, missions: int) -> 
     """Missions of the documents' own model, from the file that an experiment keeps."""
     setting = Setting(deploy=deploy_file, simulations=2000)
     seeds = range(first_seed, first_seed + missions)
-    asyncio.run(play_campaign(setting, seeds, folder=DEPLOY, out=folder, jobs=1, on_trial=lambda: None))
+    asyncio.run(play_campaign(setting, seeds, folder=DEPLOY, out=folder, on_trial=lambda: None))
     return read_missions(folder)
 
 

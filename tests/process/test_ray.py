@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
 from aos_lab.trials import ray_cluster
-from aos_lab.trials.campaign import HERE, play_campaign
+from aos_lab.trials.campaign import HERE, Place, play_campaign
 from aos_lab.trials.setting import Setting
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import DeployError
@@ -45,10 +45,8 @@ def play(root: Path, out: Path, seeds: range, on: str, report: list[str] | None 
             seeds,
             folder=root / "deploy",
             out=out,
-            jobs=2,
             on_trial=lambda: lines.append("mission"),
-            on=on,
-            on_progress=lines.append,
+            place=Place(on=on, jobs=2, on_progress=lines.append),
         )
     )
     return [msgspec.structs.replace(trial, seconds=0.0) for trial in played.trials]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
@@ -12,6 +12,9 @@ import typer
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
 from aos_deploy.options import HELP_NAMES, Version
+
+if TYPE_CHECKING:
+    from aos_deploy.deploy_file import Deployment
 
 __all__ = ["register", "up"]
 
@@ -21,41 +24,50 @@ _EPILOG = (
 )
 
 
+DeployFile = Annotated[
+    Path | None, typer.Argument(metavar="DEPLOY", help="The deploy file; with --resume a run directory")
+]
+Resume = Annotated[
+    bool,
+    typer.Option(
+        "--resume", help="Go on with a run whose aos-up has died, by default with the last one in ./runs"
+    ),
+]
+Seed = Annotated[
+    int | None, typer.Option(min=0, help="Seed of the planner and of the world, in place of the file's")
+]
+Listen = Annotated[
+    str | None,
+    typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one"),
+]
+Runs = Annotated[
+    Path | None, typer.Option(metavar="DIR", help="Where the run directory goes", file_okay=False)
+]
+PlayedByModel = Annotated[
+    bool, typer.Option("--model", help="Every skill is played by its own document; no robot is needed")
+]
+Serve = Annotated[
+    str | None,
+    typer.Option(
+        metavar="KIND",
+        help="Run no mission: serve the skills and topics to others, as ros2, dds or ros1, until Ctrl-C",
+    ),
+]
+
+
 def register(app: typer.Typer) -> None:
     """Adds the command to `aos`, or makes it the whole of `aos-up`."""
     app.command(epilog=_EPILOG, context_settings=HELP_NAMES)(up)
 
 
 def up(
-    deploy: Annotated[
-        Path | None, typer.Argument(metavar="DEPLOY", help="The deploy file; with --resume a run directory")
-    ] = None,
-    resume: Annotated[
-        bool,
-        typer.Option(
-            "--resume", help="Go on with a run whose aos-up has died, by default with the last one in ./runs"
-        ),
-    ] = False,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="Seed of the planner and of the world, in place of the file's")
-    ] = None,
-    listen: Annotated[
-        str | None,
-        typer.Option(metavar="ENDPOINT", help="Where the bus listens; port 0 takes any free one"),
-    ] = None,
-    runs: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where the run directory goes", file_okay=False)
-    ] = None,
-    model: Annotated[
-        bool, typer.Option("--model", help="Every skill is played by its own document; no robot is needed")
-    ] = False,
-    serve: Annotated[
-        str | None,
-        typer.Option(
-            metavar="KIND",
-            help="Run no mission: serve the skills and topics to others, as ros2, dds or ros1, until Ctrl-C",
-        ),
-    ] = None,
+    deploy: DeployFile = None,
+    resume: Resume = False,
+    seed: Seed = None,
+    listen: Listen = None,
+    runs: Runs = None,
+    model: PlayedByModel = False,
+    serve: Serve = None,
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
     version: Version = False,
@@ -69,7 +81,7 @@ def up(
     # For --help, and for a word about a wrong option, none of this is needed.
     import asyncio
 
-    from aos_deploy.deploy_file import check_endpoint, read_deploy_file, without_a_robot
+    from aos_deploy.deploy_file import read_deploy_file, without_a_robot
     from aos_deploy.living_runs import RUNS
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
     from aos_deploy.needed_here import check_needed_here
@@ -86,19 +98,11 @@ def up(
         raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
     else:
         deployment, taken_up = read_deploy_file(deploy), None
-    file = deployment.file
-    if seed is not None:
-        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
-    if listen is not None:
-        check_endpoint(listen)
-        file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=listen))
-    deployment = msgspec.structs.replace(
-        deployment, file=file, runs=runs.resolve() if runs is not None else deployment.runs
-    )
+    deployment = _with_options(deployment, seed, listen, runs)
     if model:
         deployment = without_a_robot(deployment)
     check_needed_here(deployment)
-    title = f"{file.robot} · {deployment.path.name}"
+    title = f"{deployment.file.robot} · {deployment.path.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
     mission: MissionRun | ServeRun = (
         MissionRun(deployment, view, SystemClock(), taken_up=taken_up, is_played=model)
@@ -118,3 +122,20 @@ def _refuse_beside_resume(**options: object) -> None:
     if given:
         text = "a run that goes on has what it was started with"
         raise typer.BadParameter(text, param_hint=", ".join(given))
+
+
+def _with_options(
+    deployment: Deployment, seed: int | None, listen: str | None, runs: Path | None
+) -> Deployment:
+    """The deployment with what the command says otherwise."""
+    from aos_deploy.deploy_file import check_endpoint
+
+    file = deployment.file
+    if seed is not None:
+        file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
+    if listen is not None:
+        check_endpoint(listen)
+        file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=listen))
+    return msgspec.structs.replace(
+        deployment, file=file, runs=runs.resolve() if runs is not None else deployment.runs
+    )

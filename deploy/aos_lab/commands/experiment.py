@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
+from rich.progress import Progress
 
 from aos_deploy.options import HELP_NAMES, AsJson
 from aos_deploy.printing import from_here, print_json
@@ -20,8 +20,8 @@ from aos_protocol.errors import DeployError
 from aos_runtime.distribution import pip_install
 
 if TYPE_CHECKING:
-    from aos_lab.experiments.optimum import Optimum
-    from aos_lab.trials.setting import Setting
+    from aos_lab.experiments.results import Results
+    from aos_lab.trials.setting import Player
 
 __all__ = ["register"]
 
@@ -70,12 +70,9 @@ def run(
     """
     _check_place(on, system_seeds)
     _check_installed()
-    from aos_lab.experiments.optimum import regret_of
-    from aos_lab.experiments.physics import keep_picture
-    from aos_lab.experiments.plots import draw_plots
-    from aos_lab.experiments.report import write_report
-    from aos_lab.experiments.results import PartResult, Results, result_of, surroundings
-    from aos_lab.trials.campaign import play_campaign
+    from aos_lab.experiments.results import Results, surroundings
+    from aos_lab.experiments.running import ExperimentRun
+    from aos_lab.trials.campaign import Place
     from aos_lab.trials.files import read_experiment
 
     path = _experiment_file(name)
@@ -86,51 +83,34 @@ def run(
         raise typer.BadParameter(f"{sorted(unknown)[0]} is none of {known}", param_hint="--part")
     folder = (out or Path("experiments") / path.stem).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    parts = {key: value for key, value in experiment.parts.items() if not part or key in part}
-    wanted = {"model": seeds, "system": system_seeds}
-    results: list[PartResult] = []
+    place = Place(on=on, jobs=jobs, on_progress=lambda text: typer.echo(text, err=True))
+    missions = ExperimentRun(path, experiment, folder, first_seed, place)
+    names = [key for key in experiment.parts if not part or key in part]
     with progress() as bar:
-        for by, number in wanted.items():
-            for key, setup in parts.items() if number else ():
-                task = bar.add_task(f"{key}, {by}", total=number)
-                # Faults are the simulated world's; the model's world has none.
-                setting = msgspec.structs.replace(setup, by=by, faults={} if by == "model" else setup.faults)
-                played = asyncio.run(
-                    play_campaign(
-                        setting,
-                        range(first_seed, first_seed + number),
-                        folder=path.parent,
-                        out=folder / by / key,
-                        jobs=jobs,
-                        on_trial=partial(bar.advance, task),
-                        on=on,
-                        on_progress=lambda text: typer.echo(text, err=True),
-                    )
-                )
-                result = result_of(key, setup, by, played, experiment)
-                if by == "model" and experiment.optimum:
-                    optimum = _known_optimum(folder / by / key, played.digest, setting, path.parent)
-                    result = msgspec.structs.replace(result, regret=regret_of(optimum, played.trials))
-                elif by == "system":
-                    target = folder / "pictures" / f"{key}.png"
-                    if keep_picture(folder / by / key / "runs", result.seeds, target):
-                        picture = str(target.relative_to(folder))
-                        result = msgspec.structs.replace(result, picture=picture)
-                results.append(result)
+        by: dict[Player, int] = {"model": seeds, "system": system_seeds}
+        results = tuple(missions.results(names, by, partial(_begin, bar)))
     whole = Results(
         name=path.stem,
         title=experiment.title,
         about=experiment.about,
         command=_command(name, seeds, system_seeds, first_seed, part or ()),
         surroundings=surroundings(),
-        parts=tuple(results),
+        parts=results,
     )
+    _report(whole, folder, as_json)
+
+
+def _report(whole: Results, folder: Path, as_json: bool) -> None:
+    """Writes the report, and says what is in it."""
+    from aos_lab.experiments.plots import draw_plots
+    from aos_lab.experiments.report import write_report
+
     (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(whole), indent=2))
     pages = write_report(whole, draw_plots(whole, folder / "plots"), folder)
     if as_json:
         print_json(whole)
         return
-    for result in results:
+    for result in whole.parts:
         for verdict in result.verdicts:
             word = verdict.word if verdict.is_seen else verdict.word.upper()
             print(
@@ -156,60 +136,23 @@ def statistics(
     came of each, and what that says about the numbers of documents.
     """
     _check_installed()
-    from aos_lab.calibration.calibrate import Calibration, calibrate
-    from aos_lab.calibration.records import RecordedMission, read_missions
     from aos_lab.experiments.markdown import page
-    from aos_lab.experiments.results import surroundings
-    from aos_lab.experiments.statistics import ScriptedStep, Statistics, markdown_statistics, steps_of
-    from aos_lab.trials.campaign import play_campaign
+    from aos_lab.experiments.running import statistics_of
+    from aos_lab.experiments.statistics import markdown_statistics
     from aos_lab.trials.files import read_script_file
 
     path = _experiment_file(name, "deploy/experiments/statistics")
-    file = read_script_file(path)
     folder = (out or Path("experiments") / f"{path.stem}-statistics").resolve()
-    missions: list[RecordedMission] = []
-    steps: list[ScriptedStep] = []
-    seeds: dict[str, str] = {}
-    broken: dict[str, int] = {}
     with progress() as bar:
-        for key, part in file.parts.items():
-            number = part.missions * repeat
-            task = bar.add_task(key, total=number)
-            # No two scripts have the same seeds.
-            begin = first_seed + sum(
-                setup.missions * repeat for setup in list(file.parts.values())[: len(seeds)]
-            )
-            played = asyncio.run(
-                play_campaign(
-                    msgspec.structs.replace(part, by="system"),
-                    range(begin, begin + number),
-                    folder=path.parent,
-                    out=folder / key,
-                    jobs=1,
-                    on_trial=partial(bar.advance, task),
-                )
-            )
-            seeds[key] = f"{begin} to {begin + number - 1}"
-            broken[key] = sum(bool(trial.fault) for trial in played.trials)
-            wanted = {trial.seed for trial in played.trials if not trial.fault}
-            recorded = [mission for mission in read_missions(folder / key) if mission.seed in wanted]
-            missions += recorded
-            steps += steps_of(key, recorded)
-    calibrations: dict[str, Calibration] = {}
-    for key, bundles in file.calibrates.items():
-        paths = [(path.parent / bundle).resolve() for bundle in bundles]
-        calibrations[key] = asyncio.run(calibrate(missions, paths))
-    found = Statistics(
-        name=path.stem,
-        title=file.title,
-        about=file.about,
-        command=f"aos experiment statistics {name} --repeat {repeat}",
-        surroundings=surroundings(),
-        seeds=seeds,
-        broken=broken,
-        steps=tuple(steps),
-        calibrations=calibrations,
-    )
+        found = statistics_of(
+            path,
+            read_script_file(path),
+            f"aos experiment statistics {name} --repeat {repeat}",
+            folder=folder,
+            repeat=repeat,
+            first_seed=first_seed,
+            begin=partial(_begin, bar),
+        )
     (folder / "report.json").write_bytes(msgspec.json.format(msgspec.json.encode(found), indent=2))
     (folder / "report.md").write_text(markdown_statistics(found))
     (folder / "report.html").write_text(page(found.title, markdown_statistics(found)))
@@ -222,25 +165,17 @@ def statistics(
     print(f"the report is in {from_here(folder / 'report.md')}")
 
 
+def _begin(bar: Progress, text: str, total: int) -> Callable[[], None]:
+    """Shows a new bar; the function moves it on by a mission."""
+    return partial(bar.advance, bar.add_task(text, total=total))
+
+
 def _command(name: str, seeds: int, system_seeds: int, first_seed: int, parts: Sequence[str]) -> str:
     """Returns the command that runs the same missions again."""
     command = f"aos experiment run {name} --seeds {seeds} --system-seeds {system_seeds}"
     if first_seed != 1:
         command += f" --first-seed {first_seed}"
     return command + "".join(f" --part {part}" for part in parts)
-
-
-def _known_optimum(out: Path, digest: str, setting: Setting, folder: Path) -> Optimum:
-    """Reads the optimum that was worked out for the same documents and settings, or works it out now."""
-    from aos_lab.experiments.optimum import Optimum, optimum_of
-    from aos_lab.trials.setting import deployment_of
-
-    kept = out / f"best-{digest}.json"
-    if kept.is_file():
-        return msgspec.json.decode(kept.read_bytes(), type=Optimum)
-    optimum = asyncio.run(optimum_of(deployment_of(setting, folder, out)))
-    kept.write_bytes(msgspec.json.encode(optimum))
-    return optimum
 
 
 def _check_place(on: str, system_seeds: int) -> None:

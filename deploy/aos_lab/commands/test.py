@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import tempfile
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +15,9 @@ from aos_deploy.exit_codes import ExitCode
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
+
+if TYPE_CHECKING:
+    from aos_lab.trials.junit import Tested
 
 __all__ = ["register"]
 
@@ -49,10 +53,9 @@ def run_tests(
     actions, what never happens, the probability of the goal. The documents'
     own model plays the skills, or the whole system with its adapters.
     """
-    from aos_lab.trials.campaign import play_campaign
-    from aos_lab.trials.claims import asking_the_world, judge
+    from aos_lab.trials.campaign import Place, play_campaign
     from aos_lab.trials.files import read_test_file
-    from aos_lab.trials.junit import Tested, failed_missions, verdict_text, write_junit
+    from aos_lab.trials.junit import Tested, write_junit
 
     tests = read_test_file(file).tests
     tested: dict[str, Tested] = {}
@@ -61,35 +64,32 @@ def run_tests(
         for name, test in tests.items():
             numbers = range(test.first_seed, test.first_seed + (seeds or test.seeds))
             task = bar.add_task(name, total=len(numbers))
-            played = asyncio.run(
-                play_campaign(
-                    test,
-                    numbers,
-                    folder=file.resolve().parent,
-                    out=out / name,
-                    jobs=jobs,
-                    on_trial=partial(bar.advance, task),
-                )
+            missions = play_campaign(
+                test,
+                numbers,
+                folder=file.resolve().parent,
+                out=out / name,
+                on_trial=partial(bar.advance, task),
+                place=Place(jobs=jobs),
             )
-            by = "model" if test.by == "model" else "system"
-            verdicts = tuple(
-                judge(asking_the_world(claim, by, test.truth), played.trials, by)
-                for claim in test.claims
-                if claim.only in (None, by)
-            )
-            passed = all(verdict.is_seen for verdict in verdicts)
-            tested[name] = Tested(verdicts=verdicts, trials=played.trials, passed=passed)
+            tested[name] = Tested.of(test, asyncio.run(missions).trials)
     if junit is not None:
         write_junit(junit, tested)
     if as_json:
         print_json(tested)
     else:
-        for name, test_result in tested.items():
-            for verdict in test_result.verdicts:
-                word = "ok    " if verdict.is_seen else "FAILED"
-                print(f"{word} {name}: {verdict.says}: {verdict_text(verdict)}")
-                missions = failed_missions(verdict, test_result.trials) if not verdict.is_seen else []
-                for line in missions[:SHOWN_MISSIONS]:
-                    print(f"         {line}")
+        _print_tested(tested)
     if not all(test.passed for test in tested.values()):
         raise typer.Exit(ExitCode.MISSION_FAILED)
+
+
+def _print_tested(tested: Mapping[str, Tested]) -> None:
+    from aos_lab.trials.junit import failed_missions, verdict_text
+
+    for name, test in tested.items():
+        for verdict in test.verdicts:
+            word = "ok    " if verdict.is_seen else "FAILED"
+            print(f"{word} {name}: {verdict.says}: {verdict_text(verdict)}")
+            missions = failed_missions(verdict, test.trials) if not verdict.is_seen else []
+            for line in missions[:SHOWN_MISSIONS]:
+                print(f"         {line}")

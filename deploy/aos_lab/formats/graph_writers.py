@@ -102,11 +102,19 @@ def _header_lines(graph: PolicyGraph, prefix: str) -> Iterator[str]:
     yield ""
     yield from _array(f"{prefix}_node_action", "uint16_t", [str(node.action) for node in graph.nodes])
     yield ""
+    yield from _edges(graph, prefix)
+    yield ""
+    yield from _after(prefix)
+    yield ""
+    yield "#endif"
+
+
+def _edges(graph: PolicyGraph, prefix: str) -> Iterator[str]:
     first, numbers, following = [0], [], []
     for node in graph.nodes:
         for observation, target in sorted(node.next.items()):
             numbers.append(str(observation))
-            following.append(str(target) if target != OVER else f"{upper}_OVER")
+            following.append(str(target) if target != OVER else f"{prefix.upper()}_OVER")
         first.append(len(numbers))
     yield "// The edges of a node, by ascending observation, begin at its place in the first array."
     yield from _array(f"{prefix}_first_edge", "uint32_t", [str(place) for place in first])
@@ -114,7 +122,9 @@ def _header_lines(graph: PolicyGraph, prefix: str) -> Iterator[str]:
     yield from _array(f"{prefix}_edge_observation", "uint16_t", numbers or ["0"])
     yield ""
     yield from _array(f"{prefix}_edge_node", "uint16_t", following or ["0"])
-    yield ""
+
+
+def _after(prefix: str) -> Iterator[str]:
     yield "// The node after an observation."
     yield f"static inline uint16_t {prefix}_after(uint16_t node, {prefix}_observation observation) {{"
     yield f"  uint32_t low = {prefix}_first_edge[node];"
@@ -128,10 +138,8 @@ def _header_lines(graph: PolicyGraph, prefix: str) -> Iterator[str]:
     yield "      high = middle;"
     yield "    }"
     yield "  }"
-    yield f"  return {upper}_NO_NODE;"
+    yield f"  return {prefix.upper()}_NO_NODE;"
     yield "}"
-    yield ""
-    yield "#endif"
 
 
 def _enumeration(

@@ -21,10 +21,22 @@ from aos_lab.trials.trial import Trial
 from aos_protocol import __version__
 from aos_runtime.lifecycle import root_cause
 
-__all__ = ["HERE", "Played", "play_campaign"]
+__all__ = ["HERE", "Place", "Played", "play_campaign"]
 
 HERE = "local"
 """The name of this machine as the place where missions are played."""
+
+
+class Place(msgspec.Struct, frozen=True, kw_only=True):
+    """The machine, and how many missions it plays at a time.
+
+    Missions of the model can be played `on` a Ray cluster, on `jobs` of its processors or on all; here it is
+    one at a time if not said.
+    """
+
+    on: str = HERE
+    jobs: int | None = None
+    on_progress: Callable[[str], None] = lambda text: None
 
 
 class Played(msgspec.Struct, frozen=True):
@@ -53,15 +65,12 @@ async def play_campaign(
     *,
     folder: Path,
     out: Path,
-    jobs: int | None,
     on_trial: Callable[[], None],
-    on: str = HERE,
-    on_progress: Callable[[str], None] = lambda text: None,
+    place: Place = Place(),  # noqa: B008 - it is frozen
 ) -> Played:
     """Plays a mission of each seed. Records in `out` are used where they were made of the same.
 
-    Missions that broke are run again. `folder` is where the setting's paths begin. Missions of the model can
-    be played `on` a Ray cluster, on `jobs` of its processors or on all; here it is one at a time if not said.
+    Missions that broke are run again. `folder` is where the setting's paths begin.
     """
     deployment = deployment_of(setting, folder, out)
     world = world_deployment_of(setting, deployment, folder) if setting.by == "model" else None
@@ -80,11 +89,12 @@ async def play_campaign(
         on_trial()
 
     player: _Player
+    jobs = place.jobs
     if remaining:
         await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)
-        if on != HERE and setting.by == "model":
+        if place.on != HERE and setting.by == "model":
             missions = ModelMissions.of(deployment, world)
-            player = cluster = await RayPlayer.prepared(missions, on, jobs, on_progress)
+            player = cluster = await RayPlayer.prepared(missions, place.on, jobs, place.on_progress)
             jobs = cluster.jobs
         else:
             player = await _player(setting, deployment, world, out)

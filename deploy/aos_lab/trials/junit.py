@@ -8,7 +8,8 @@ from xml.etree import ElementTree
 
 import msgspec
 
-from aos_lab.trials.claims import Verdict
+from aos_lab.trials.claims import Verdict, asking_the_world, judge
+from aos_lab.trials.files import MissionTest
 from aos_lab.trials.trial import Trial
 
 __all__ = ["Tested", "failed_missions", "verdict_text", "write_junit"]
@@ -20,6 +21,17 @@ class Tested(msgspec.Struct, frozen=True, kw_only=True):
     verdicts: tuple[Verdict, ...]
     trials: tuple[Trial, ...]
     passed: bool
+
+    @classmethod
+    def of(cls, test: MissionTest, trials: tuple[Trial, ...]) -> Tested:
+        """The verdicts on a test's claims."""
+        by = "model" if test.by == "model" else "system"
+        verdicts = tuple(
+            judge(asking_the_world(claim, by, test.truth), trials, by)
+            for claim in test.claims
+            if claim.only in (None, by)
+        )
+        return cls(verdicts=verdicts, trials=trials, passed=all(verdict.is_seen for verdict in verdicts))
 
 
 def verdict_text(verdict: Verdict) -> str:

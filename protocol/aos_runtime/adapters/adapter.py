@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import msgspec
@@ -24,6 +25,7 @@ Answer = Mapping[str, Any] | Observed
 """The fields of a skill's result, or the observation."""
 
 
+@dataclass(eq=False)
 class Call:
     """One run of a skill.
 
@@ -32,36 +34,24 @@ class Call:
     and empty in a call by hand.
     """
 
-    def __init__(
-        self,
-        id: ActivationId,
-        path: str,
-        target: Any,
-        fields: dict[str, Any],
-        deadline_s: float,
-        skill: str = "",
-        parameters: dict[str, Any] | None = None,
-        on_progress: Callable[[float, str], None] = lambda progress, text: None,
-        on_message: Callable[[str, dict[str, Any]], None] = lambda topic, fields: None,
-    ) -> None:
-        self.id = id
-        self.path = path
-        self.target = target
-        self.fields = fields
-        self.deadline_s = deadline_s
-        self.skill = skill
-        self.parameters = parameters or {}
-        self._on_progress = on_progress
-        self._on_message = on_message
-        self._is_cancelled = threading.Event()
+    id: ActivationId
+    path: str
+    target: Any
+    fields: dict[str, Any]
+    deadline_s: float
+    skill: str = ""
+    parameters: dict[str, Any] = field(default_factory=dict)
+    on_progress: Callable[[float, str], None] = lambda progress, text: None
+    on_message: Callable[[str, dict[str, Any]], None] = lambda topic, fields: None
+    _is_cancelled: threading.Event = field(default_factory=threading.Event, init=False)
 
     def progress(self, progress: float, text: str = "") -> None:
         """Tells how far it is, from 0 to 1, and what it does. From any thread, as often as you like."""
-        self._on_progress(progress, text)
+        self.on_progress(progress, text)
 
     def publish(self, topic: str, **fields: Any) -> None:
         """Sends a message on a topic. From any thread."""
-        self._on_message(topic, fields)
+        self.on_message(topic, fields)
 
     @property
     def is_cancelled(self) -> bool:

@@ -10,8 +10,8 @@ from collections.abc import Awaitable, Callable
 
 from aos_protocol.errors import AosError, SkillError
 from aos_skills.dds.cyclone import HEADER, Endpoint, Participant, Writer
-from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, Fields, Qos, TopicFound
-from aos_skills.ros.ros2_node import Ros2Node
+from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
+from aos_skills.ros.ros2_node import Ros2Node, check_type, not_served
 from aos_skills.ros.types import RosTypes
 from aos_skills.ros2.wire import ros_type
 
@@ -76,23 +76,15 @@ class DdsNode(Ros2Node):
 
     # --- services ------------------------------------------------------------------------------------
 
-    async def call(
-        self,
-        service: str,
-        fields: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        discovery_s: float = DISCOVERY_S,
-    ) -> Fields:
-        type_name = await self.service_type(service, type_name, min(discovery_s, timeout_s))
+    async def call(self, request: ServiceRequest) -> Fields:
+        service, timeout_s = request.service, request.timeout_s
+        type_name = await self.service_type(service, request.type_name, min(request.discovery_s, timeout_s))
         if service not in self._clients:
             self._clients[service] = _Client(self._participant, service, type_name)
-        client = self._clients[service]
-        request = self.types.encoded(f"{type_name}_Request", fields)
+        encoded = self.types.encoded(f"{type_name}_Request", request.fields)
         try:
             async with asyncio.timeout(timeout_s):
-                response = await client.ask(request)
+                response = await self._clients[service].ask(encoded)
         except TimeoutError as error:
             raise SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503") from error
         return self.types.decoded(f"{type_name}_Response", response)
@@ -100,18 +92,11 @@ class DdsNode(Ros2Node):
     async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
         found = await self._wait_for(False, f"rq{service}Request", timeout_s)
         if found is None:
-            raise SkillError(
-                f"no ROS 2 node serves {service} in domain {self._domain} of DDS",
-                code="AOS505",
-                hint=f"Served are: {', '.join(self.services()) or 'none'}",
+            raise not_served(
+                f"no ROS 2 node serves {service} in domain {self._domain} of DDS", self.services()
             )
         theirs = ros_type(found.type_name).removesuffix("_Request")
-        if type_name and theirs != type_name:
-            raise SkillError(
-                f"{service} is of type {theirs}, not {type_name}",
-                code="AOS509",
-                hint="Correct the type in the deploy file, or leave it out",
-            )
+        check_type(service, theirs, type_name)
         self.types.check(f"{theirs}_Request")
         return theirs
 

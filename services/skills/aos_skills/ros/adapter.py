@@ -17,7 +17,7 @@ from aos_runtime.adapters import Call, Host
 from aos_skills.ros.action_client import CANCEL_S
 from aos_skills.ros.connect import connect
 from aos_skills.ros.documented import documented
-from aos_skills.ros.node import Fields, RosNode
+from aos_skills.ros.node import ActionRequest, Fields, RosNode, ServiceRequest
 
 __all__ = ["DdsAdapter", "Ros1Adapter", "Ros2Adapter", "RosAdapter", "Way", "way_to"]
 
@@ -181,7 +181,7 @@ class RosAdapter:
     async def _call_service(self, call: Call, way: Way) -> dict[str, Any]:
         try:
             return await self.node.call(
-                way.name, call.fields, type_name=way.type_name, timeout_s=call.deadline_s + _LONGER_S
+                ServiceRequest(way.name, call.fields, call.deadline_s + _LONGER_S, way.type_name)
             )
         except asyncio.CancelledError:
             raise SkillError(
@@ -197,16 +197,9 @@ class RosAdapter:
             call.progress(0.0, json.dumps(feedback, default=str)[:MAX_PROGRESS_TEXT])
             self.host.publish(f"{call.path}/feedback", feedback)
 
-        running = asyncio.create_task(
-            self.node.run_action(
-                way.name,
-                call.fields,
-                type_name=way.type_name,
-                timeout_s=call.deadline_s + _LONGER_S,
-                cancelled=cancelled,
-                on_feedback=on_feedback,
-            )
-        )
+        timeout_s = call.deadline_s + _LONGER_S
+        request = ActionRequest(way.name, call.fields, timeout_s, way.type_name, cancelled, on_feedback)
+        running = asyncio.create_task(self.node.run_action(request))
         try:
             end = await asyncio.shield(running)
         except asyncio.CancelledError:

@@ -10,10 +10,12 @@ __all__ = [
     "DEFAULT_QOS",
     "DISCOVERY_S",
     "ActionEnd",
+    "ActionRequest",
     "Fields",
     "Qos",
     "RosNode",
     "RunGoal",
+    "ServiceRequest",
     "TopicFound",
     "named_skills",
 ]
@@ -40,6 +42,27 @@ class TopicFound(NamedTuple):
 
     type_name: str
     qos: Qos
+
+
+class ServiceRequest(NamedTuple):
+    """A call of a service. Without a type, the server's is taken."""
+
+    service: str
+    fields: Fields
+    timeout_s: float
+    type_name: str = ""
+    discovery_s: float = DISCOVERY_S
+
+
+class ActionRequest(NamedTuple):
+    """A run of an action. Without a type, the server's is taken."""
+
+    action: str
+    fields: Fields
+    timeout_s: float
+    type_name: str = ""
+    cancelled: asyncio.Event | None = None
+    on_feedback: Callable[[Fields], None] | None = None
 
 
 class ActionEnd(NamedTuple):
@@ -76,16 +99,8 @@ class RosNode(Protocol):
         """Finds out what is published on a topic; None if nobody does within the time."""
         ...
 
-    async def call(
-        self,
-        service: str,
-        fields: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        discovery_s: float = DISCOVERY_S,
-    ) -> Fields:
-        """A service's response. Without a type, the server's is taken.
+    async def call(self, request: ServiceRequest) -> Fields:
+        """A service's response.
 
         SkillError AOS505 if no node serves it, AOS503 if it does not answer in time, AOS504 if it is lost.
         DeployError AOS806 if its type is not known, SkillError AOS509 if the server's definition is another.
@@ -96,19 +111,10 @@ class RosNode(Protocol):
         """Serves until closed: `handler(request)` runs as a task for each request and gives the response."""
         ...
 
-    async def run_action(
-        self,
-        action: str,
-        goal: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        cancelled: asyncio.Event | None = None,
-        on_feedback: Callable[[Fields], None] | None = None,
-    ) -> ActionEnd:
-        """Sends a goal and waits for its end. Without a type, the server's is taken.
+    async def run_action(self, request: ActionRequest) -> ActionEnd:
+        """Sends a goal and waits for its end.
 
-        When `cancelled` is set, or the time is over, the goal is cancelled and its end is waited for.
+        When its `cancelled` is set, or the time is over, the goal is cancelled and its end is waited for.
         SkillError AOS505 if no node serves the action, AOS502 if it refuses the goal, AOS503 if the time was
         over, AOS504 if the node is lost or does not end the goal although it was asked to.
         """

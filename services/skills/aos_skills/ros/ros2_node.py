@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-import asyncio
 from abc import ABC, abstractmethod
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 from typing import Self
 
-from aos_skills.ros import action_client
+from aos_protocol.errors import SkillError
+from aos_skills.ros.action_client import ActionClient
 from aos_skills.ros.action_server import ActionServer
 from aos_skills.ros.node import (
     DEFAULT_QOS,
-    DISCOVERY_S,
     ActionEnd,
+    ActionRequest,
     Fields,
     Qos,
     RunGoal,
+    ServiceRequest,
     TopicFound,
     named_skills,
 )
 from aos_skills.ros.types import RosTypes
 
-__all__ = ["Ros2Node"]
+__all__ = ["Ros2Node", "check_type", "not_served"]
 
 
 class Ros2Node(ABC):
@@ -29,7 +30,7 @@ class Ros2Node(ABC):
 
     def __init__(self, types: RosTypes) -> None:
         self.types = types
-        self._feedback = action_client.Feedback()
+        self._actions = ActionClient(self)
 
     async def __aenter__(self) -> Self:
         return self
@@ -55,15 +56,7 @@ class Ros2Node(ABC):
     async def topic(self, topic: str, timeout_s: float) -> TopicFound | None: ...
 
     @abstractmethod
-    async def call(
-        self,
-        service: str,
-        fields: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        discovery_s: float = DISCOVERY_S,
-    ) -> Fields: ...
+    async def call(self, request: ServiceRequest) -> Fields: ...
 
     @abstractmethod
     def serve(self, service: str, type_name: str, handler: Callable[[Fields], Awaitable[Fields]]) -> None: ...
@@ -88,26 +81,8 @@ class Ros2Node(ABC):
 
     # --- the same for all ----------------------------------------------------------------------------
 
-    async def run_action(
-        self,
-        action: str,
-        goal: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        cancelled: asyncio.Event | None = None,
-        on_feedback: Callable[[Fields], None] | None = None,
-    ) -> ActionEnd:
-        return await action_client.run_action(
-            self,
-            self._feedback,
-            action,
-            goal,
-            type_name=type_name,
-            timeout_s=timeout_s,
-            cancelled=cancelled,
-            on_feedback=on_feedback,
-        )
+    async def run_action(self, request: ActionRequest) -> ActionEnd:
+        return await self._actions.run(request)
 
     def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:
         ActionServer(self, action, type_name, run)
@@ -129,3 +104,18 @@ class Ros2Node(ABC):
         """Returns when nobody serves it."""
         while self.serves(service):
             await self.changed()
+
+
+def not_served(message: str, known: Iterable[str]) -> SkillError:
+    """The error where no node serves what is called."""
+    return SkillError(message, code="AOS505", hint=f"Served are: {', '.join(known) or 'none'}")
+
+
+def check_type(service: str, found: str, wanted: str) -> None:
+    """SkillError AOS509 where a service is of another type than the wanted one, if any is."""
+    if wanted and found != wanted:
+        raise SkillError(
+            f"{service} is of type {found}, not {wanted}",
+            code="AOS509",
+            hint="Correct the type in the deploy file, or leave it out",
+        )

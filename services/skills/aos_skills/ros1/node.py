@@ -9,15 +9,17 @@ from pathlib import Path
 from typing import Any
 
 from aos_protocol.errors import AosError, SkillError
-from aos_skills.ros.action_client import CANCEL_S
+from aos_skills.ros.action_client import CANCEL_S, node_lost, not_cancelled, not_ended
 from aos_skills.ros.definitions import definitions_in
 from aos_skills.ros.node import (
     DEFAULT_QOS,
     DISCOVERY_S,
     ActionEnd,
+    ActionRequest,
     Fields,
     Qos,
     RunGoal,
+    ServiceRequest,
     TopicFound,
     named_skills,
 )
@@ -93,19 +95,12 @@ class Ros1Node:
 
     # --- services and actions ------------------------------------------------------------------------
 
-    async def call(
-        self,
-        service: str,
-        fields: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        discovery_s: float = DISCOVERY_S,
-    ) -> Fields:
-        found = await self._type("services", service, type_name, min(discovery_s, timeout_s))
+    async def call(self, request: ServiceRequest) -> Fields:
+        service, timeout_s = request.service, request.timeout_s
+        found = await self._type("services", service, request.type_name, min(request.discovery_s, timeout_s))
+        asked = self._process.ask("call", name=service, type=found, fields=request.fields)
         try:
-            async with asyncio.timeout(timeout_s):
-                response: Fields = await self._process.ask("call", name=service, type=found, fields=fields)
+            response: Fields = await asyncio.wait_for(asked, timeout_s)
         except TimeoutError as error:
             raise SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503") from error
         return response
@@ -114,22 +109,14 @@ class Ros1Node:
         self._handlers[service] = handler
         self._process.tell("serve", name=service, type=_ros1(type_name))
 
-    async def run_action(
-        self,
-        action: str,
-        goal: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        cancelled: asyncio.Event | None = None,
-        on_feedback: Callable[[Fields], None] | None = None,
-    ) -> ActionEnd:
+    async def run_action(self, request: ActionRequest) -> ActionEnd:
         loop = asyncio.get_running_loop()
+        action, timeout_s = request.action, request.timeout_s
         ends_at_s = loop.time() + timeout_s
-        found = await self._type("actions", action, type_name, min(DISCOVERY_S, timeout_s))
-        number, answer = self._process.begin("run", name=action, type=found, fields=goal)
-        self._feedback[number] = on_feedback or _ignore
-        cancelling = asyncio.create_task(_set(cancelled or asyncio.Event()))
+        found = await self._type("actions", action, request.type_name, min(DISCOVERY_S, timeout_s))
+        number, answer = self._process.begin("run", name=action, type=found, fields=request.fields)
+        self._feedback[number] = request.on_feedback or _ignore
+        cancelling = asyncio.create_task(_set(request.cancelled or asyncio.Event()))
         leaving = asyncio.create_task(self._gone("actions", action))
         try:
             await asyncio.wait(
@@ -138,28 +125,20 @@ class Ros1Node:
                 return_when=asyncio.FIRST_COMPLETED,
             )
             if leaving.done() and not answer.done():
-                raise SkillError(
-                    f"the node that serves {action} has left while it ran",
-                    code="AOS504",
-                    hint="Whether the skill did its work is not known",
-                )
+                raise node_lost(action)
             is_late = not answer.done() and not cancelling.done()
             if not answer.done():
                 self._process.tell("cancel", of=number)
                 await asyncio.wait([answer], timeout=CANCEL_S)
                 if not answer.done():
-                    raise SkillError(
-                        f"{action} was asked to cancel its goal and did not within {CANCEL_S:g} s",
-                        code="AOS504",
-                        hint="The robot may still move: look at it, and at the node's log",
-                    )
+                    raise not_cancelled(action)
         finally:
             cancelling.cancel()
             leaving.cancel()
             del self._feedback[number]
         end = answer.result()
         if is_late:
-            raise SkillError(f"{action} did not end within {timeout_s:g} s and was cancelled", code="AOS503")
+            raise not_ended(action, timeout_s)
         return ActionEnd(end["status"], end["result"])
 
     def serve_action(self, action: str, type_name: str, run: RunGoal) -> None:

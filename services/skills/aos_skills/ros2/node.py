@@ -10,8 +10,8 @@ from typing import Self
 
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
-from aos_skills.ros.node import DEFAULT_QOS, DISCOVERY_S, Fields, Qos, TopicFound
-from aos_skills.ros.ros2_node import Ros2Node
+from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
+from aos_skills.ros.ros2_node import Ros2Node, check_type, not_served
 from aos_skills.ros.types import NO_HASH, RosTypes
 from aos_skills.ros2.graph import Graph
 from aos_skills.ros2.wire import Attachment, Endpoint, Kind, gid_of
@@ -92,23 +92,16 @@ class Node(Ros2Node):
 
     # --- services ------------------------------------------------------------------------------------
 
-    async def call(
-        self,
-        service: str,
-        fields: Fields,
-        *,
-        type_name: str = "",
-        timeout_s: float,
-        discovery_s: float = DISCOVERY_S,
-    ) -> Fields:
-        server = await self._server(service, type_name, min(discovery_s, timeout_s))
+    async def call(self, request: ServiceRequest) -> Fields:
+        found_within_s = min(request.discovery_s, request.timeout_s)
+        server = await self._server(request.service, request.type_name, found_within_s)
         client = self._client(server)
-        request = self.types.encoded(f"{server.type_name}_Request", fields)
-        packet = Packet(request, client.attachment())
+        encoded = self.types.encoded(f"{server.type_name}_Request", request.fields)
         try:
-            answer = await self._bus.ask(server.key, packet, timeout_s=timeout_s)
+            packet = Packet(encoded, client.attachment())
+            answer = await self._bus.ask(server.key, packet, timeout_s=request.timeout_s)
         except BusError as error:
-            raise _skill_error(service, timeout_s, error) from error
+            raise _skill_error(request.service, request.timeout_s, error) from error
         return self.types.decoded(f"{server.type_name}_Response", answer.payload)
 
     async def service_type(self, service: str, type_name: str, timeout_s: float) -> str:
@@ -118,18 +111,8 @@ class Node(Ros2Node):
         """The node's end of a service, whose type is as it is defined here."""
         server = await self.graph.wait_for(Kind.SERVER, service, timeout_s)
         if server is None:
-            known = ", ".join(self.services()) or "none"
-            raise SkillError(
-                f"no ROS 2 node serves {service} in domain {self.domain}",
-                code="AOS505",
-                hint=f"Served are: {known}",
-            )
-        if type_name and server.type_name != type_name:
-            raise SkillError(
-                f"{service} is of type {server.type_name}, not {type_name}",
-                code="AOS509",
-                hint="Correct the type in the deploy file, or leave it out",
-            )
+            raise not_served(f"no ROS 2 node serves {service} in domain {self.domain}", self.services())
+        check_type(service, server.type_name, type_name)
         self._same_definition(server)
         return server
 

@@ -283,7 +283,7 @@ class _Build(msgspec.Struct, frozen=True):
             staging,
             self.deadline_s,
             self.emitted.project,
-            LIMIT_HINT,
+            hint=LIMIT_HINT,
             niceness=self.niceness,
             cpu_s=cpu_s,
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 from aos_protocol.errors import ModelError
 from aos_runtime.children import PIPE, Child, Limits, guarded
@@ -29,29 +30,33 @@ _FILE_BYTES = 512 << 20
 _OUTPUT_LIMIT_BYTES = 4 << 20
 
 
+class Given(TypedDict, total=False):
+    """The advice where the compiler is too slow, its niceness, and each process's limit of processor time."""
+
+    hint: str
+    niceness: int
+    cpu_s: int | None
+
+
 async def run_compiler(
     compiler: Compiler,
     command: list[str],
     directory: Path,
     deadline_s: float,
     what: str,
-    hint: str = _OUR_LIMIT_HINT,
-    *,
-    niceness: int = 0,
-    cpu_s: int | None = None,
+    **given: Unpack[Given],
 ) -> tuple[str, int]:
     """Runs the command in `directory`; returns what it says, and its status.
 
-    ModelError AOS202 with the `hint`, which names `what` is compiled, if it takes longer than `deadline_s`.
-    `cpu_s` limits each of its processes in seconds of processor time; see `ran_out`.
+    ModelError AOS202, which names `what` is compiled, if it takes longer than `deadline_s`; see `ran_out`.
     """
     memory = None if compiler.family == "zig" else _ADDRESS_SPACE_BYTES
     # The deadline is of the wall clock. This limit ends what outlives even the guard. Zig has threads.
     limits = Limits(
         address_space_bytes=memory,
-        cpu_s=cpu_s or int(deadline_s * 4) + 1,
+        cpu_s=given.get("cpu_s") or int(deadline_s * 4) + 1,
         file_bytes=_FILE_BYTES,
-        niceness=niceness,
+        niceness=given.get("niceness", 0),
     )
     child = await Child.start(
         guarded(command, limits),
@@ -66,7 +71,7 @@ async def run_compiler(
             return output, await child.wait()
     except TimeoutError as error:
         message = f"the compiler did not finish {what} within {deadline_s:g} s"
-        raise ModelError(message, code="AOS202", hint=hint) from error
+        raise ModelError(message, code="AOS202", hint=given.get("hint", _OUR_LIMIT_HINT)) from error
     finally:
         await child.stop()
 

@@ -13,7 +13,7 @@ import re
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal, Self, TypeVar
+from typing import Any, Literal, Self, TypedDict, TypeVar, Unpack
 
 import msgspec
 
@@ -59,7 +59,7 @@ from aos_solver.child.shared_memory import SharedMemory
 from aos_solver.emission.emit import Bound
 from aos_solver.emission.program import Observed
 
-__all__ = ["Engine", "ImpossiblePolicy", "Planner", "Stepping"]
+__all__ = ["Apart", "Engine", "ImpossiblePolicy", "Planner", "Stepping"]
 
 Planner = Literal["pomcp", "despot", "sarsop", "auto"]
 
@@ -81,6 +81,19 @@ searches."""
 LISTING_DEADLINE_S = 600.0
 EXACT_TIME_S = 300.0
 EXACT_BELIEF_BUDGET = 20_000_000
+
+
+class Apart(TypedDict, total=False):
+    """The restrictions of a decision.
+
+    It is for none of the actions with the `barred` numbers, which nobody could carry out now. The skills
+    `without` which it is made are not looked ahead with either. With `cautious` it is made for the belief in
+    which nothing ran that was not observed.
+    """
+
+    barred: Sequence[int]
+    without: Sequence[str]
+    cautious: bool
 
 
 class _Done(msgspec.Struct, frozen=True):
@@ -179,30 +192,24 @@ class Engine:
         horizon: int | None = None,
         planner: Planner = "pomcp",
         threads: int = 1,
-        barred: Sequence[int] = (),
-        without: Sequence[str] = (),
-        cautious: bool = False,
+        **apart: Unpack[Apart],
     ) -> Plan:
         """Searches from the current belief within the budget; `horizon` None takes the document's.
-
-        The decision is for none of the actions that are `barred`, which nobody could carry out now. The
-        search does without the skills that are named, now and later. With `cautious` it starts from the
-        belief in which nothing ran that was not observed.
 
         With the planner `auto` the model's size decides, and the plan says why. POMCP can use
         several threads.
         """
         command = command_line(
             "plan",
-            barred,
+            apart.get("barred", ()),
             simulations=simulations or 0,
             seconds=time_s or 0,
             seed=seed,
             horizon=horizon or 0,
             planner=planner,
             threads=threads,
-            without=",".join(without) or None,
-            cautious=cautious or None,
+            without=",".join(apart.get("without", ())) or None,
+            cautious=apart.get("cautious") or None,
         )
         return await self._ask(command, Plan, deadline_s=PLANNING_DEADLINE_S + (time_s or 0))
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import Unpack
 
 import msgspec
 
 from aos_solver.child.answers import Plan
-from aos_solver.child.engine import Engine, Planner
+from aos_solver.child.engine import Apart, Engine, Planner
 
 __all__ = ["Search"]
 
@@ -34,19 +34,8 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""
         return self.seed * SEEDS_PER_MISSION + step
 
-    async def run(
-        self,
-        engine: Engine,
-        step: int,
-        barred: Sequence[int] = (),
-        *,
-        without: Sequence[str] = (),
-        cautious: bool = False,
-    ) -> Plan:
-        """Decide on the engine's belief, or its cautious one, for none of the actions of these numbers.
-
-        The skills `without` which it decides are not looked ahead with either.
-        """
+    async def run(self, engine: Engine, step: int, **apart: Unpack[Apart]) -> Plan:
+        """Decide on the engine's belief."""
         return await engine.plan(
             simulations=None if self.time_s is not None else self.simulations,
             time_s=self.time_s,
@@ -54,9 +43,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             horizon=self.horizon,
             planner=self.planner,
             threads=self.threads,
-            barred=barred,
-            without=without,
-            cautious=cautious,
+            **apart,
         )
 
     async def ponder(self, engine: Engine, step: int, index: int) -> None:

@@ -117,12 +117,12 @@ class Chooser:
         """
         without = sorted(set_aside)
         if not self._terms.is_cautious:
-            return await self._search.run(engine, step, barred, without=without), False
+            return await self._search.run(engine, step, barred=barred, without=without), False
         if is_held_back(belief, self._limits):
-            return await self._search.run(engine, step, barred, without=without, cautious=True), True
-        plan = await self._search.run(engine, step, barred, without=without)
+            return await self._search.run(engine, step, barred=barred, without=without, cautious=True), True
+        plan = await self._search.run(engine, step, barred=barred, without=without)
         if belief.cautious is not None and is_worth_nothing(plan.best, self._limits):
-            cautious = await self._search.run(engine, step, barred, without=without, cautious=True)
+            cautious = await self._search.run(engine, step, barred=barred, without=without, cautious=True)
             if not is_worth_nothing(cautious.best, self._limits):
                 return cautious, True
         return plan, False

@@ -6,9 +6,9 @@ A `.policy` file is a line of JSON (`PolicyHeader`), and after it the alpha vect
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import Unpack
 
 import msgspec
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue
 from aos_solver.child.answers import ExportedBelief, Plan
-from aos_solver.child.engine import Engine
+from aos_solver.child.engine import Apart, Engine
 from aos_solver.child.search import Search
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionSize
 
@@ -113,15 +113,7 @@ class PolicySearch(Search, frozen=True, kw_only=True):
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""
 
-    async def run(
-        self,
-        engine: Engine,
-        step: int,
-        barred: Sequence[int] = (),
-        *,
-        without: Sequence[str] = (),
-        cautious: bool = False,
-    ) -> Plan:
+    async def run(self, engine: Engine, step: int, **apart: Unpack[Apart]) -> Plan:
         """The policy's action at the engine's belief; PlanningError AOS322 if the policy does not fit.
 
         Its values suppose that all skills can be used later, also those `without` which it decides now.
@@ -131,11 +123,12 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         """
         begun_s = time.perf_counter()
         self.policy.check_model(engine.model_digest)
+        cautious, without = apart.get("cautious", False), apart.get("without", ())
         choice = self.policy.choose(await engine.export_belief(is_whole=False, cautious=cautious))
         names = [action.name for action in engine.description.actions]
         left_out = [n for n, action in enumerate(engine.description.actions) if action.skill in without]
         values = choice.values[: len(names)].copy()
-        values[[*barred, *left_out]] = -np.inf
+        values[[*apart.get("barred", ()), *left_out]] = -np.inf
         best = int(np.argmax(values))
         prediction = await engine.predict(best, cautious=cautious)
         actions = tuple(

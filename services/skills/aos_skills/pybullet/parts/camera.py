@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pybullet
@@ -11,7 +12,7 @@ from PIL import Image
 
 from aos_skills.pybullet.parts.scene import Scene, Vector
 
-__all__ = ["Camera", "photograph"]
+__all__ = ["Camera", "Pose", "photograph"]
 
 PICTURE_SIZE = (480, 360)
 CLOSE_UP_SIZE = (240, 360)
@@ -23,24 +24,30 @@ BORDER_PX = 2
 """The width of white between a picture and its close-up."""
 
 
+class Pose(NamedTuple):
+    """The place of a camera, and how it is turned."""
+
+    eye: Vector
+    looks_at: Vector
+    up: Vector = (0, 0, 1)
+
+
 def photograph(
     scene: Scene,
-    eye: Vector,
-    looks_at: Vector,
+    pose: Pose,
     size: tuple[int, int],
     *,
-    up: Vector = (0, 0, 1),
     sun: Vector = SUN,
     field_of_view_deg: float = FIELD_OF_VIEW_DEG,
     shadow: bool = True,
 ) -> Image.Image:
-    """Returns the picture of a camera at `eye`, in color; `size` is width and height in pixels."""
+    """Returns the picture of a camera, in color; `size` is width and height in pixels."""
     client = scene.client
     width, height = size
     _, _, pixels, _, _ = client.getCameraImage(
         width,
         height,
-        client.computeViewMatrix(eye, looks_at, up),
+        client.computeViewMatrix(*pose),
         client.computeProjectionMatrixFOV(field_of_view_deg, width / height, 0.1, 30),
         shadow=int(shadow),
         lightDirection=sun,
@@ -53,19 +60,12 @@ def photograph(
 class Camera:
     """Looks into a room from its open side, with a close-up beside it if the world has one to show.
 
-    `close_up` gives the close-up's eye and what it looks at.
+    `close_up` gives the close-up's pose.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        eye: Vector,
-        looks_at: Vector,
-        close_up: Callable[[], tuple[Vector, Vector]] | None = None,
-    ) -> None:
+    def __init__(self, scene: Scene, pose: Pose, close_up: Callable[[], Pose] | None = None) -> None:
         self._scene = scene
-        self._eye = eye
-        self._looks_at = looks_at
+        self._pose = pose
         self._close_up = close_up
         self._frames: list[Image.Image] = []
         self._next_frame_s = 0.0
@@ -89,10 +89,10 @@ class Camera:
             first.save(path, save_all=True, append_images=rest, duration=FRAME_SHOWN_MS, loop=0)
 
     def _picture(self, *, shadow: bool = True) -> Image.Image:
-        picture = photograph(self._scene, self._eye, self._looks_at, PICTURE_SIZE, shadow=shadow)
+        picture = photograph(self._scene, self._pose, PICTURE_SIZE, shadow=shadow)
         if self._close_up is not None:
             # In a corner of the picture it would sooner or later hide the robot.
-            close_up = photograph(self._scene, *self._close_up(), CLOSE_UP_SIZE, shadow=shadow)
+            close_up = photograph(self._scene, self._close_up(), CLOSE_UP_SIZE, shadow=shadow)
             left, height = picture.width + BORDER_PX, max(picture.height, close_up.height)
             both = Image.new("RGB", (left + close_up.width, height), "white")
             both.paste(picture, (0, 0))

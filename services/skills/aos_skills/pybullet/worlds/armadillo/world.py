@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from aos_skills.pybullet.parts.camera import Camera
+from aos_skills.pybullet.parts.camera import Camera, Pose
 from aos_skills.pybullet.parts.faults import Faults
-from aos_skills.pybullet.parts.scene import Scene, Vector
+from aos_skills.pybullet.parts.scene import Scene
 from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.armadillo.file import ArmadilloFile
@@ -36,7 +36,7 @@ class Armadillo(World):
         self.room = Room(self.scene, file)
         self.robot = MobileArm(self.scene, (file.robot.x, file.robot.y, file.robot.yaw))
         self.faults = Faults(seed)
-        self.camera = Camera(self.scene, EYE_M, LOOKS_AT_M, self._close_up)
+        self.camera = Camera(self.scene, Pose(EYE_M, LOOKS_AT_M), self._close_up)
         self.is_silent = False
         """True while the finger sensors report nothing during this call."""
         self.has_injured = False
@@ -108,6 +108,6 @@ class Armadillo(World):
         if self.scene.client.getContactPoints(bodyA=self.robot.body, bodyB=self.room.person):
             self.has_injured = True
 
-    def _close_up(self) -> tuple[Vector, Vector]:
+    def _close_up(self) -> Pose:
         hand = self.robot.arm.tip_place()
-        return (hand[0] + CLOSE_EYE_M[0], hand[1] + CLOSE_EYE_M[1], hand[2] + CLOSE_EYE_M[2]), hand
+        return Pose((hand[0] + CLOSE_EYE_M[0], hand[1] + CLOSE_EYE_M[1], hand[2] + CLOSE_EYE_M[2]), hand)

@@ -6,10 +6,10 @@ import math
 import random
 from typing import Any
 
-from aos_skills.pybullet.parts.camera import Camera
+from aos_skills.pybullet.parts.camera import Camera, Pose
 from aos_skills.pybullet.parts.faults import Faults
 from aos_skills.pybullet.parts.place import Place
-from aos_skills.pybullet.parts.scene import Scene, Vector
+from aos_skills.pybullet.parts.scene import Scene
 from aos_skills.pybullet.parts.world import World
 from aos_skills.pybullet.robots.mobile_arm import MobileArm
 from aos_skills.pybullet.worlds.cleanlab.file import CleanLabFile
@@ -63,7 +63,7 @@ class CleanLab(World):
         self.cups = {name: self._cup(file.stations[name]) for name in filled_stations(file, seed)}
         """Bodies, by the station where each was at first."""
         self.robot = MobileArm(scene, (file.robot.x, file.robot.y, file.robot.yaw))
-        self.camera = Camera(scene, (0.0, -5.4, 4.2), (0.0, 0.9, 0.4), self._close_up)
+        self.camera = Camera(scene, Pose((0.0, -5.4, 4.2), (0.0, 0.9, 0.4)), self._close_up)
 
     @property
     def held_cup(self) -> str | None:
@@ -141,6 +141,6 @@ class CleanLab(World):
         self.scene.client.changeDynamics(body, -1, lateralFriction=1.0, rollingFriction=1e-3)
         return body
 
-    def _close_up(self) -> tuple[Vector, Vector]:
+    def _close_up(self) -> Pose:
         x, y, z = self.robot.arm.tip_place()
-        return (x + 0.9, y - 0.9, z + 0.7), (x, y, z)
+        return Pose((x + 0.9, y - 0.9, z + 0.7), (x, y, z))

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 
 from aos_skills.pybullet.parts.arm import TUCKED
-from aos_skills.pybullet.parts.camera import SUN, Camera, photograph
+from aos_skills.pybullet.parts.camera import SUN, Camera, Pose, photograph
 from aos_skills.pybullet.parts.faults import Faults
 from aos_skills.pybullet.parts.scene import Scene, Vector
 from aos_skills.pybullet.parts.world import World
@@ -25,7 +25,7 @@ __all__ = ["TicTacToe"]
 CAMERA_M = (1.05, 0.0, 0.55)
 PICTURE_SIZE = (480, 360)
 FIELD_OF_VIEW_DEG = 42
-BOARD_SEEN: tuple[Vector, Vector] = ((0.72, 0.0, 0.38), (*CENTRE_M, 0.0))
+BOARD_SEEN = Pose((0.72, 0.0, 0.38), (*CENTRE_M, 0.0))
 """The eye and the aim of the record's pictures; the robot looks from elsewhere."""
 PERSON_DRAWS_S = 2.0
 MIN_INK = 20
@@ -44,7 +44,7 @@ class TicTacToe(World):
         self.faults = Faults(seed)
         self.board = Board(scene)
         self.robot = PandaWithPen(scene)
-        self.camera = Camera(scene, (1.4, -0.7, 0.8), (0.2, -0.2, 0.3), lambda: BOARD_SEEN)
+        self.camera = Camera(scene, Pose((1.4, -0.7, 0.8), (0.2, -0.2, 0.3)), lambda: BOARD_SEEN)
         self._person = random.Random(f"person {seed}")
         self._opponent = opponent(file, self._person, scene)
         self.marks = EMPTY_BOARD
@@ -123,12 +123,15 @@ class TicTacToe(World):
             x, y, z = (value + noise.gauss(0, sigma) for value in point)
             return x, y, z
 
-        image: Image.Image = photograph(
-            self.scene,
+        pose = Pose(
             shaken(CAMERA_M, faults.camera_noise_m),
             shaken((*CENTRE_M, 0.02), faults.camera_noise_m / 2),
+            shaken((0.0, 0.0, 1.0), 2 * faults.camera_noise_m),
+        )
+        image: Image.Image = photograph(
+            self.scene,
+            pose,
             PICTURE_SIZE,
-            up=shaken((0.0, 0.0, 1.0), 2 * faults.camera_noise_m),
             sun=shaken(SUN, faults.light),
             field_of_view_deg=FIELD_OF_VIEW_DEG,
         )

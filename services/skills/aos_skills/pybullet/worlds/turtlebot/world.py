@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pybullet
 
-from aos_skills.pybullet.parts.camera import Camera
+from aos_skills.pybullet.parts.camera import Camera, Pose
 from aos_skills.pybullet.parts.faults import Faults
 from aos_skills.pybullet.parts.route import FloorMap, Rectangle
 from aos_skills.pybullet.parts.scene import Scene, Vector
@@ -58,7 +58,7 @@ class Turtlebot(World):
         """Places in the order in which the robot came to stand there."""
         self.way_m = 0.0
         self._last_place = self.robot.true_place
-        self.camera = Camera(scene, (0.0, -1.4 * file.half_y, 2.0 * file.half_y), (0.0, -0.1, 0.0))
+        self.camera = Camera(scene, Pose((0.0, -1.4 * file.half_y, 2.0 * file.half_y), (0.0, -0.1, 0.0)))
         scene.watchers.append(self._count_way)
 
     def stop(self) -> None:
