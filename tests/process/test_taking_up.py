@@ -79,7 +79,7 @@ async def played(
 
 
 def beliefs(memory: MissionMemory) -> list[tuple[int, int, str, BeliefSummary, Outcome | None]]:
-    """What each record says, but for the search: its tree is not kept."""
+    """Returns the content of each record but for the search, whose tree is not kept."""
     return [(each.sequence, each.step, each.remark, each.belief, each.outcome) for each in memory.records]
 
 

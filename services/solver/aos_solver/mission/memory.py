@@ -1,4 +1,4 @@
-"""What a mission has behind it: the fold of its journal.
+"""The past of a mission: the fold of its journal.
 
 An empty journal folds to the start of a mission, so that starting and taking up are one path.
 """
