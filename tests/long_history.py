@@ -128,7 +128,7 @@ def record_of(sequence: int) -> DecisionRecord:
     """A record of about the size of Tiger's."""
     step = sequence // 2 + 1
     values = [ActionValue(name, -1.2345678, 33, 0.123456, -2.345678, 3.456789) for name in ("a", "b", "c")]
-    told = tuple(PredictedObservation(name, 0.4999999) for name in ("hear_left", "hear_right"))
+    predictions = tuple(PredictedObservation(name, 0.4999999) for name in ("hear_left", "hear_right"))
     outcome = Outcome(ActivationId(MISSION, step), "listen", "observed", "hear_left", {}, 1, 2)
     return DecisionRecord(
         sequence=sequence,
@@ -146,7 +146,7 @@ def record_of(sequence: int) -> DecisionRecord:
         horizon=20,
         planning_s=0.0012345,
         actions=tuple(values),
-        predicted=told,
+        predicted=predictions,
         belief=BeliefSummary(
             (Marginal("tiger", {"left": 0.85, "right": 0.15}),), 0.42, 0.0, 0.0, 2, True, 1.34
         ),

@@ -71,7 +71,7 @@ class MissionRun:
         now = datetime.fromtimestamp(clock.now_ns() / 1e9, UTC).isoformat(timespec="seconds")
         self._started = now if taken_up is None else taken_up.record.started
         self._supervisor: Supervisor | None = None
-        self._seen = Account()
+        self._heard = Account()
         self._own_pushes: set[str] = set()
         self._services_ready_s: float | None = None
         self._first_decision_s: float | None = None
@@ -98,7 +98,7 @@ class MissionRun:
         except AosError as error:
             self.error = error
         verdict, lacking = settled(
-            run.path, self._seen, stopped_by=self.error, was_interrupted=was_interrupted
+            run.path, self._heard, stopped_by=self.error, was_interrupted=was_interrupted
         )
         self.error = self.error or lacking
         summary = self._summary(verdict)
@@ -139,15 +139,15 @@ class MissionRun:
                 async with asyncio.TaskGroup() as tasks:
                     tasks.create_task(self._follow(supervisor))
                     await self._start_mission(supervisor, write_again)
-                if not self._seen.has_ended:
+                if not self._heard.has_ended:
                     # The solver's process ends in a moment, and the supervision with the reason.
                     await supervisor.until_one_ended(timeout_s=_END_NOTICE_S)
-                elif self._seen.state is not None and self._seen.state.ending == "fault":
+                elif self._heard.state is not None and self._heard.state.ending == "fault":
                     # A service that is killed leaves the bus before its process counts as ended.
                     await supervisor.until_one_ended(timeout_s=CAUSE_NOTICE_S)
         except BaseExceptionGroup as group:
             raise root_cause(group) from group
-        if not self._seen.has_ended:
+        if not self._heard.has_ended:
             raise DeployError("the solver left before the mission ended", code="AOS804")
 
     async def _start_mission(self, supervisor: Supervisor, write_record: Callable[[], None]) -> None:
@@ -219,7 +219,7 @@ class MissionRun:
 
     def _take(self, event: Event) -> None:
         if isinstance(event, DecisionRecord | MissionState):
-            self._seen.take(event)
+            self._heard.take(event)
         if isinstance(event, DecisionRecord) and self._first_decision_s is None:
             self._first_decision_s = self._elapsed_s()
 

@@ -26,18 +26,18 @@ def account_of(run: Path) -> Account:
 
 
 def settled(
-    run: Path, seen: Account, *, stopped_by: AosError | None, was_interrupted: bool
+    run: Path, heard: Account, *, stopped_by: AosError | None, was_interrupted: bool
 ) -> tuple[Verdict, StorageError | None]:
     """The verdict on a run whose processes are gone, and why the journal has not all of it, if it has not.
 
-    Where the journal cannot be read the verdict is on what was `seen` on the bus. Where it cannot be written,
+    Where the journal cannot be read the verdict is on `heard` from the bus. Where it cannot be written,
     as on a full disk, the end is not in it, but the verdict is the same.
     """
     lacking: StorageError | None = None
     try:
         account = account_of(run)
     except StorageError as error:
-        account, lacking = seen, error
+        account, lacking = heard, error
     stopped = None
     if was_interrupted or stopped_by is not None:
         stopped = account.stopped(run.name, stopped_by)

@@ -49,7 +49,7 @@ class Storyteller:
     """A solver as far as its decisions go."""
 
     def __init__(self, bus: Bus, keys: Keys) -> None:
-        self.told: list[DecisionRecord] = []
+        self.records: list[DecisionRecord] = []
         self.state = MissionState("m", "acting", 1, 0.5)
         self.page = 1000
         self.pages = 0
@@ -64,9 +64,9 @@ class Storyteller:
 
     def decide(self, *, is_lost: bool = False) -> None:
         """The next record, which the stream may lose on its way."""
-        self.told.append(record(len(self.told)))
+        self.records.append(record(len(self.records)))
         if not is_lost:
-            self._bus.tell(self._keys.decisions, self.told[-1])
+            self._bus.tell(self._keys.decisions, self.records[-1])
 
     def end(self) -> None:
         self.state = MissionState("m", "ended", 3, 0.95, ending="goal")
@@ -78,7 +78,7 @@ class Storyteller:
             await asyncio.Event().wait()
         end = query.since + self.page
         self.pages += 1
-        return History("m", tuple(self.told[query.since : end]), has_more=len(self.told) > end)
+        return History("m", tuple(self.records[query.since : end]), has_more=len(self.records) > end)
 
     async def _state(self, _: MissionQuery, __: str) -> Message:
         return self.state
@@ -227,11 +227,13 @@ async def test_a_solver_of_another_mission_is_followed_from_its_first_record(
         following = client.decisions()
         assert [(await anext(following)).sequence for _ in range(3)] == [0, 1, 2]
     solver.page = 2
-    solver.told = [record(number, mission="next") for number in range(5)]
+    solver.records = [record(number, mission="next") for number in range(5)]
     await solver.appear()
     solver.end()
-    told = [decision async for decision in following]
-    assert [(each.mission, each.sequence) for each in told] == [("next", number) for number in range(5)]
+    decisions = [decision async for decision in following]
+    assert [(decision.mission, decision.sequence) for decision in decisions] == [
+        ("next", number) for number in range(5)
+    ]
 
 
 def test_another_mission_starts_from_its_first_record() -> None:

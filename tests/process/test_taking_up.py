@@ -80,7 +80,10 @@ async def played(
 
 def beliefs(memory: MissionMemory) -> list[tuple[int, int, str, BeliefSummary, Outcome | None]]:
     """Returns the content of each record but for the search, whose tree is not kept."""
-    return [(each.sequence, each.step, each.remark, each.belief, each.outcome) for each in memory.records]
+    return [
+        (record.sequence, record.step, record.remark, record.belief, record.outcome)
+        for record in memory.records
+    ]
 
 
 async def test_a_mission_cut_off_at_any_row_goes_on_with_the_belief_of_its_undisturbed_twin(

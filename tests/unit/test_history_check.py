@@ -304,7 +304,9 @@ BREAKS: dict[Callable[[History], None], str] = {
 }
 
 
-@pytest.mark.parametrize(("spoil", "rule"), BREAKS.items(), ids=lambda each: getattr(each, "__name__", each))
+@pytest.mark.parametrize(
+    ("spoil", "rule"), BREAKS.items(), ids=lambda value: getattr(value, "__name__", value)
+)
 def test_a_history_that_cannot_be_is_caught(spoil: Callable[[History], None], rule: str) -> None:
     history = History()
     spoil(history)

@@ -52,18 +52,18 @@ def journal(tmp_path: Path) -> Path:
 def sequences(journal: Path, since: int, limit: int = 0) -> tuple[list[int], bool]:
     page = history_page(journal, "m", HistoryQuery(since, limit))
     assert page.mission == "m"
-    return [each.sequence for each in page.records], page.has_more
+    return [record.sequence for record in page.records], page.has_more
 
 
 @pytest.mark.parametrize("limit", [1, 2, 7, COUNT - 1, COUNT])
 def test_page_after_page_has_every_record_once_and_in_order(journal: Path, limit: int) -> None:
-    told: list[int] = []
+    numbers: list[int] = []
     has_more = True
     while has_more:
-        page, has_more = sequences(journal, len(told), limit)
-        assert len(page) == min(limit, COUNT - len(told))
-        told += page
-    assert told == list(range(COUNT))
+        page, has_more = sequences(journal, len(numbers), limit)
+        assert len(page) == min(limit, COUNT - len(numbers))
+        numbers += page
+    assert numbers == list(range(COUNT))
 
 
 @pytest.mark.parametrize("since", range(-1, COUNT + 2))

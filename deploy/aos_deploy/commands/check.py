@@ -44,7 +44,7 @@ def check(
             where = f"{violation.file}:{violation.row}" if violation.row else violation.file
             typer.echo(f"{where}: {violation.rule}: {violation.text}")
         broken = ", ".join(sorted({violation.rule for violation in found}))
-        told = f"{count(len(found), 'violation')} of {broken}" if found else f"all {len(RULES)} rules hold"
-        typer.echo(f"{from_here(directory.path)}: {told}")
+        verdict = f"{count(len(found), 'violation')} of {broken}" if found else f"all {len(RULES)} rules hold"
+        typer.echo(f"{from_here(directory.path)}: {verdict}")
     if found:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)

@@ -63,8 +63,8 @@ class MissionMemory(msgspec.Struct, frozen=True):
     @property
     def records(self) -> list[DecisionRecord]:
         """The records in the order of their sequence numbers."""
-        told = [record for step in self.steps for record in step]
-        return told if self.pending is None else [*told, self.pending.decision]
+        decided = [record for step in self.steps for record in step]
+        return decided if self.pending is None else [*decided, self.pending.decision]
 
 
 def folded(rows: Iterable[JournalRow]) -> MissionMemory:
