@@ -14,6 +14,7 @@
 #include "belief.cpp"
 #include "belief_tree.cpp"
 #include "budgets.cpp"
+#include "cell_tables.cpp"
 #include "enumeration.cpp"
 #include "expected_rewards.cpp"
 #include "learned_values.cpp"

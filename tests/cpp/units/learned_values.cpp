@@ -1,6 +1,9 @@
 // Values of states that are learned from simulations: learned_values.hpp.
 #include "aos/planning/learned_values.hpp"
 
+#include <cmath>
+#include <cstdint>
+
 #include "check.hpp"
 #include "worlds.hpp"
 
@@ -24,6 +27,96 @@ TEST("Values are learned behind an exit that is open everywhere") {
   values.advantages(start, worths, random);
   EXPECT_NEAR(worths[0], -10, 0.5);
   EXPECT_NEAR(worths[3], 0, 0.5);
+}
+
+// Six lamps, of which each action switches one on: it earns 1 where it was off. The state's number has a bit each.
+units::Problem lamps(double discount) {
+  constexpr std::uint32_t states = 64;
+  units::Problem problem = units::world(states, 6, discount);
+  for (std::uint32_t state = 0; state < states; ++state) {
+    for (std::uint32_t lamp = 0; lamp < 6; ++lamp) {
+      const bool is_on = state >> lamp & 1;
+      units::row(problem, state, lamp) = {{1.0, state | 1u << lamp, 0, is_on ? 0.0 : 1.0}};
+    }
+  }
+  return problem;
+}
+
+TEST("Values of a corridor are the discounted way to its prize, and 0 without decisions to go") {
+  const units::Problem problem = units::corridor(40, 0.95);
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief belief = Belief::initial(random);
+  aos::LearnedValues<TableModel> values;
+  EXPECT(values.prepare(belief, horizon, random));
+  TableModel::State state = belief.particles().front().state;
+  for (int cell = 0; cell < 40; ++cell) {
+    EXPECT_NEAR(values.value(state, horizon), 10 * std::pow(0.95, 39 - cell), 0.5);
+    EXPECT_EQUAL(values.value(state, 0), 0.0);
+    TableModel::step(state, 0, random);
+  }
+  EXPECT(state.ending == aos::Ending::goal);
+}
+
+TEST("An action is worth its reward and what the next state is worth, and nothing where it ends") {
+  const units::Problem problem = units::corridor(40, 0.95);
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief belief = Belief::initial(random);
+  aos::LearnedValues<TableModel> values;
+  values.prepare(belief, horizon, random);
+  TableModel::State state = belief.particles().front().state;
+  for (int cell = 0; cell < 38; ++cell) TableModel::step(state, 0, random);
+  TableModel::State next = state;
+  TableModel::step(next, 0, random);
+  EXPECT_NEAR(values.action_value(state, 0, horizon, random), 0.95 * values.value(next, horizon - 1), 1e-12);
+  EXPECT_EQUAL(values.action_value(state, 0, 1, random), 0.0);
+  EXPECT_EQUAL(values.action_value(next, 0, horizon, random), 10.0);
+}
+
+TEST("The same seed learns the same values") {
+  const units::Problem problem = lamps(0.9);
+  TableModel::take(problem);
+  double worths[2];
+  for (double& worth : worths) {
+    aos::Sampler random{7};
+    const Belief belief = Belief::initial(random);
+    aos::LearnedValues<TableModel> values;
+    values.prepare(belief, 12, random);
+    worth = values.value(belief.particles().front().state, 12);
+  }
+  EXPECT_EQUAL(worths[0], worths[1]);
+  EXPECT(worths[0] > 1);
+}
+
+TEST("Values are no use where rollouts earn as much: the best action is the one that earns most at once") {
+  units::Problem problem = units::world(8, 2, 0.1);
+  for (std::uint32_t state = 0; state < 8; ++state) {
+    for (std::uint32_t action = 0; action < 2; ++action) {
+      auto& row = units::row(problem, state, action);
+      row.clear();
+      for (std::uint32_t next = 0; next < 8; ++next) row.push_back({1.0 / 8, next, 0, 1.0 * action});
+    }
+  }
+  TableModel::take(problem);
+  aos::Sampler random{7};
+  const Belief belief = Belief::initial(random);
+  aos::LearnedValues<TableModel> values;
+  EXPECT(!values.prepare(belief, 12, random));
+  EXPECT_NEAR(values.value(belief.particles().front().state, 12), 1 / (1 - 0.1), 0.05);
+}
+
+TEST("Nothing is learned of a belief that has ended, and once of any other") {
+  const units::Problem problem = units::corridor(1, 0.95);
+  TableModel::take(problem);
+  aos::Sampler random{1};
+  const Belief initial = Belief::initial(random);
+  aos::LearnedValues<TableModel> values;
+  EXPECT(!values.prepare(initial.predicted(0, random), horizon, random));
+  const bool is_usable = values.prepare(initial, horizon, random);
+  aos::Sampler before = random;
+  EXPECT_EQUAL(values.prepare(initial, horizon, random), is_usable);
+  EXPECT_EQUAL(random.bits(), before.bits());
 }
 
 }  // namespace learned_values_tests
