@@ -128,19 +128,6 @@ async def test_random_worlds_have_the_values_that_an_independent_program_gives(
     assert max(truth) - truth[plan.index] < 0.03
 
 
-@pytest.mark.parametrize("world", range(WORLDS))
-async def test_beliefs_in_random_worlds_follow_bayes_rule(world: int, chance: Engine) -> None:
-    await _enter(chance, world)
-    belief = np.full(STATES, 1 / STATES)
-    names = [action.name for action in chance.description.actions]
-    for action, is_alarm in ((0, True), (1, False), (1, True), (0, False)):
-        belief, probability = CHANCE.posterior(world, belief, action, is_alarm)
-        update = await chance.update(names[action], "alarm" if is_alarm else "quiet")
-        assert update.probability == pytest.approx(probability, abs=1e-12)
-        places = {m.variable: m.values for m in update.summary.marginals}["place"]
-        assert [places[str(place)] for place in range(STATES)] == pytest.approx(belief.tolist(), abs=1e-12)
-
-
 @pytest.fixture
 async def tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
     return await built_bundle(bundles / "bench" / "tiger", cache_dir)

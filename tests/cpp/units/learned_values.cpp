@@ -14,17 +14,30 @@ using Belief = aos::Belief<TableModel>;
 
 constexpr int horizon = 60;
 
+// Values of a problem that are learned from its first belief.
+struct Learned {
+  explicit Learned(const units::Problem& problem, int decisions = horizon, std::uint64_t seed = 1)
+      : random{seed}, belief{taken(problem, random)}, is_usable{values.prepare(belief, decisions, random)} {}
+
+  static Belief taken(const units::Problem& problem, aos::Sampler& random) {
+    TableModel::take(problem);
+    return Belief::initial(random);
+  }
+  const TableModel::State& start() const { return belief.particles().front().state; }
+
+  aos::Sampler random;
+  Belief belief;
+  aos::LearnedValues<TableModel> values;
+  bool is_usable;  // after the values, which it asks
+};
+
 TEST("Values are learned behind an exit that is open everywhere") {
   const units::Problem problem = units::corridor_with_exits(40, 3);
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
-  aos::LearnedValues<TableModel> values;
-  EXPECT(values.prepare(belief, horizon, random));
-  const TableModel::State& start = belief.particles().front().state;
-  EXPECT_NEAR(values.value(start, horizon), 10, 0.5);
+  Learned learned{problem};
+  EXPECT(learned.is_usable);
+  EXPECT_NEAR(learned.values.value(learned.start(), horizon), 10, 0.5);
   double worths[4] = {};
-  values.advantages(start, worths, random);
+  learned.values.advantages(learned.start(), worths, learned.random);
   EXPECT_NEAR(worths[0], -10, 0.5);
   EXPECT_NEAR(worths[3], 0, 0.5);
 }
@@ -44,49 +57,36 @@ units::Problem lamps(double discount) {
 
 TEST("Values of a corridor are the discounted way to its prize, and 0 without decisions to go") {
   const units::Problem problem = units::corridor(40, 0.95);
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
-  aos::LearnedValues<TableModel> values;
-  EXPECT(values.prepare(belief, horizon, random));
-  TableModel::State state = belief.particles().front().state;
+  Learned learned{problem};
+  EXPECT(learned.is_usable);
+  TableModel::State state = learned.start();
   for (int cell = 0; cell < 40; ++cell) {
-    EXPECT_NEAR(values.value(state, horizon), 10 * std::pow(0.95, 39 - cell), 0.5);
-    EXPECT_EQUAL(values.value(state, 0), 0.0);
-    TableModel::step(state, 0, random);
+    EXPECT_NEAR(learned.values.value(state, horizon), 10 * std::pow(0.95, 39 - cell), 0.5);
+    EXPECT_EQUAL(learned.values.value(state, 0), 0.0);
+    TableModel::step(state, 0, learned.random);
   }
   EXPECT(state.ending == aos::Ending::goal);
 }
 
 TEST("An action is worth its reward and what the next state is worth, and nothing where it ends") {
   const units::Problem problem = units::corridor(40, 0.95);
-  TableModel::take(problem);
-  aos::Sampler random{1};
-  const Belief belief = Belief::initial(random);
-  aos::LearnedValues<TableModel> values;
-  values.prepare(belief, horizon, random);
-  TableModel::State state = belief.particles().front().state;
-  for (int cell = 0; cell < 38; ++cell) TableModel::step(state, 0, random);
+  Learned learned{problem};
+  TableModel::State state = learned.start();
+  for (int cell = 0; cell < 38; ++cell) TableModel::step(state, 0, learned.random);
   TableModel::State next = state;
-  TableModel::step(next, 0, random);
-  EXPECT_NEAR(values.action_value(state, 0, horizon, random), 0.95 * values.value(next, horizon - 1), 1e-12);
-  EXPECT_EQUAL(values.action_value(state, 0, 1, random), 0.0);
-  EXPECT_EQUAL(values.action_value(next, 0, horizon, random), 10.0);
+  TableModel::step(next, 0, learned.random);
+  const double later = 0.95 * learned.values.value(next, horizon - 1);
+  EXPECT_NEAR(learned.values.action_value(state, 0, horizon, learned.random), later, 1e-12);
+  EXPECT_EQUAL(learned.values.action_value(state, 0, 1, learned.random), 0.0);
+  EXPECT_EQUAL(learned.values.action_value(next, 0, horizon, learned.random), 10.0);
 }
 
 TEST("The same seed learns the same values") {
   const units::Problem problem = lamps(0.9);
-  TableModel::take(problem);
-  double worths[2];
-  for (double& worth : worths) {
-    aos::Sampler random{7};
-    const Belief belief = Belief::initial(random);
-    aos::LearnedValues<TableModel> values;
-    values.prepare(belief, 12, random);
-    worth = values.value(belief.particles().front().state, 12);
-  }
-  EXPECT_EQUAL(worths[0], worths[1]);
-  EXPECT(worths[0] > 1);
+  const Learned first{problem, 12, 7};
+  const Learned again{problem, 12, 7};
+  EXPECT_EQUAL(first.values.value(first.start(), 12), again.values.value(again.start(), 12));
+  EXPECT(first.values.value(first.start(), 12) > 1);
 }
 
 TEST("Values are no use where rollouts earn as much: the best action is the one that earns most at once") {
@@ -98,12 +98,9 @@ TEST("Values are no use where rollouts earn as much: the best action is the one 
       for (std::uint32_t next = 0; next < 8; ++next) row.push_back({1.0 / 8, next, 0, 1.0 * action});
     }
   }
-  TableModel::take(problem);
-  aos::Sampler random{7};
-  const Belief belief = Belief::initial(random);
-  aos::LearnedValues<TableModel> values;
-  EXPECT(!values.prepare(belief, 12, random));
-  EXPECT_NEAR(values.value(belief.particles().front().state, 12), 1 / (1 - 0.1), 0.05);
+  const Learned learned{problem, 12};
+  EXPECT(!learned.is_usable);
+  EXPECT_NEAR(learned.values.value(learned.start(), 12), 1 / (1 - 0.1), 0.05);
 }
 
 TEST("Nothing is learned of a belief that has ended, and once of any other") {
