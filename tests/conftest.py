@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
-from kept_cache import link_engines, make_room
+from kept_cache import link_engines
 
 from aos_deploy.program import cache_dir as user_cache_dir
 
 ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".compiled"
-CACHE_BYTES = 1_000_000_000
-"""Two runs with other sources of the engine fit."""
 TESTS = ROOT / "tests"
 LONGEST = TESTS / "longest_first.txt"
 """Files of tests, by the processor time that docs/lab/checks.md tells of."""
@@ -45,12 +42,6 @@ def cache_dir() -> Path:
     """Compiled models, kept from run to run, and the engines that setup.sh has compiled."""
     link_engines(user_cache_dir(), CACHE)
     return CACHE
-
-
-def pytest_configure() -> None:
-    """Makes room in the cache, once for all processes of a run."""
-    if "PYTEST_XDIST_WORKER" not in os.environ:
-        make_room(CACHE, CACHE_BYTES)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
