@@ -6,7 +6,7 @@ UPGRADE :=
 COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header
 
-.PHONY: help setup check test format promote docs lock newcomer clean
+.PHONY: help setup check quick test format promote docs lock newcomer clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -16,6 +16,9 @@ setup:  ## set up .venv with everything for development
 
 check:  ## lint, types, layers, documents and all tests: what CI runs
 	tests/check.sh
+
+quick:  ## the same without the tests that start whole systems and engines
+	tests/check.sh --quick
 
 test:  ## the tests alone
 	$(BIN)/pytest

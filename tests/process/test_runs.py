@@ -30,8 +30,20 @@ bundles: [{root}/deploy/bundles/bench/tiger]
 bus: {{listen: "{endpoint}"}}
 mission: {{goal_probability: 1.0, step_limit: 1_000_000}}
 solver: {{simulations: 100, planner: pomcp, ponder_while_acting: false}}
+bind: {{/listen: {{python: robot.py:listen}}, /open: {{python: robot.py:open_door}}}}
 runs: runs
 """
+SLOW_ROBOT = """\
+import asyncio
+
+async def listen(call):
+    await asyncio.sleep(5)
+    return {"loudest": "left"}
+
+async def open_door(call, door):
+    await asyncio.sleep(5)
+"""
+"""A mission that goes on costs nothing: a robot that is played would decide a thousand times a second."""
 
 
 class Up:
@@ -82,6 +94,7 @@ class Place:
         self.environment = {**os.environ, **own}
         self.deploy = folder / "tiger.yaml"
         self.deploy.write_text(TIGER.format(root=root, endpoint=endpoint))
+        (folder / "robot.py").write_text(SLOW_ROBOT)
 
     @property
     def latest(self) -> Path:
@@ -89,7 +102,7 @@ class Place:
 
     @contextmanager
     def up(self) -> Iterator[Up]:
-        command = [BIN / "aos-up", self.deploy, "--model", "--json"]
+        command = [BIN / "aos-up", self.deploy, "--json"]
         pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         with subprocess.Popen(command, text=True, env=self.environment, **pipes) as process:
             try:
