@@ -48,7 +48,7 @@ from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.history import history_page
 from aos_solver.mission.hot_plug import ModelShelf, RunningModel
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN, folded
+from aos_solver.mission.memory import BEGUN, MissionMemory, folded
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
@@ -89,6 +89,8 @@ class _Solver:
         self._journal_path = Path(settings.run_dir) / "journal.db"
         self._journal = Journal.open(self._journal_path)
         self._memory = folded(self._journal.walk())
+        if self._memory.has_ended:
+            self._memory = msgspec.structs.replace(self._memory, steps=())
         self._shelf = ModelShelf(
             Path(settings.cache_dir),
             self._report_progress,
@@ -222,13 +224,21 @@ class _Solver:
             return
         await self._started.wait()
         assert self._running is not None
-        memory = self._memory
+        self._mission = self._begun(self._running, self._memory)
+        # The steps are needed once: a long mission has many.
+        self._memory = MissionMemory()
+        await self._await_mappings(self._running.revision)
+        state = await self._mission.run()
+        log.info("the mission ended: %s, %s", state.ending, state.remark)
+
+    def _begun(self, running: RunningModel, memory: MissionMemory) -> Mission:
+        """The mission of this solver, with what the journal has of it; that it begins is in the journal."""
         begun = MissionBegun(
             self._name,
             memory.epoch + 1,
             self._settings.seed,
-            self._running.revision,
-            self._running.digest,
+            running.revision,
+            running.digest,
         )
         self.journal(BEGUN, begun)
         terms = Terms(
@@ -240,10 +250,7 @@ class _Solver:
             activation_timeout_s=self._settings.activation_timeout_s,
             hold_s=self._settings.hold_s,
         )
-        self._mission = Mission(terms, self._running, self, memory)
-        await self._await_mappings(self._running.revision)
-        state = await self._mission.run()
-        log.info("the mission ended: %s, %s", state.ending, state.remark)
+        return Mission(terms, running, self, memory)
 
     async def _await_mappings(self, revision: int) -> None:
         """Waits until the middleware has dealt with a revision. After the deadline activations tell of it."""

@@ -7,7 +7,7 @@ move before anything moves.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
@@ -52,8 +52,9 @@ class Mission:
     ) -> None:
         """`memory` is what the mission has behind it, which has not ended."""
         self.state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
-        self.records = memory.records
         self._memory = memory
+        self._sequence = memory.sequence
+        self._goal_probability = memory.goal_probability
         self._terms = terms
         self._model = model
         self._ports = ports
@@ -62,11 +63,6 @@ class Mission:
         self._budget = RiskBudget(model.engine.bounds)
         self._chooser = Chooser(terms, self._failures, ports, self._budget)
 
-    @property
-    def decisions(self) -> Sequence[DecisionRecord]:
-        """The records of decisions, without those of what came of them."""
-        return [record for record in self.records if record.outcome is None]
-
     async def run(self) -> MissionState:
         """Decide and act until the mission ends; machine faults end it as `fault` with their text."""
         try:
@@ -74,11 +70,6 @@ class Mission:
         except AosError as error:
             self._end(Ending.FAULT, str(error))
         return self.state
-
-    def cancel(self, reason: str) -> None:
-        """Record that the mission was stopped from outside."""
-        if not self.state.ending:
-            self._end(Ending.CANCELLED, reason)
 
     def resume(self) -> None:
         """Somebody has looked after what the mission holds for."""
@@ -107,20 +98,19 @@ class Mission:
         The belief is the posterior of the model that runs now, given every action and observation. Returns
         whether the mission goes on.
         """
-        for step in self._memory.steps:
-            outcome = step.observed.outcome
-            assert outcome is not None
-            self._budget.take_up(step.decision.constraints)
-            update = await self._updated_belief(step.decision, outcome)
-            self._take_failure(step.decision, outcome, update, self._s_of(step.observed.stamp_ns))
+        memory, self._memory = self._memory, _NOTHING
+        for decision, observed, observed_ns in memory.steps:
+            self._budget.take_up(decision.constraints)
+            update = await self._updated_belief(decision, observed)
+            self._take_failure(decision, observed, update, self._s_of(observed_ns))
             self.belief = update.summary
-            self.state = msgspec.structs.replace(self.state, step=step.decision.step)
-        if self._memory.pending is not None:
-            decision, intention, outcome = self._memory.pending
+            self.state = msgspec.structs.replace(self.state, step=decision.step)
+        if memory.pending is not None:
+            decision, intention, outcome = memory.pending
             self._budget.take_up(decision.constraints)
             self._move_to("acting", decision.step, remark=decision.action)
             return await self._finish(decision, outcome or await self._act(decision, intention))
-        if self._memory.is_held and self._failures.to_hold:
+        if memory.is_held and self._failures.to_hold:
             await self._hold(self._failures.to_hold, lambda: False)
         return self._goes_on()
 
@@ -182,7 +172,7 @@ class Mission:
         listed = [number for number, action in enumerate(actions) if action.skill not in choice.set_aside]
         spent = self._budget.spend(choice.risks, plan.index, listed) if choice.risks is not None else ()
         record = DecisionRecord(
-            sequence=len(self.records),
+            sequence=self._sequence,
             stamp_ns=self._ports.clock.now_ns(),
             mission=self.state.mission,
             epoch=self._terms.epoch,
@@ -238,7 +228,7 @@ class Mission:
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
         record = msgspec.structs.replace(
             decision,
-            sequence=len(self.records),
+            sequence=self._sequence,
             stamp_ns=self._ports.clock.now_ns(),
             epoch=self._terms.epoch,
             belief=update.summary,
@@ -282,7 +272,8 @@ class Mission:
 
     def _publish(self, record: DecisionRecord) -> None:
         self._ports.journal("decision", record)
-        self.records.append(record)
+        self._sequence = record.sequence + 1
+        self._goal_probability = record.belief.goal_probability
         self._ports.publish_record(record)
 
     def _move_to(self, phase: str, step: int, *, remark: str = "") -> None:
@@ -295,8 +286,9 @@ class Mission:
         )
 
     def _end(self, ending: Ending, remark: str) -> None:
-        goal = self.records[-1].belief.goal_probability if self.records else 0.0
-        self._change_state(phase="ended", ending=ending.value, remark=remark, goal_probability=goal)
+        self._change_state(
+            phase="ended", ending=ending.value, remark=remark, goal_probability=self._goal_probability
+        )
 
     def _change_state(self, **changes: Any) -> None:
         self.state = msgspec.structs.replace(self.state, **changes)

@@ -1,4 +1,4 @@
-"""The past of a mission: the fold of its journal.
+"""The memory of a mission: the fold of its journal.
 
 An empty journal folds to the start of a mission, so that starting and taking up are one path.
 """
@@ -11,7 +11,14 @@ from typing import Any, NamedTuple
 import msgspec
 
 from aos_protocol.errors import StorageError
-from aos_protocol.messages import Activate, DecisionRecord, MissionBegun, MissionState, Outcome
+from aos_protocol.messages import (
+    Activate,
+    BeliefSummary,
+    DecisionRecord,
+    MissionBegun,
+    MissionState,
+    Outcome,
+)
 from aos_runtime.journal import JournalRow
 
 __all__ = ["BEGUN", "MissionMemory", "PastStep", "Pending", "folded"]
@@ -28,11 +35,19 @@ _KINDS: dict[str, type[Any]] = {
 }
 
 
+_NO_BELIEF = BeliefSummary((), 0.0, 0.0, 0.0, 0, False)
+
+
 class PastStep(NamedTuple):
-    """A step that is over: the record of its decision, and that of its outcome."""
+    """A step that is over: its decision, the outcome, and when that was observed.
+
+    All decisions but the last have only what their consequences depend on, without the values of actions and
+    without the belief: a step of a long mission takes less than 2 kB.
+    """
 
     decision: DecisionRecord
-    observed: DecisionRecord
+    outcome: Outcome
+    observed_ns: int
 
 
 class Pending(NamedTuple):
@@ -44,12 +59,17 @@ class Pending(NamedTuple):
 
 
 class MissionMemory(msgspec.Struct, frozen=True):
-    """The epoch of the newest solver, the steps in order, the step that is not over, the newest state."""
+    """The epoch of the newest solver, the steps in order, the step that is not over, the newest state.
+
+    `sequence` is the number of the next record, and `goal_probability` that of the last one's belief.
+    """
 
     epoch: int = 0
     steps: tuple[PastStep, ...] = ()
     pending: Pending | None = None
     state: MissionState | None = None
+    sequence: int = 0
+    goal_probability: float = 0.0
 
     @property
     def has_ended(self) -> bool:
@@ -60,16 +80,10 @@ class MissionMemory(msgspec.Struct, frozen=True):
         """True where the mission held when its journal broke off."""
         return self.state is not None and self.state.phase == "holding"
 
-    @property
-    def records(self) -> list[DecisionRecord]:
-        """The records in the order of their sequence numbers."""
-        decided = [record for step in self.steps for record in step]
-        return decided if self.pending is None else [*decided, self.pending.decision]
-
 
 def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     """The memory that a mission's journal holds; StorageError AOS702 for a row that is damaged."""
-    epoch, pending, state = 0, None, None
+    epoch, pending, state, sequence, goal_probability = 0, None, None, 0, 0.0
     steps: list[PastStep] = []
     for row in rows:
         if row.kind not in _KINDS:
@@ -82,14 +96,22 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
                 state = said
             case DecisionRecord(outcome=None):
                 pending = Pending(said)
-            case DecisionRecord():
-                steps.append(PastStep(_of(pending, row).decision, said))
+            case DecisionRecord(outcome=Outcome() as outcome):
+                if steps:
+                    steps[-1] = steps[-1]._replace(decision=_without_search(steps[-1].decision))
+                steps.append(PastStep(_of(pending, row).decision, outcome, said.stamp_ns))
                 pending = None
             case Activate():
                 pending = _of(pending, row)._replace(intention=said)
             case Outcome():
                 pending = _of(pending, row)._replace(outcome=said)
-    return MissionMemory(epoch, tuple(steps), pending, state)
+        if isinstance(said, DecisionRecord):
+            sequence, goal_probability = said.sequence + 1, said.belief.goal_probability
+    return MissionMemory(epoch, tuple(steps), pending, state, sequence, goal_probability)
+
+
+def _without_search(decision: DecisionRecord) -> DecisionRecord:
+    return msgspec.structs.replace(decision, actions=(), predicted=(), belief=_NO_BELIEF, why="")
 
 
 def _decoded(row: JournalRow) -> Any:

@@ -12,7 +12,7 @@ import sys
 import msgspec
 
 from aos_protocol.errors import DocumentError
-from aos_protocol.messages import Activate, Outcome
+from aos_protocol.messages import Activate, DecisionRecord, Outcome
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import Ending, MissionLimits, believed_ending
@@ -80,10 +80,6 @@ async def simulate_mission(
     )
     mission = Mission(terms, RunningModel(0, engine), played)
     await mission.run_or_raise()
-    risked = {bound.never: 0.0 for bound in engine.bounds}
-    for decision in mission.decisions:
-        for spent in decision.constraints:
-            risked[spent.never] += spent.risk
     return SimulatedRun(
         seed=search.seed,
         total=played.total,
@@ -99,7 +95,7 @@ async def simulate_mission(
         violated=tuple(
             bound.never for number, bound in enumerate(engine.bounds) if played.violations >> number & 1
         ),
-        risked=risked,
+        risked={bound.never: played.risked.get(bound.never, 0.0) for bound in engine.bounds},
     )
 
 
@@ -113,6 +109,7 @@ class _World(QuietPorts):
         self._places = {action.name: index for index, action in enumerate(engine.description.actions)}
         self.total = self.discounted = 0.0
         self.violations = 0
+        self.risked: dict[str, float] = {}
         self.actions: list[str] = []
         self.responses: list[str] = []
         self.numbers: list[dict[str, float | list[float | None]]] = []
@@ -122,6 +119,11 @@ class _World(QuietPorts):
         """Draws the hidden state."""
         start = await self._engine.reset_world(seed)
         await self._look(start.ending)
+
+    def publish_record(self, record: DecisionRecord) -> None:
+        """Adds up what decisions risk."""
+        for spent in record.constraints if record.outcome is None else ():
+            self.risked[spent.never] = self.risked.get(spent.never, 0.0) + spent.risk
 
     async def activate(self, request: Activate, action: str) -> Outcome:
         """Steps the hidden state; DocumentError where the world's documents have no such action."""
