@@ -7,11 +7,11 @@ from collections.abc import AsyncIterator
 
 import pytest
 import pytest_asyncio
+from decision_records import decision_record
 
 from aos_protocol.errors import BusError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
-    BeliefSummary,
     DecisionRecord,
     History,
     HistoryQuery,
@@ -24,25 +24,7 @@ from aos_runtime.client import AosClient, DecisionFeed
 
 
 def record(sequence: int, mission: str = "m") -> DecisionRecord:
-    return DecisionRecord(
-        sequence=sequence,
-        stamp_ns=0,
-        mission=mission,
-        epoch=1,
-        step=sequence // 2 + 1,
-        action="pick",
-        skill="pick",
-        parameters={},
-        model_digest="",
-        revision=1,
-        seed=1,
-        simulations=10,
-        horizon=10,
-        planning_s=0.0,
-        actions=(),
-        predicted=(),
-        belief=BeliefSummary((), 0.0, 0.0, 0.0, 1, True),
-    )
+    return decision_record(sequence, mission, "pick", model_digest="", simulations=10, horizon=10)
 
 
 class Storyteller:

@@ -7,6 +7,7 @@ import json
 
 import msgspec
 import pytest
+from decision_records import decision_record
 from rich.console import Console
 
 from aos_deploy.events import Event, ServiceChanged, Told
@@ -23,7 +24,6 @@ from aos_protocol.messages import (
     ActivationId,
     BeliefSummary,
     BundleReport,
-    DecisionRecord,
     EndingOdds,
     Fault,
     Marginal,
@@ -33,23 +33,14 @@ from aos_protocol.messages import (
 )
 
 BELIEF = BeliefSummary((Marginal("holding_can", {"true": 0.75, "false": 0.25}),), 0.56, 0.1, 0.0, 2, True)
-DECISION = DecisionRecord(
-    sequence=0,
-    stamp_ns=1,
-    mission="m",
-    epoch=1,
-    step=1,
-    action="pick",
+DECISION = decision_record(
+    0,
     skill="pick",
-    parameters={},
-    model_digest="d",
-    revision=1,
-    seed=1,
+    stamp_ns=1,
     simulations=1000,
     horizon=10,
     planning_s=0.25,
     actions=(ActionValue("serve", -4.0, 100, 0.5, -9.0), ActionValue("pick", 2.713, 900, 0.04, 1.118, 3.001)),
-    predicted=(),
     belief=BELIEF,
     planner="pomcp",
     why="it was asked for",

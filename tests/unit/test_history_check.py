@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 import pytest
+from decision_records import decision_record
 
 from aos_deploy.history_check.check import violations
 from aos_deploy.history_check.files import violations_of_run
@@ -38,24 +39,8 @@ def belief(step: int) -> BeliefSummary:
 
 
 def decided(step: int) -> DecisionRecord:
-    return DecisionRecord(
-        sequence=2 * step - 2,
-        stamp_ns=0,
-        mission=MISSION,
-        epoch=1,
-        step=step,
-        action=f"go(to={step})",
-        skill="go",
-        parameters={"to": step},
-        model_digest="d",
-        revision=1,
-        seed=1,
-        simulations=1,
-        horizon=1,
-        planning_s=0.0,
-        actions=(),
-        predicted=(),
-        belief=belief(step - 1),
+    return decision_record(
+        2 * step - 2, MISSION, "go", action=f"go(to={step})", parameters={"to": step}, belief=belief(step - 1)
     )
 
 

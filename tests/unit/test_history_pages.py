@@ -5,36 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from decision_records import decision_record
 
 from aos_protocol.errors import StorageError
-from aos_protocol.messages import BeliefSummary, DecisionRecord, HistoryQuery, MissionState
+from aos_protocol.messages import HistoryQuery, MissionState
 from aos_runtime.journal import Journal
 from aos_solver.mission import history
 from aos_solver.mission.history import history_page
 
 COUNT = 23
-
-
-def record(sequence: int) -> DecisionRecord:
-    return DecisionRecord(
-        sequence=sequence,
-        stamp_ns=0,
-        mission="m",
-        epoch=1,
-        step=sequence // 2 + 1,
-        action="look",
-        skill="look",
-        parameters={},
-        model_digest="d",
-        revision=1,
-        seed=1,
-        simulations=1,
-        horizon=1,
-        planning_s=0.0,
-        actions=(),
-        predicted=(),
-        belief=BeliefSummary((), 0.0, 0.0, 0.0, 1, True),
-    )
 
 
 @pytest.fixture
@@ -45,7 +24,7 @@ def journal(tmp_path: Path) -> Path:
         for sequence in range(COUNT):
             for _ in range(sequence % 4):
                 rows.append("mission", MissionState("m", "planning", 1, 0.0))
-            rows.append("decision", record(sequence))
+            rows.append("decision", decision_record(sequence))
     return path
 
 

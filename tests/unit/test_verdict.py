@@ -7,6 +7,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from decision_records import decision_record
 
 from aos_deploy.run_directory import RunDirectory, Summary
 from aos_deploy.run_end import account_of, settled
@@ -27,25 +28,8 @@ KILLED = DeployError("registry ended unexpectedly: killed by SIGKILL", code="AOS
 
 
 def decided(step: int) -> DecisionRecord:
-    return DecisionRecord(
-        sequence=2 * step - 2,
-        stamp_ns=0,
-        mission=MISSION,
-        epoch=1,
-        step=step,
-        action="look",
-        skill="look",
-        parameters={},
-        model_digest="d",
-        revision=1,
-        seed=1,
-        simulations=1,
-        horizon=1,
-        planning_s=0.0,
-        actions=(),
-        predicted=(),
-        belief=BeliefSummary((), 0.0, 0.25, 0.0, 1, True, cautious=EndingOdds(0.125, 0.0, 0.0)),
-    )
+    cautious = BeliefSummary((), 0.0, 0.25, 0.0, 1, True, cautious=EndingOdds(0.125, 0.0, 0.0))
+    return decision_record(2 * step - 2, MISSION, belief=cautious)
 
 
 def observed(step: int) -> DecisionRecord:
