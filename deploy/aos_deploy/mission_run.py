@@ -16,7 +16,7 @@ import msgspec
 from aos_deploy.bundle_files import check_constraints_of, files_of_bundle
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.endpoint import hold_endpoint
-from aos_deploy.events import Event, Report, Told
+from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.living_runs import noted
 from aos_deploy.printing import from_here
 from aos_deploy.program import programs_of_deployment
@@ -73,6 +73,7 @@ class MissionRun:
         self._supervisor: Supervisor | None = None
         self._heard = Account()
         self._own_pushes: set[str] = set()
+        self._write_again: Callable[[], None] = _nothing
         self._services_ready_s: float | None = None
         self._first_decision_s: float | None = None
 
@@ -131,11 +132,11 @@ class MissionRun:
             run.forget_fault(program.name)
         await asyncio.to_thread(check_constraints_of, deployment)
         try:
-            async with supervised(programs, base, run, self._report, self._clock) as supervisor:
+            async with supervised(programs, base, run, self._hear, self._clock) as supervisor:
                 self._supervisor = supervisor
                 await supervisor.start()
                 self._write_record(run, endpoint, supervisor)
-                write_again = partial(self._write_record, run, endpoint, supervisor)
+                self._write_again = write_again = partial(self._write_record, run, endpoint, supervisor)
                 async with asyncio.TaskGroup() as tasks:
                     tasks.create_task(self._follow(supervisor))
                     await self._start_mission(supervisor, write_again)
@@ -149,6 +150,12 @@ class MissionRun:
             raise root_cause(group) from group
         if not self._heard.has_ended:
             raise DeployError("the solver left before the mission ended", code="AOS804")
+
+    def _hear(self, event: Event) -> None:
+        """Passes on what the supervisor tells; a process that is started again has another id."""
+        self._report(event)
+        if isinstance(event, ServiceChanged) and event.state == "starting":
+            self._write_again()
 
     async def _start_mission(self, supervisor: Supervisor, write_record: Callable[[], None]) -> None:
         async with asyncio.TaskGroup() as tasks:
@@ -285,6 +292,10 @@ async def run_until_interrupted(mission: Stoppable) -> int:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         loop.add_signal_handler(number, interrupt)
     return (await work).exit_code
+
+
+def _nothing() -> None:
+    """There is no record yet."""
 
 
 def _with_folder(diagnostic: Diagnostic, bundle: Path) -> Diagnostic:

@@ -251,6 +251,9 @@ class _Activation:
 
     async def _call(self, fields: dict[str, Any]) -> SkillResult:
         path = self._mapping.activation.path
+        if self._around.served.announced(path):
+            # After the router, its clients are back within a moment.
+            await self._around.served.is_back(path, GONE_S)
         if fault := self._around.served.fault(path):
             raise fault
         with self._around.gate.passing(path):

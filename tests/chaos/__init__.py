@@ -1,0 +1,1 @@
+"""Missions whose processes are killed and frozen at random, and what became of them."""

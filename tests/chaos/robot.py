@@ -1,0 +1,36 @@
+"""A robot for missions that are disturbed: its skills take a while, and count each motion in a file."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from typing import Any
+
+MOVES_S = 0.15
+
+
+async def _move(call: Any) -> None:
+    """Moves for a while. Begun, ended and cancelled motions are each a line of $AOS_MOTIONS."""
+    _note("begun", call)
+    try:
+        await asyncio.sleep(MOVES_S)
+    except asyncio.CancelledError:
+        _note("cancelled", call)
+        raise
+    _note("ended", call)
+
+
+async def listen(call: Any) -> dict[str, str]:
+    """Hears the tiger on the left."""
+    await _move(call)
+    return {"loudest": "left"}
+
+
+async def open_door(call: Any, door: str) -> None:
+    """Opens a door."""
+    await _move(call)
+
+
+def _note(what: str, call: Any) -> None:
+    with open(os.environ["AOS_MOTIONS"], "a") as motions:  # noqa: PTH123
+        motions.write(f"{what} {call.id}\n")
