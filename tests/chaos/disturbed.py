@@ -68,7 +68,7 @@ class Disturbance(msgspec.Struct):
 
 
 class Report(msgspec.Struct):
-    """What became of a mission. `faults` is empty where all went as promised."""
+    """The outcome of a mission. `faults` is empty where all went as promised."""
 
     seed: int
     disturbances: list[Disturbance]

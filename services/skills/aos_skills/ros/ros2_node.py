@@ -112,7 +112,7 @@ def not_served(message: str, known: Iterable[str]) -> SkillError:
 
 
 def check_type(service: str, found: str, wanted: str) -> None:
-    """SkillError AOS509 where a service is of another type than the wanted one, if any is."""
+    """Raises SkillError AOS509 where a service is of another type than the wanted one, if any is."""
     if wanted and found != wanted:
         raise SkillError(
             f"{service} is of type {found}, not {wanted}",
