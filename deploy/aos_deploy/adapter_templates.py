@@ -21,7 +21,7 @@ ROS_KINDS = {
     "dds": ("lo", "the network interface; lo is this machine alone"),
     "ros1": ("http://127.0.0.1:11311", "ROS_MASTER_URI"),
 }
-"""The options that the adapter of a kind gets, and what each of them is."""
+"""The value of each kind of ROS in a deploy file, and what that value is."""
 
 _FIELD = re.compile(r"\b__input(?:\.|, \")([A-Za-z_]\w*)")
 _EXAMPLES: dict[str, Any] = {
