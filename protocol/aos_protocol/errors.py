@@ -163,6 +163,11 @@ class AosError(Exception):
         self.hint = hint
         self.diagnostics = diagnostics
 
+    @property
+    def status(self) -> str:
+        """The status of an activation that ended with this error, as in `Outcome`."""
+        return _STATUS.get(self.code, "failed")
+
     def __str__(self) -> str:
         text = f"{self.code}: {self.message}"
         return f"{text.rstrip('.')}. {self.hint}" if self.hint else text
@@ -235,6 +240,16 @@ class StorageError(AosError):
 class DeployError(AosError):
     code = "AOS801"
 
+
+_STATUS = {
+    "AOS503": "timed_out",
+    "AOS504": "unknown",
+    "AOS507": "cancelled",
+    "AOS606": "unknown",
+    **dict.fromkeys(("AOS502", "AOS505", "AOS506", "AOS511", "AOS512", "AOS514"), "refused"),
+}
+"""The status of the skill by the code of an error; AOS606 is a defect of the adapter, in the middle of
+anything."""
 
 _BY_HUNDRED: dict[str, type[AosError]] = {
     "1": DocumentError,

@@ -20,7 +20,7 @@ from zenoh.handlers import Callback
 from aos_protocol.codec import decode, encode, encode_fault
 from aos_protocol.errors import AosError, BusError, LostAnswerError
 from aos_protocol.messages import Message
-from aos_runtime.bus_config import LEASE_S, client_config
+from aos_runtime.bus_config import LEASE_S, client_config, opened_session
 from aos_runtime.clock import Clock, SystemClock
 from aos_runtime.older_python import timeout
 from aos_runtime.question import RECEIPT, STRAYS_S, Question
@@ -82,21 +82,14 @@ class Bus:
 
         A process that freezes has left the bus after `lease_s`.
         """
-        clock = clock or SystemClock()
-        deadline_s = clock.monotonic_s() + connect_timeout_s
-        while True:
-            try:
-                session = await asyncio.to_thread(zenoh.open, client_config(endpoint, lease_s=lease_s))
-            except zenoh.ZError as error:
-                if clock.monotonic_s() >= deadline_s:
-                    raise BusError(
-                        f"no bus router answers at {endpoint}",
-                        code="AOS605",
-                        hint="Start a system with aos-up, or give the endpoint of the one that runs",
-                    ) from error
-                await asyncio.sleep(_RETRY_S)
-            else:
-                return cls(session, sender, clock)
+        fault = BusError(
+            f"no bus router answers at {endpoint}",
+            code="AOS605",
+            hint="Start a system with aos-up, or give the endpoint of the one that runs",
+        )
+        config = client_config(endpoint, lease_s=lease_s)
+        session = await opened_session(config, connect_timeout_s, _RETRY_S, fault)
+        return cls(session, sender, clock or SystemClock())
 
     async def __aenter__(self) -> Self:
         return self

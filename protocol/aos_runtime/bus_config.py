@@ -6,6 +6,7 @@ says. Zenoh itself refuses options it does not know.
 
 from __future__ import annotations
 
+import asyncio
 import json
 import re
 from typing import Any
@@ -14,7 +15,7 @@ import zenoh
 
 from aos_protocol.errors import BusError
 
-__all__ = ["ADAPTER_LEASE_S", "LEASE_S", "client_config", "router_config"]
+__all__ = ["ADAPTER_LEASE_S", "LEASE_S", "client_config", "opened_session", "router_config"]
 
 LEASE_S = 2.0
 """A process that is silent for this long is taken for gone. One that ends is noticed at once."""
@@ -43,6 +44,21 @@ def client_config(endpoint: str, *, lease_s: float = LEASE_S, stamps: bool = Fal
     """
     connect = {"endpoints": [_checked(endpoint)], "timeout_ms": 0, "retry": _RETRY}
     return _config({"mode": "client", "connect": connect, "timestamping": {"enabled": stamps}}, lease_s)
+
+
+async def opened_session(
+    config: zenoh.Config, timeout_s: float, retry_s: float, fault: BusError
+) -> zenoh.Session:
+    """A session that waits for its router to come up; raises the fault if it does not in time."""
+    loop = asyncio.get_running_loop()
+    deadline_s = loop.time() + timeout_s
+    while True:
+        try:
+            return await asyncio.to_thread(zenoh.open, config)
+        except zenoh.ZError as error:
+            if loop.time() >= deadline_s:
+                raise fault from error
+            await asyncio.sleep(retry_s)
 
 
 def router_config(endpoint: str) -> zenoh.Config:

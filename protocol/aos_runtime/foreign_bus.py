@@ -17,8 +17,8 @@ import zenoh
 import zenoh.ext
 from zenoh.handlers import Callback
 
-from aos_protocol.errors import BusError
-from aos_runtime.bus_config import client_config
+from aos_protocol.errors import BusError, LateAnswerError, NobodyAnswersError
+from aos_runtime.bus_config import client_config, opened_session
 
 __all__ = ["ForeignBus", "Packet", "Undo"]
 
@@ -53,21 +53,13 @@ class ForeignBus:
     @classmethod
     async def open(cls, endpoint: str, *, connect_timeout_s: float) -> Self:
         """Connects, waiting for the router to come up; BusError AOS605 if it does not in time."""
-        loop = asyncio.get_running_loop()
-        deadline_s = loop.time() + connect_timeout_s
-        while True:
-            try:
-                session = await asyncio.to_thread(zenoh.open, client_config(endpoint, stamps=True))
-            except zenoh.ZError as error:
-                if loop.time() >= deadline_s:
-                    raise BusError(
-                        f"no Zenoh router answers at {endpoint}",
-                        code="AOS605",
-                        hint="With rmw_zenoh, start it with: ros2 run rmw_zenoh_cpp rmw_zenohd",
-                    ) from error
-                await asyncio.sleep(_RETRY_S)
-            else:
-                return cls(session, endpoint)
+        fault = BusError(
+            f"no Zenoh router answers at {endpoint}",
+            code="AOS605",
+            hint="With rmw_zenoh, start it with: ros2 run rmw_zenoh_cpp rmw_zenohd",
+        )
+        config = client_config(endpoint, stamps=True)
+        return cls(await opened_session(config, connect_timeout_s, _RETRY_S, fault), endpoint)
 
     async def __aenter__(self) -> Self:
         return self
@@ -91,7 +83,7 @@ class ForeignBus:
     async def ask(self, key: str, packet: Packet, *, timeout_s: float) -> Packet:
         """The first answer of those who answer `key` completely.
 
-        BusError AOS604 if nobody does, AOS601 if no answer comes in time, AOS606 if it is a refusal.
+        NobodyAnswersError if nobody does, LateAnswerError if none comes in time, AOS606 if it is refused.
         """
         answer: asyncio.Future[tuple[bool, Packet] | None] = self._loop.create_future()
 
@@ -121,12 +113,12 @@ class ForeignBus:
         except TimeoutError:
             result = (False, Packet(b"Timeout"))
         if result is None:
-            raise BusError(f"nobody answers {key}", code="AOS604")
+            raise NobodyAnswersError(f"nobody answers {key}")
         is_answer, received = result
         if is_answer:
             return received
         if received.payload == b"Timeout":
-            raise BusError(f"no answer on {key} within {timeout_s:g} s", code="AOS601")
+            raise LateAnswerError(f"no answer on {key} within {timeout_s:g} s")
         raise BusError(f"{key} refused: {received.payload.decode(errors='replace')}", code="AOS606")
 
     def answer(self, key: str, handler: Callable[[Packet], Awaitable[Packet]]) -> Undo:

@@ -145,14 +145,14 @@ class _Search:
         texts = tuple(snippet.code[weight.stands.start : weight.stands.end] for weight in weights)
         self.draws.append(
             Draw(
-                variable,
-                skill,
-                call.name[1],
-                snippet.locate(call.extent.line, call.extent.column),
-                self._outcomes(cpp, call, len(weights)),
-                tuple(float(text.rstrip("fF")) for text in texts),
-                tuple(snippet.locate(weight.stands.line, weight.stands.column) for weight in weights),
-                texts,
+                variable=variable,
+                skill=skill,
+                kind=call.name[1],
+                span=snippet.locate(call.extent.line, call.extent.column),
+                outcomes=self._outcomes(cpp, call, len(weights)),
+                weights=tuple(float(text.rstrip("fF")) for text in texts),
+                places=tuple(snippet.locate(weight.stands.line, weight.stands.column) for weight in weights),
+                texts=texts,
             )
         )
         kept = f"{copy}.{variable}"

@@ -47,12 +47,7 @@ def check_environment_code(environment: Environment, scope: Scope, findings: Fin
         environment.print_state,
         *(special.code for special in environment.special_states),
     )
-    for block in blocks:
-        _check_loops(block, scope, findings)
-    pieces = tuple(environment_blocks(environment))
-    around = _Around(_temporary_enums(blocks), _declared_names(pieces))
-    for piece in pieces:
-        _BlockCheck(piece, scope, findings, around).run()
+    _check_blocks(blocks, tuple(environment_blocks(environment)), scope, findings)
 
 
 def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> None:
@@ -65,9 +60,15 @@ def check_skill_code(model: SkillModel, scope: Scope, findings: Findings) -> Non
         model.dynamic_model,
         model.state_given_observation,
     )
+    _check_blocks(blocks, tuple(skill_blocks(model)), scope, findings)
+
+
+def _check_blocks(
+    blocks: Iterable[tuple[Assignment, ...]], pieces: tuple[Block, ...], scope: Scope, findings: Findings
+) -> None:
+    """The sections of a document, and the blocks that they consist of."""
     for block in blocks:
         _check_loops(block, scope, findings)
-    pieces = tuple(skill_blocks(model))
     around = _Around(_temporary_enums(blocks), _declared_names(pieces))
     for piece in pieces:
         _BlockCheck(piece, scope, findings, around).run()

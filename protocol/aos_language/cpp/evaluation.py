@@ -6,9 +6,10 @@ import tree_sitter
 
 from aos_language.cpp.facts import CHANGING_METHODS, READING_FUNCTIONS, READING_METHODS
 from aos_language.cpp.flow import is_draw, names_in
+from aos_language.cpp.nodes import text_of
 from aos_language.cpp.ways import State
 
-__all__ = ["Evaluation", "below", "operator_of", "text_of"]
+__all__ = ["Evaluation", "below", "operator_of"]
 
 _READING_METHODS = (CHANGING_METHODS | READING_METHODS) - {"swap"}
 _NO_READS = frozenset({
@@ -122,7 +123,3 @@ def below(node: tree_sitter.Node) -> list[tree_sitter.Node]:
         found.append(part)
         waiting += part.children
     return found
-
-
-def text_of(node: tree_sitter.Node) -> str:
-    return (node.text or b"").decode("utf-8", "replace")

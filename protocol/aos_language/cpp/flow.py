@@ -20,6 +20,7 @@ from aos_language.cpp.facts import (
     READING_METHODS,
     Cpp,
 )
+from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
 
 __all__ = ["STATES", "Flow", "Flows", "Name", "flows_of"]
@@ -69,7 +70,7 @@ def flows_of(cpp: Cpp, reading: frozenset[str] = frozenset()) -> Flows:
         return Flows(is_opaque=True)
     walk = _Reading(reading - {declaration.name for declaration in cpp.declarations})
     walk.statement(root.children[0].child_by_field_name("body"), frozenset(), None)
-    draws = sorted(part.start_byte for part in _below(root) if is_draw(part))
+    draws = sorted(part.start_byte for part in below(root) if is_draw(part))
     return Flows(
         tuple(walk.flows),
         frozenset(walk.used),
@@ -137,7 +138,7 @@ class _Reading:
         """The control within; what the condition itself does is read as well."""
         if node is None:
             return control
-        for declaration in (part for part in _below(node) if part.type in ("declaration", "init_statement")):
+        for declaration in (part for part in below(node) if part.type in ("declaration", "init_statement")):
             self.statement(declaration, control, None)
         self._no_effects(node, control)
         return control | names_in(node)
@@ -181,7 +182,7 @@ class _Reading:
             initial = names_in(value) if value is not None else frozenset()
             if value is not None:
                 self._no_effects(value, control)
-            is_handle = any(part.type in _HANDLE_DECLARATORS for part in _below(inner)) or (
+            is_handle = any(part.type in _HANDLE_DECLARATORS for part in below(inner)) or (
                 value is not None and _gives_handle(value)
             )
             self._declare(inner, control | initial, is_handle, of=initial)
@@ -190,10 +191,10 @@ class _Reading:
         self, declarator: tree_sitter.Node, sources: _Control, is_handle: bool, of: frozenset[Name]
     ) -> None:
         """The names that a declarator gives. What is changed through a handle changes what it is made of."""
-        for part in _below(declarator):
+        for part in below(declarator):
             if part.type != "identifier":
                 continue
-            local = Name(_text(part))
+            local = Name(text_of(part))
             self.flows.append(Flow(local, sources))
             if is_handle:
                 self.flows += [Flow(name, sources | {local}) for name in of]
@@ -267,7 +268,7 @@ def _names_in(node: tree_sitter.Node) -> Iterator[Name]:
         if part.type == "field_expression" and (name := _of_state(part)) is not None:
             yield name
         elif part.type == "identifier":
-            text = _text(part)
+            text = text_of(part)
             yield _WHOLE_STATE if text in STATES else Name(text)
         elif part.type == "qualified_identifier":
             waiting += [child for child in part.named_children if child.type == "template_function"]
@@ -281,7 +282,7 @@ def is_draw(node: tree_sitter.Node) -> bool:
     """Returns whether a piece of the tree is a call such as `AOS.Bernoulli(p)` or
     `AOSUtils::SampleDiscrete(w)`."""
     function = node.child_by_field_name("function") if node.type == "call_expression" else None
-    return function is not None and _DRAW.fullmatch(_text(function)) is not None
+    return function is not None and _DRAW.fullmatch(text_of(function)) is not None
 
 
 def _name_of_draw(start_byte: int) -> Name:
@@ -293,16 +294,16 @@ def _of_state(node: tree_sitter.Node) -> Name | None:
     argument, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
     while argument is not None and argument.type == "parenthesized_expression":
         argument = argument.named_children[0] if argument.named_child_count == 1 else None
-    if argument is None or field is None or argument.type != "identifier" or _text(argument) not in STATES:
+    if argument is None or field is None or argument.type != "identifier" or text_of(argument) not in STATES:
         return None
-    return Name(_text(field), is_of_state=True)
+    return Name(text_of(field), is_of_state=True)
 
 
 def _root(node: tree_sitter.Node | None) -> Name | None:
     """Returns the name that changes when a place changes: `state__.x[i].y` is a part of `x`."""
     while node is not None:
         if node.type == "identifier":
-            return _WHOLE_STATE if _text(node) in STATES else Name(_text(node))
+            return _WHOLE_STATE if text_of(node) in STATES else Name(text_of(node))
         if node.type == "field_expression" and (name := _of_state(node)) is not None:
             return name
         if node.type == "parenthesized_expression":
@@ -321,7 +322,7 @@ def _method_of(call: tree_sitter.Node) -> str:
     """The name of the method that a call calls; empty where it calls something else."""
     function = call.child_by_field_name("function") if call.type == "call_expression" else None
     field = function.child_by_field_name("field") if function is not None else None
-    return _text(field).split("<")[0] if field is not None else ""
+    return text_of(field).split("<")[0] if field is not None else ""
 
 
 def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
@@ -336,7 +337,7 @@ def _changed_by_method(node: tree_sitter.Node) -> tree_sitter.Node | None:
 def _has_effects(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
     """Returns whether evaluating it may change anything that is named in it; calls of `reading` functions
     do not."""
-    return any(_is_effect(part, reading) for part in _below(node))
+    return any(_is_effect(part, reading) for part in below(node))
 
 
 def _is_effect(node: tree_sitter.Node, reading: frozenset[str]) -> bool:
@@ -351,9 +352,9 @@ def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
     if function is None or function.type == "primitive_type":
         return False
     if method := _method_of(call):
-        is_draw = _text(function).split(".")[0].strip() == "AOS" and method in _DRAWS
+        is_draw = text_of(function).split(".")[0].strip() == "AOS" and method in _DRAWS
         return not is_draw and method not in READING_METHODS | HANDLE_METHODS
-    name = _text(function).split("<")[0].removeprefix("std::")
+    name = text_of(function).split("<")[0].removeprefix("std::")
     if name in reading or name.removeprefix("AOSUtils::") in _DRAWS:
         return False
     return bool(names_in(call.child_by_field_name("arguments")))
@@ -361,21 +362,8 @@ def _may_change(call: tree_sitter.Node, reading: frozenset[str]) -> bool:
 
 def _gives_handle(node: tree_sitter.Node) -> bool:
     """Returns whether the value of an expression may be an iterator or a pointer."""
-    for part in _below(node):
+    for part in below(node):
         field = part.child_by_field_name("field") if part.type == "field_expression" else None
-        if field is not None and (_text(field) in HANDLE_METHODS or _text(field).endswith("Objects")):
+        if field is not None and (text_of(field) in HANDLE_METHODS or text_of(field).endswith("Objects")):
             return True
     return False
-
-
-def _below(node: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
-    """The node and all below it. Nodes wait on a stack, so that no text is too deep to read."""
-    waiting = [node]
-    while waiting:
-        part = waiting.pop()
-        yield part
-        waiting += part.children
-
-
-def _text(node: tree_sitter.Node) -> str:
-    return (node.text or b"").decode("utf-8", "replace")

@@ -12,6 +12,7 @@ import tree_sitter
 
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import is_draw
+from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
 
 __all__ = ["adds_only_to", "identifiers_of", "linear_draws"]
@@ -27,7 +28,7 @@ def linear_draws(cpp: Cpp, result: str, elsewhere: frozenset[str]) -> tuple[bool
     maybe through local variables. `elsewhere` are names that other code knows.
     """
     root = _root(cpp)
-    draws = (node for node in _below(root) if is_draw(node) and _function(node) in _CONTINUOUS)
+    draws = (node for node in below(root) if is_draw(node) and _function(node) in _CONTINUOUS)
     return tuple(root is not None and _Linear(root, result, elsewhere).reaches_result(draw) for draw in draws)
 
 
@@ -38,7 +39,7 @@ def adds_only_to(cpp: Cpp, result: str) -> bool:
         return True
     root = _root(cpp)
     return root is not None and all(
-        _is_added_to(node) for node in _below(root) if node.type == "identifier" and _text(node) == result
+        _is_added_to(node) for node in below(root) if node.type == "identifier" and text_of(node) == result
     )
 
 
@@ -84,7 +85,7 @@ class _Linear:
             return False
         if parent.type == "assignment_expression":
             target = parent.child_by_field_name("left")
-            return target is not None and _text(target) == self._result and _is_added_to(target)
+            return target is not None and text_of(target) == self._result and _is_added_to(target)
         return parent.type == "init_declarator" and self._follows_local(parent)
 
     def _passes_on(self, parent: tree_sitter.Node, node: tree_sitter.Node) -> bool:
@@ -110,13 +111,13 @@ class _Linear:
         use."""
         name, declaration = declarator.child_by_field_name("declarator"), declarator.parent
         kind = declaration.child_by_field_name("type") if declaration is not None else None
-        if name is None or name.type != "identifier" or kind is None or _text(kind) not in _DOUBLE:
+        if name is None or name.type != "identifier" or kind is None or text_of(kind) not in _DOUBLE:
             return False
-        text = _text(name)
+        text = text_of(name)
         if text in self._elsewhere or text in self._carriers:
             return False
         self._carriers.add(text)
-        uses = (node for node in _below(self._root) if node.type == "identifier" and _text(node) == text)
+        uses = (node for node in below(self._root) if node.type == "identifier" and text_of(node) == text)
         return all(use == name or self._follows(use) for use in uses)
 
 
@@ -129,28 +130,16 @@ def _root(cpp: Cpp) -> tree_sitter.Node | None:
     return None if root.has_error else root
 
 
-def _below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
-    """Yields the node and all nodes below it in the order of the text."""
-    if node is not None:
-        yield node
-        for child in node.children:
-            yield from _below(child)
-
-
 def _identifiers(node: tree_sitter.Node | None) -> Iterator[str]:
-    return (_text(part) for part in _below(node) if part.type == "identifier")
+    return (text_of(part) for part in below(node) if part.type == "identifier")
 
 
 def _function(draw: tree_sitter.Node) -> str:
     """The last name of what is called."""
     function = draw.child_by_field_name("function")
-    return re.findall(r"\w+", _text(function))[-1] if function is not None else ""
+    return re.findall(r"\w+", text_of(function))[-1] if function is not None else ""
 
 
 def _operator(node: tree_sitter.Node) -> str:
     operator = node.child_by_field_name("operator")
-    return _text(operator) if operator is not None else ""
-
-
-def _text(node: tree_sitter.Node) -> str:
-    return node.text.decode() if node.text is not None else ""
+    return text_of(operator) if operator is not None else ""

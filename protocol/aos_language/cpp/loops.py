@@ -13,6 +13,7 @@ import msgspec
 import tree_sitter
 
 from aos_language.cpp.facts import Cpp
+from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.tree import tree_of
 
 __all__ = ["DrawingLoop", "Loops", "Scope", "loops_of"]
@@ -88,8 +89,8 @@ class _Reading:
         self._scope = self._with_lambdas(scope)
 
     def loops(self) -> Loops:
-        loops = [loop for node in _below(self._body) if (loop := self._loop(node)) is not None]
-        unset = [self._offset(end) for node in _below(self._body) for end in _unset(node)]
+        loops = [loop for node in below(self._body) if (loop := self._loop(node)) is not None]
+        unset = [self._offset(end) for node in below(self._body) for end in _unset(node)]
         declared = [found for node in self._body.named_children for found in _declared(node)]
         own = {name for name, is_constant in declared if not is_constant}
         after = self._scope.with_variables(own - self._scope.lambdas)
@@ -98,7 +99,7 @@ class _Reading:
     def _with_lambdas(self, scope: Scope) -> Scope:
         lambdas, drawing, captured = set(scope.lambdas), set(scope.drawing), set(scope.captured)
         others: set[str] = set()
-        for node in _below(self._body):
+        for node in below(self._body):
             if "declaration" in node.type:
                 others |= {name for name, _ in _declared(node, of_lambdas=False)}
             if node.type != "lambda_expression":
@@ -170,7 +171,7 @@ def _visible(
             break
         if parent.type == "lambda_expression":
             captures = parent.child_by_field_name("captures")
-            if captures is None or _text(captures).replace(" ", "") != "[&]":
+            if captures is None or text_of(captures).replace(" ", "") != "[&]":
                 return None
             visible += _parameters(parent)
         for sibling in parent.children:
@@ -200,7 +201,7 @@ def _is_in_function(loop: tree_sitter.Node) -> bool:
 
 
 def _parameters(function: tree_sitter.Node) -> list[tuple[str, bool]]:
-    parts = _below(function.child_by_field_name("declarator"))
+    parts = below(function.child_by_field_name("declarator"))
     return [found for part in parts if "parameter_declaration" in part.type for found in _declared(part)]
 
 
@@ -214,7 +215,9 @@ def _declared(node: tree_sitter.Node, *, of_lambdas: bool = True) -> list[tuple[
     if node.type not in ("declaration", "parameter_declaration", "optional_parameter_declaration"):
         return []
     words = {
-        _text(child) for child in node.children if child.type in ("type_qualifier", "storage_class_specifier")
+        text_of(child)
+        for child in node.children
+        if child.type in ("type_qualifier", "storage_class_specifier")
     }
     found = []
     for declarator in node.children_by_field_name("declarator"):
@@ -229,7 +232,7 @@ def _declared(node: tree_sitter.Node, *, of_lambdas: bool = True) -> list[tuple[
 def _is_lambda(value: tree_sitter.Node | None) -> bool:
     """Returns whether it is a lambda that keeps nothing from call to call."""
     is_lambda = value is not None and value.type == "lambda_expression"
-    return is_lambda and not any(_text(part) == "mutable" for part in _below(value))
+    return is_lambda and not any(text_of(part) == "mutable" for part in below(value))
 
 
 def _inner(declarator: tree_sitter.Node) -> tree_sitter.Node:
@@ -244,7 +247,7 @@ def _names_of_declarator(declarator: tree_sitter.Node | None) -> list[tuple[str,
     while waiting:
         part = waiting.pop()
         if part.type == "identifier":
-            found.append((_text(part), False))
+            found.append((text_of(part), False))
         elif part.type == "array_declarator":
             inner = part.child_by_field_name("declarator")
             waiting += [inner] if inner is not None else []
@@ -269,8 +272,8 @@ def _counts(loop: tree_sitter.Node) -> bool:
     if loop.type != "for_statement" or update is None or condition is None or body is None:
         return False
     counters = {
-        _text(target)
-        for part in _below(update)
+        text_of(target)
+        for part in below(update)
         if part.type in ("update_expression", "assignment_expression")
         and (target := part.child_by_field_name("argument") or part.child_by_field_name("left")) is not None
     }
@@ -279,17 +282,17 @@ def _counts(loop: tree_sitter.Node) -> bool:
     while waiting:
         part = waiting.pop()
         operator = part.child_by_field_name("operator")
-        if part.type == "binary_expression" and operator is not None and _text(operator) in ("&&", "and"):
+        if part.type == "binary_expression" and operator is not None and text_of(operator) in ("&&", "and"):
             waiting += part.named_children
-        elif part.type == "binary_expression" and operator is not None and _text(operator) in _COMPARISONS:
-            compared |= {_text(side) for side in part.named_children if side.type == "identifier"}
+        elif part.type == "binary_expression" and operator is not None and text_of(operator) in _COMPARISONS:
+            compared |= {text_of(side) for side in part.named_children if side.type == "identifier"}
     return bool((counters & compared) - _changed(body))
 
 
 def _changed(body: tree_sitter.Node) -> set[str]:
     """The names that a statement assigns to, or makes a reference or a pointer of."""
     changed: set[str] = set()
-    for part in _below(body):
+    for part in below(body):
         if part.type in ("update_expression", "pointer_expression"):
             changed |= _root(part.child_by_field_name("argument"))
         elif part.type == "assignment_expression":
@@ -304,22 +307,9 @@ def _root(place: tree_sitter.Node | None) -> set[str]:
     while place is not None and place.type != "identifier":
         named = place.named_children[:1] if place.type == "parenthesized_expression" else []
         place = place.child_by_field_name("argument") or next(iter(named), None)
-    return {_text(place)} if place is not None else set()
+    return {text_of(place)} if place is not None else set()
 
 
 def _names(node: tree_sitter.Node | None) -> set[str]:
     """The identifiers below a node."""
-    return {_text(part) for part in _below(node) if part.type == "identifier"}
-
-
-def _below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
-    """The node and all below it, in text order. They wait on a stack: no text is too deep to read."""
-    waiting = [node] if node is not None else []
-    while waiting:
-        part = waiting.pop()
-        yield part
-        waiting += reversed(part.children)
-
-
-def _text(node: tree_sitter.Node) -> str:
-    return (node.text or b"").decode("utf-8", "replace")
+    return {text_of(part) for part in below(node) if part.type == "identifier"}

@@ -17,6 +17,7 @@ from aos_language.cpp.facts import (
     DeclarationKind,
     Mention,
 )
+from aos_language.cpp.nodes import text_of
 from aos_language.cpp.tokens import Extent, Fault, FaultKind, Lines, Tokens
 
 __all__ = ["TreeReader"]
@@ -49,14 +50,16 @@ class TreeReader:
         while self._stack:
             self._visit(*self._stack.pop())
         return Cpp(
-            self._code,
-            tuple(m for m in sorted(self.mentions, key=_by_start) if self._is_inside(m.extent)),
-            tuple(sorted(self.calls, key=_by_start)),
-            tuple(d for d in sorted(self.declarations, key=_by_start) if self._is_inside(d.extent)),
-            tuple(sorted(self.types, key=lambda item: item[1].start)),
-            self._tokens.literals,
-            self._tokens.missing_semicolons,
-            tuple(sorted(self.faults, key=_by_start)),
+            code=self._code,
+            mentions=tuple(m for m in sorted(self.mentions, key=_by_start) if self._is_inside(m.extent)),
+            calls=tuple(sorted(self.calls, key=_by_start)),
+            declarations=tuple(
+                d for d in sorted(self.declarations, key=_by_start) if self._is_inside(d.extent)
+            ),
+            types=tuple(sorted(self.types, key=lambda item: item[1].start)),
+            literals=self._tokens.literals,
+            missing_semicolons=self._tokens.missing_semicolons,
+            faults=tuple(sorted(self.faults, key=_by_start)),
         )
 
     def _visit(self, node: tree_sitter.Node, access: Access) -> None:
@@ -64,7 +67,7 @@ class TreeReader:
             self._missing(node)
             return
         if node.is_error:
-            text = _text(node).strip().splitlines() or [""]
+            text = text_of(node).strip().splitlines() or [""]
             message = f"unexpected {text[0][:40]!r}"
             self.faults.append(Fault(FaultKind.SYNTAX, message, self.extent(node)))
         handler = _HANDLERS.get(node.type)
@@ -86,7 +89,7 @@ class TreeReader:
         if root is None:
             return
         if node.type == "qualified_identifier" and _is_type(node):
-            self.types.append((_text(node).split("<")[0], self.extent(node)))
+            self.types.append((text_of(node).split("<")[0], self.extent(node)))
         else:
             extent, root_extent = self.extent(node), self.extent(root)
             self.mentions.append(Mention(parts, access, extent, root_extent, assigned=assigned))
@@ -108,7 +111,7 @@ class TreeReader:
             elif current.type == "parenthesized_expression" and current.named_child_count == 1:
                 current = current.named_children[0]
             elif current.type in ("identifier", "this"):
-                return (_text(current), *reversed(parts)), current
+                return (text_of(current), *reversed(parts)), current
             elif current.type == "qualified_identifier":
                 self._push_template_arguments(current)
                 return (*_names(current), *reversed(parts)), current
@@ -126,7 +129,7 @@ class TreeReader:
 
     def _assignment(self, node: tree_sitter.Node, access: Access) -> None:
         operator = node.child_by_field_name("operator")
-        is_plain = operator is None or _text(operator) == "="
+        is_plain = operator is None or text_of(operator) == "="
         left, right = _child(node, "left"), node.child_by_field_name("right")
         kind = Access.WRITE if is_plain else Access.UPDATE
         if _HANDLERS.get(left.type) is TreeReader._path:
@@ -189,10 +192,10 @@ class TreeReader:
         type_node = node.child_by_field_name("type")
         self._push([type_node])
         prefix = [child for child in node.children if child.type == "type_qualifier"]
-        type_text = " ".join(_text(part) for part in [*prefix, type_node] if part is not None)
+        type_text = " ".join(text_of(part) for part in [*prefix, type_node] if part is not None)
         is_parameter = "parameter" in node.type
         kind = DeclarationKind.PARAMETER if is_parameter else DeclarationKind.VARIABLE
-        is_constant = any(_text(part) == "const" for part in prefix)
+        is_constant = any(text_of(part) == "const" for part in prefix)
         for child in node.children_by_field_name("declarator"):
             self._declarator(child, type_text, kind, is_constant)
         self._push([node.child_by_field_name("default_value"), node.child_by_field_name("value")])
@@ -219,13 +222,15 @@ class TreeReader:
         for name in names:
             if name.type == "identifier":
                 extent = self.extent(initial) if initial is not None else None
-                self.declarations.append(Declaration(_text(name), type_text, kind, self.extent(name), extent))
+                self.declarations.append(
+                    Declaration(text_of(name), type_text, kind, self.extent(name), extent)
+                )
             else:
                 self._push(name.children)
 
     def _enum(self, node: tree_sitter.Node, access: Access) -> None:
         name = node.child_by_field_name("name")
-        enum_name = _text(name) if name is not None else ""
+        enum_name = text_of(name) if name is not None else ""
         if name is not None:
             self._push([name])
             extent = self.extent(name)
@@ -235,12 +240,12 @@ class TreeReader:
             value_name = enumerator.child_by_field_name("name")
             if enumerator.type == "enumerator" and value_name is not None:
                 extent = self.extent(value_name)
-                declaration = Declaration(_text(value_name), enum_name, DeclarationKind.ENUMERATOR, extent)
+                declaration = Declaration(text_of(value_name), enum_name, DeclarationKind.ENUMERATOR, extent)
                 self.declarations.append(declaration)
                 self._push([enumerator.child_by_field_name("value")])
 
     def _type(self, node: tree_sitter.Node, access: Access) -> None:
-        self.types.append((_text(node), self.extent(node)))
+        self.types.append((text_of(node), self.extent(node)))
 
     def _skip(self, node: tree_sitter.Node, access: Access) -> None:
         pass
@@ -300,12 +305,12 @@ def _names(node: tree_sitter.Node | None) -> tuple[str, ...]:
     while node is not None:
         if node.type == "qualified_identifier":
             scope = node.child_by_field_name("scope")
-            parts += [_text(scope).split("<")[0]] if scope is not None else []
+            parts += [text_of(scope).split("<")[0]] if scope is not None else []
             node = node.child_by_field_name("name")
         elif node.type in ("template_function", "template_method", "template_type", "dependent_name"):
             node = node.child_by_field_name("name") or next(iter(node.named_children), None)
         else:
-            parts.append(_text(node))
+            parts.append(text_of(node))
             node = None
     return tuple(parts)
 
@@ -319,10 +324,6 @@ def _is_type(node: tree_sitter.Node | None) -> bool:
 def _child(node: tree_sitter.Node, field: str) -> tree_sitter.Node:
     child = node.child_by_field_name(field)
     return child if child is not None else node.children[0]
-
-
-def _text(node: tree_sitter.Node) -> str:
-    return (node.text or b"").decode("utf-8", "replace")
 
 
 def _by_start(item: Mention | Call | Declaration | Fault) -> int:

@@ -15,6 +15,7 @@ import msgspec
 import tree_sitter
 
 from aos_language.cpp.facts import READING_FUNCTIONS
+from aos_language.cpp.nodes import below, text_of
 from aos_language.cpp.snippets import Cpp, read_cpp_declarations
 from aos_language.cpp.tokens import Extent, Lines
 from aos_language.cpp.tree import tree_of
@@ -177,7 +178,7 @@ class _Reading:
 
     def _declaration(self, node: tree_sitter.Node) -> None:
         kind = node.type
-        if kind == "comment" or (kind == "expression_statement" and _text(node) == ";"):
+        if kind == "comment" or (kind == "expression_statement" and text_of(node) == ";"):
             return
         if kind == "static_assert_declaration":
             # It has no name, and may ask anything.
@@ -198,7 +199,7 @@ class _Reading:
             self._misuse(node, "this is no declaration", _HINT)
 
     def _constant(self, node: tree_sitter.Node) -> None:
-        qualifiers = {_text(child) for child in node.children if child.type in _QUALIFIERS}
+        qualifiers = {text_of(child) for child in node.children if child.type in _QUALIFIERS}
         for declarator in node.children_by_field_name("declarator"):
             name = _name_node(declarator)
             if any(part.type == "function_declarator" for part in _declarators(declarator)):
@@ -214,13 +215,15 @@ class _Reading:
             value = declarator.child_by_field_name("value")
             if not is_constant:
                 hint = f"Write `const` before its type, or make a state variable of it: {_HINT.lower()}"
-                self._misuse(name, f"`{_text(name)}` could change, and steps could not be repeated", hint)
+                self._misuse(name, f"`{text_of(name)}` could change, and steps could not be repeated", hint)
             elif value is None:
-                self._misuse(name, f"the constant `{_text(name)}` has no value", "Write `= VALUE` behind it")
+                self._misuse(
+                    name, f"the constant `{text_of(name)}` has no value", "Write `= VALUE` behind it"
+                )
             elif value.type == "lambda_expression":
-                self._misuse(name, f"`{_text(name)}` is a lambda", "Write a function")
+                self._misuse(name, f"`{text_of(name)}` is a lambda", "Write a function")
             elif _SOURCES & set(_identifiers(value)):
-                self._misuse(name, f"the constant `{_text(name)}` is drawn", "Draw where it is needed")
+                self._misuse(name, f"the constant `{text_of(name)}` is drawn", "Draw where it is needed")
             self._add(node, name, "constant")
 
     def _enum(self, node: tree_sitter.Node) -> None:
@@ -237,12 +240,12 @@ class _Reading:
             return
         is_late = not self._late.isdisjoint(_identifiers(node))
         if is_late:
-            self._late.add(_text(name))
+            self._late.add(text_of(name))
         extent = self._extent(node)
-        self._names.append(SharedName(_text(name), kind, extent, self._extent(name), is_late))
+        self._names.append(SharedName(text_of(name), kind, extent, self._extent(name), is_late))
 
     def _function(self, node: tree_sitter.Node) -> None:
-        function = next(part for part in _below(node) if part.type == "function_definition")
+        function = next(part for part in below(node) if part.type == "function_definition")
         declarators = [*_declarators(function.child_by_field_name("declarator"))]
         header = next(
             (declarator for declarator in declarators if declarator.type == "function_declarator"), None
@@ -253,22 +256,22 @@ class _Reading:
         if body is None or name is None or parameters is None or name.type != "identifier":
             self._misuse(node, "this is no function", _HINT)
             return
-        if _text(name) in READING_FUNCTIONS:
-            message = f"`{_text(name)}` is a function of C++ already"
+        if text_of(name) in READING_FUNCTIONS:
+            message = f"`{text_of(name)}` is a function of C++ already"
             self._misuse(name, message, "Choose another name")
-        for source in (part for part in _below(parameters) if _text(part) in _SOURCES):
-            message = f"`{_text(source)}` is no parameter: a function that draws has it by itself"
+        for source in (part for part in below(parameters) if text_of(part) in _SOURCES):
+            message = f"`{text_of(source)}` is no parameter: a function that draws has it by itself"
             self._misuse(source, message, "Leave the parameter out, and call the function without it")
         declared = [parameter for parameter in parameters.named_children if parameter.type != "comment"]
-        is_void = len(declared) == 1 and _text(declared[0]) == "void"
-        self._words.setdefault(_text(name), set()).update(_identifiers(body), _identifiers(parameters))
-        written = _text(function)[: _text(function).index(_text(name))]
+        is_void = len(declared) == 1 and text_of(declared[0]) == "void"
+        self._words.setdefault(text_of(name), set()).update(_identifiers(body), _identifiers(parameters))
+        written = text_of(function)[: text_of(function).index(text_of(name))]
         is_plain = node.type == "function_definition" and _OTHER_TYPES.search(written) is None
         has_result = re.search(r"\bvoid\b", written) is None
         only_reads = is_plain and has_result and all(_only_read(parameter) for parameter in declared)
         self._functions.append(
             SharedFunction(
-                _text(name),
+                text_of(name),
                 "function",
                 self._extent(node),
                 self._extent(name),
@@ -302,10 +305,10 @@ def _is_function(node: tree_sitter.Node) -> bool:
 
 
 def _declared(node: tree_sitter.Node) -> str:
-    for part in _below(node):
+    for part in below(node):
         if part.type == "function_declarator":
             name = part.child_by_field_name("declarator")
-            return _text(name) if name is not None else ""
+            return text_of(name) if name is not None else ""
     return ""
 
 
@@ -326,27 +329,15 @@ def _name_node(declarator: tree_sitter.Node) -> tree_sitter.Node | None:
 
 def _only_read(parameter: tree_sitter.Node) -> bool:
     """Returns whether a function can change nothing of its caller's through a parameter."""
-    kind = _text(parameter).partition("=")[0]
+    kind = text_of(parameter).partition("=")[0]
     return _OTHER_TYPES.search(kind) is None or _CONSTANT_REFERENCE.match(kind.strip()) is not None
 
 
 def _parameter_name(parameter: tree_sitter.Node) -> str:
     """Returns the name of a parameter; empty for one without a name."""
-    names = [_text(part) for part in _declarators(parameter.child_by_field_name("declarator"))]
+    names = [text_of(part) for part in _declarators(parameter.child_by_field_name("declarator"))]
     return names[-1] if names and names[-1].isidentifier() else ""
 
 
 def _identifiers(node: tree_sitter.Node) -> Iterator[str]:
-    return (_text(part) for part in _below(node) if part.type in ("identifier", "type_identifier"))
-
-
-def _below(node: tree_sitter.Node) -> Iterator[tree_sitter.Node]:
-    waiting = [node]
-    while waiting:
-        part = waiting.pop()
-        yield part
-        waiting += reversed(part.children)
-
-
-def _text(node: tree_sitter.Node) -> str:
-    return (node.text or b"").decode("utf-8", "replace")
+    return (text_of(part) for part in below(node) if part.type in ("identifier", "type_identifier"))

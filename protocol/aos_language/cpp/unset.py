@@ -11,9 +11,10 @@ from __future__ import annotations
 import msgspec
 import tree_sitter
 
-from aos_language.cpp.evaluation import Evaluation, below, operator_of, text_of
+from aos_language.cpp.evaluation import Evaluation, below, operator_of
 from aos_language.cpp.facts import Cpp
 from aos_language.cpp.flow import names_in
+from aos_language.cpp.nodes import text_of
 from aos_language.cpp.reader import TreeReader
 from aos_language.cpp.tokens import Extent, Tokens
 from aos_language.cpp.tree import tree_of

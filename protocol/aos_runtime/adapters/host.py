@@ -282,15 +282,15 @@ class Host:
         fields = translated(binding.fields, request.fields, f"a call of {path}")
         target = binding.target if binding.target is not None else path
         call = Call(
-            request.id,
-            path,
-            target,
-            fields,
-            request.deadline_s,
-            request.skill,
-            request.parameters,
-            self._on_progress,
-            self.publish,
+            id=request.id,
+            path=path,
+            target=target,
+            fields=fields,
+            deadline_s=request.deadline_s,
+            skill=request.skill,
+            parameters=request.parameters,
+            on_progress=self._on_progress,
+            on_message=self.publish,
         )
         self._ledger.start(request)
         self._fence.note(request)
@@ -302,7 +302,7 @@ class Host:
             result = self._result(call, binding, answer)
         except AosError as error:
             self._ledger.fail(call.id, error)
-            self._tell_end(call, _STATES.get(error.code, "failed"), error.message)
+            self._tell_end(call, _state_of(error), error.message)
             raise
         else:
             self._ledger.end(result)
@@ -427,4 +427,6 @@ class Host:
             self._lost = 0
 
 
-_STATES = {"AOS503": "timed_out", "AOS507": "cancelled"}
+def _state_of(error: AosError) -> str:
+    """The last state of a call that ended with an error."""
+    return error.status if error.status in ("timed_out", "cancelled") else "failed"

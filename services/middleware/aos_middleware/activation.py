@@ -51,16 +51,6 @@ _CANCEL_S = 0.25
 _BATCH = 256
 _QUEUE_SIZE = 4096
 
-_STATUS = {
-    "AOS503": "timed_out",
-    "AOS504": "unknown",
-    "AOS507": "cancelled",
-    "AOS606": "unknown",
-    **dict.fromkeys(("AOS502", "AOS505", "AOS506", "AOS511", "AOS512", "AOS514"), "refused"),
-}
-"""The status of the skill by the code of an error; AOS606 is a defect of the adapter, in the middle of
-anything."""
-
 _log = logging.getLogger("aos.middleware")
 
 
@@ -113,7 +103,7 @@ async def run_activation(
         # A skill that was called may have done its work: its mapping has failed, not the robot.
         status = "unknown" if activation.was_called else "failed"
     except AosError as error:
-        fault, status = error, _STATUS.get(error.code, "failed")
+        fault, status = error, error.status
     cause = fault or observation.failure
     return Outcome(
         request.id,
@@ -121,11 +111,11 @@ async def run_activation(
         status,
         observation.response,
         observation.local_variables,
-        started_ns,
-        around.clock.now_ns(),
-        None if cause is None else _fault_of(cause),
-        observation.assigned,
-        observation.numbers,
+        started_ns=started_ns,
+        ended_ns=around.clock.now_ns(),
+        fault=None if cause is None else _fault_of(cause),
+        assigned=observation.assigned,
+        numbers=observation.numbers,
     )
 
 
@@ -213,7 +203,7 @@ class _Activation:
         """Returns what the rules make of a skill that has failed; raises the skill's error where none of
         them holds."""
         try:
-            observed = await self._evaluator.finish({}, _STATUS.get(error.code, "failed"), error.message)
+            observed = await self._evaluator.finish({}, error.status, error.message)
         except MappingFault as fault:
             _log.warning("%s: the rules say nothing about its failure: %s", self._request.skill, fault)
             raise error from fault
@@ -284,7 +274,7 @@ class _Activation:
             was_there = await self._around.served.has_left(path, GONE_S)
             raise (_lost_adapter(path, after_s) if was_there else no_adapter(path)) from error
         except SkillError as error:
-            has_ended = _STATUS.get(error.code) != "unknown"
+            has_ended = error.status != "unknown"
             raise
         finally:
             if not has_ended:

@@ -117,7 +117,14 @@ def emit_mapping(
     observed = tuple(number.name for number in reported_numbers(skill.model))
     digest = _digest_of(python, constant_names, observed)
     emitted = EmittedMapping(
-        skill.name, python, digest, origins, mapping, constant_names, observed, sections.handles_failures
+        skill=skill.name,
+        python=python,
+        digest=digest,
+        origins=origins,
+        mapping=mapping,
+        constants=constant_names,
+        observed=observed,
+        handles_failures=sections.handles_failures,
     )
     _check_whole(emitted)
     return emitted

@@ -76,15 +76,15 @@ class _Middleware:
             self._fence.note(request)
         self._low_level = LowLevelValues(self._ledger.outcomes())
         self._around = Surroundings(
-            service.bus,
-            service.keys,
-            service.clock,
-            {},
-            self._low_level,
-            self._served,
-            MotionGate(service.bus, service.keys, self._served),
-            self._ledger.note,
-            settings.is_played,
+            bus=service.bus,
+            keys=service.keys,
+            clock=service.clock,
+            published={},
+            low_level=self._low_level,
+            served=self._served,
+            gate=MotionGate(service.bus, service.keys, self._served),
+            on_stray=self._ledger.note,
+            is_played=settings.is_played,
         )
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}

@@ -8,7 +8,7 @@ import time
 from collections.abc import Awaitable, Callable
 from typing import Self
 
-from aos_protocol.errors import AosError, BusError, SkillError
+from aos_protocol.errors import AosError, BusError, LateAnswerError, NobodyAnswersError, SkillError
 from aos_runtime.foreign_bus import ForeignBus, Packet, Undo
 from aos_skills.ros.node import DEFAULT_QOS, Fields, Qos, ServiceRequest, TopicFound
 from aos_skills.ros.ros2_node import Ros2Node, check_type, not_served
@@ -190,9 +190,9 @@ class _Client:
 
 
 def _skill_error(service: str, timeout_s: float, error: BusError) -> SkillError:
-    if error.code == "AOS601":
+    if isinstance(error, LateAnswerError):
         return SkillError(f"{service} did not answer within {timeout_s:g} s", code="AOS503")
-    if error.code == "AOS604":
+    if isinstance(error, NobodyAnswersError):
         return SkillError(
             f"the node that serves {service} was lost during the call",
             code="AOS504",

@@ -99,14 +99,14 @@ def endpoint_of(token: str) -> Endpoint | None:
     if (kind is Kind.NODE) is not (len(parts) == 9) or not all(parts[at].isdigit() for at in (1, 3, 4)):
         return None
     endpoint = Endpoint(
-        int(parts[1]),
-        parts[2],
-        int(parts[3]),
-        int(parts[4]),
-        kind,
-        parts[8],
-        _plain(parts[7]),
-        _plain(parts[6]),
+        domain=int(parts[1]),
+        session=parts[2],
+        node_number=int(parts[3]),
+        number=int(parts[4]),
+        kind=kind,
+        node=parts[8],
+        namespace=_plain(parts[7]),
+        enclave=_plain(parts[6]),
     )
     if kind is Kind.NODE:
         return endpoint

@@ -197,15 +197,15 @@ class _Lowering:
             flags += is_used_up
             lowered.append(
                 SpecialState(
-                    number,
-                    bit,
-                    condition,
-                    special.reward,
-                    special.is_goal,
-                    bool(special.is_failure),
-                    says_failure,
-                    special.is_one_time,
-                    section,
+                    number=number,
+                    bit=bit,
+                    condition=condition,
+                    reward=special.reward,
+                    is_goal=special.is_goal,
+                    is_failure=bool(special.is_failure),
+                    says_failure=says_failure,
+                    is_one_time=special.is_one_time,
+                    section=section,
                 )
             )
         return tuple(lowered)

@@ -101,14 +101,14 @@ def lower_variables(
         is_walked = variable.type in changes.object_types and not variable.is_parameter_value
         lowered.append(
             Variable(
-                variable.name,
-                stored,
-                not is_walked and variable.name not in changes.variables,
-                variable.is_parameter_value,
-                pieces.expression(value, outside) if value is not None else None,
-                pieces.code(code, outside) if code is not None else None,
-                axes,
-                variable.name not in irrelevant,
+                name=variable.name,
+                type=stored,
+                is_constant=not is_walked and variable.name not in changes.variables,
+                is_parameter_value=variable.is_parameter_value,
+                default_value=pieces.expression(value, outside) if value is not None else None,
+                default_code=pieces.code(code, outside) if code is not None else None,
+                axes=axes,
+                is_relevant=variable.name not in irrelevant,
             )
         )
     return tuple(lowered)

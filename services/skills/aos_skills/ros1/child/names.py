@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import socket
 import time
-from typing import Any
 from urllib.parse import urlparse
 
 import rosgraph
 import rosservice
+
+from aos_skills.ros1.child.interfaces import Channel
 
 __all__ = ["Names"]
 
@@ -19,12 +20,12 @@ CONNECT_S = 0.5
 class Names:
     """Asks the master again and again: it tells nobody about services, and keeps those of nodes that died."""
 
-    def __init__(self, channel: Any, own_node: str) -> None:
+    def __init__(self, channel: Channel, own_node: str) -> None:
         self._channel = channel
         self._own_node = own_node
         self._master = rosgraph.Master("/aos")
         self._types: dict[tuple[str, str], str] = {}
-        self._said: Any = None
+        self._said: dict[str, dict[str, str]] | None = None
 
     def follow(self) -> None:
         """Tells every change, for ever: types by the names of services, actions and topics."""

@@ -4,13 +4,22 @@ ways."""
 from __future__ import annotations
 
 import threading
-from typing import Any
+from typing import Callable, TypedDict
 
 import actionlib
 import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
+from aos_skills.ros1.child.interfaces import (
+    ActionClient,
+    ActionServer,
+    Channel,
+    Fields,
+    Kept,
+    Message,
+    Publisher,
+)
 from aos_skills.ros1.child.names import Names
 from aos_skills.ros1.child.types import ActionClasses, Misfit, Types, Unknown, plain
 
@@ -26,6 +35,16 @@ STATUS = {
 }
 
 
+OnFeedback = Callable[[Fields], None]
+
+
+class Settings(TypedDict):
+    """The name of the node, and the paths of interface files by `package/kind/Name`."""
+
+    node: str
+    files: dict[str, str]
+
+
 class Refusal(Exception):
     """An error with a code of AOS."""
 
@@ -38,15 +57,15 @@ class Refusal(Exception):
 class Robot:
     """Its methods `do_X` answer the requests X."""
 
-    def __init__(self, channel: Any, settings: dict[str, Any]) -> None:
+    def __init__(self, channel: Channel, settings: Settings) -> None:
         self._channel = channel
         self._types = Types(settings["files"])
-        self._clients: dict[int, Any] = {}
-        self._publishers: dict[str, Any] = {}
+        self._clients: dict[int, ActionClient] = {}
+        self._publishers: dict[str, Publisher] = {}
         self._asked: dict[int, _Asked] = {}
         self._asked_lock = threading.Lock()
         self._asked_count = 0
-        self._kept: list[Any] = []
+        self._kept: list[Kept] = []
         rosgraph.Master("/aos").getPid()  # Without a master rospy would wait for one, for ever.
         rospy.init_node(settings["node"], anonymous=True, disable_signals=True)
         names = Names(channel, rospy.get_name())
@@ -64,17 +83,17 @@ class Robot:
 
     # --- as a client ---------------------------------------------------------------------------------
 
-    def do_check(self, number: int, kind: str, type: str) -> Any:
+    def do_check(self, number: int, kind: str, type: str) -> None:
         if kind == "action":
             ActionClasses(self._types, type)
         else:
             self._types.service(type)
 
-    def do_call(self, number: int, name: str, type: str, fields: Any) -> Any:
+    def do_call(self, number: int, name: str, type: str, fields: Fields) -> Fields:
         cls = self._types.service(type)
         request = self._types.filled(cls._request_class(), fields)
         try:
-            return plain(rospy.ServiceProxy(name, cls).call(request))
+            response: Fields = plain(rospy.ServiceProxy(name, cls).call(request))
         except rospy.ServiceException as error:
             text = str(error).replace("b'", "").rstrip("'")
             if "responded with an error" in text:
@@ -82,10 +101,11 @@ class Robot:
             if "unable to connect" in text or "unavailable" in text:
                 raise Refusal("AOS505", f"{name} cannot be reached: {text}")
             raise Refusal("AOS504", f"{name} was lost during the call: {text}")
+        return response
 
-    def do_run(self, number: int, name: str, type: str, fields: Any) -> Any:
+    def do_run(self, number: int, name: str, type: str, fields: Fields) -> Fields:
         spec = ActionClasses(self._types, type)
-        client = actionlib.SimpleActionClient(name, _ActionSpec(spec))
+        client: ActionClient = actionlib.SimpleActionClient(name, _ActionSpec(spec))
         if not client.wait_for_server(rospy.Duration(SERVER_S)):
             raise Refusal("AOS505", f"the action {name} does not answer")
         ended = threading.Event()
@@ -111,34 +131,34 @@ class Robot:
             "result": plain(result) if result is not None else {},
         }
 
-    def do_cancel(self, number: int, of: int) -> Any:
+    def do_cancel(self, number: int, of: int) -> None:
         client = self._clients.get(of)
         if client is not None:
             client.cancel_goal()
 
-    def do_subscribe(self, number: int, name: str, type: str) -> Any:
+    def do_subscribe(self, number: int, name: str, type: str) -> None:
         cls = self._types.message(type)
 
-        def on_message(message: Any) -> None:
+        def on_message(message: Message) -> None:
             self._channel.send(event="message", name=name, fields=plain(message))
 
         self._kept.append(rospy.Subscriber(name, cls, on_message, queue_size=QUEUE))
 
     # --- as a server ---------------------------------------------------------------------------------
 
-    def do_advertise(self, number: int, name: str, type: str, latch: bool) -> Any:
+    def do_advertise(self, number: int, name: str, type: str, latch: bool) -> None:
         self._publishers[name] = rospy.Publisher(
             name, self._types.message(type), latch=latch, queue_size=QUEUE
         )
 
-    def do_publish(self, number: int, name: str, fields: Any) -> Any:
+    def do_publish(self, number: int, name: str, fields: Fields) -> None:
         publisher = self._publishers[name]
         publisher.publish(self._types.filled(publisher.data_class(), fields))
 
-    def do_serve(self, number: int, name: str, type: str) -> Any:
+    def do_serve(self, number: int, name: str, type: str) -> None:
         cls = self._types.service(type)
 
-        def handle(request: Any) -> Any:
+        def handle(request: Message) -> Message:
             asked = self._ask("request", name, plain(request))
             asked.has_answer.wait()
             if asked.error:
@@ -148,11 +168,11 @@ class Robot:
 
         self._kept.append(rospy.Service(name, cls, handle))
 
-    def do_serve_action(self, number: int, name: str, type: str) -> Any:
+    def do_serve_action(self, number: int, name: str, type: str) -> None:
         spec = ActionClasses(self._types, type)
 
-        def execute(goal: Any) -> None:
-            asked = self._ask("goal", name, plain(goal), lambda one: publish(spec, one))
+        def execute(goal: Message) -> None:
+            asked = self._ask("goal", name, plain(goal), publish)
             while not asked.has_answer.wait(0.02):
                 if server.is_preempt_requested() and not asked.is_stopped:
                     asked.is_stopped = True
@@ -165,43 +185,45 @@ class Robot:
             else:
                 server.set_succeeded(result)
 
-        def publish(spec: Any, fields: Any) -> None:
+        def publish(fields: Fields) -> None:
             server.publish_feedback(self._types.filled(spec.action_feedback.feedback.__class__(), fields))
 
-        server = actionlib.SimpleActionServer(name, _ActionSpec(spec), execute, auto_start=False)
+        server: ActionServer = actionlib.SimpleActionServer(
+            name, _ActionSpec(spec), execute, auto_start=False
+        )
         server.start()
         self._kept.append(server)
 
-    def _ask(self, event: str, name: str, fields: Any, on_feedback: Any = None) -> _Asked:
+    def _ask(self, event: str, name: str, fields: Fields, on_feedback: OnFeedback | None = None) -> _Asked:
         with self._asked_lock:
             self._asked_count += 1
             asked = self._asked[self._asked_count] = _Asked(self._asked_count, on_feedback)
         self._channel.send(event=event, of=asked.number, name=name, fields=fields)
         return asked
 
-    def do_answer(self, number: int, of: int, fields: Any, error: str) -> Any:
+    def do_answer(self, number: int, of: int, fields: Fields, error: str) -> None:
         asked = self._asked.pop(of)
         asked.fields, asked.error = fields, error
         asked.has_answer.set()
 
-    def do_feedback(self, number: int, of: int, fields: Any) -> Any:
+    def do_feedback(self, number: int, of: int, fields: Fields) -> None:
         asked = self._asked.get(of)
-        if asked is not None:
+        if asked is not None and asked.on_feedback is not None:
             asked.on_feedback(fields)
 
 
 class _Asked:
     """A request or a goal of the robot's others, which AOS answers."""
 
-    def __init__(self, number: int, on_feedback: Any) -> None:
+    def __init__(self, number: int, on_feedback: OnFeedback | None) -> None:
         self.number = number
         self.on_feedback = on_feedback
         self.has_answer = threading.Event()
         self.is_stopped = False
-        self.fields: Any = {}
+        self.fields: Fields = {}
         self.error = ""
 
 
-def _ActionSpec(classes: Any) -> Any:
+def _ActionSpec(classes: ActionClasses) -> Callable[[], ActionClasses]:
     """actionlib makes an object of what it is given."""
     return lambda: classes

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Type
 
 import genmsg
 import genmsg.msg_loader
 import genpy
 import genpy.dynamic
 import roslib.message
+
+from aos_skills.ros1.child.interfaces import (
+    FeedbackMessage,
+    Fields,
+    GoalMessage,
+    Message,
+    ResultMessage,
+    Service,
+)
 
 __all__ = ["ActionClasses", "Misfit", "Types", "Unknown", "plain"]
 
@@ -38,9 +47,9 @@ class ActionClasses:
 
     def __init__(self, types: Types, name: str) -> None:
         try:
-            self.action_goal = types.message(name + "ActionGoal")()
-            self.action_result = types.message(name + "ActionResult")()
-            self.action_feedback = types.message(name + "ActionFeedback")()
+            self.action_goal: GoalMessage = types.made(name + "ActionGoal")
+            self.action_result: ResultMessage = types.made(name + "ActionResult")
+            self.action_feedback: FeedbackMessage = types.made(name + "ActionFeedback")
         except Unknown as error:
             # The messages of an action come from its file.
             if error.args[0].startswith(name.replace("/", "/msg/")):
@@ -55,8 +64,8 @@ class Types:
         """`files` gives paths by `package/kind/Name`."""
         self._files: dict[str, str] = {}
         self._texts: dict[str, str] = {}
-        self._classes: dict[str, Any] = {}
-        self._services: dict[str, Any] = {}
+        self._classes: dict[str, Type[Message]] = {}
+        self._services: dict[str, Type[Service]] = {}
         for name, path in files.items():
             package, kind, short = name.split("/")
             if kind == "msg":
@@ -78,7 +87,7 @@ class Types:
         for suffix, part in PARTS.items():
             self._texts[f"{package}/{short}{suffix}"] = part.format(short)
 
-    def message(self, name: str) -> Any:
+    def message(self, name: str) -> Type[Message]:
         """A message's class."""
         if name not in self._classes:
             if name in self._texts:
@@ -93,7 +102,11 @@ class Types:
                 self._classes[name] = found
         return self._classes[name]
 
-    def service(self, name: str) -> Any:
+    def made(self, name: str) -> Any:
+        """An empty message of the class of this name."""
+        return self.message(name)()
+
+    def service(self, name: str) -> Type[Service]:
         """A service's class."""
         if name not in self._services:
             self._services[name] = (
@@ -141,7 +154,7 @@ class Types:
             return self._texts[name]
         return str(self.message(name)._full_text).split(RULE)[0]
 
-    def filled(self, message: Any, fields: Any, where: str = "") -> Any:
+    def filled(self, message: Message, fields: Fields, where: str = "") -> Message:
         """A message with these fields; those that are left out keep their zero."""
         if not isinstance(fields, dict):
             raise Misfit(f"{where or 'the value'} is a {message._type} and cannot be {fields!r}")

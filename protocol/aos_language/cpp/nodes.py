@@ -1,0 +1,23 @@
+"""The nodes of a syntax tree: their text, and all that is below one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import tree_sitter
+
+__all__ = ["below", "text_of"]
+
+
+def text_of(node: tree_sitter.Node) -> str:
+    """The text of a node."""
+    return (node.text or b"").decode("utf-8", "replace")
+
+
+def below(node: tree_sitter.Node | None) -> Iterator[tree_sitter.Node]:
+    """The node and all below it, in text order. They wait on a stack: no text is too deep to read."""
+    waiting = [node] if node is not None else []
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting += reversed(part.children)
