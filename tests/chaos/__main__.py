@@ -9,7 +9,7 @@ import tempfile
 from collections import defaultdict
 from pathlib import Path
 
-from tests.chaos.disturbed import KINDS, Disturbance, Report, disturbed_mission
+from tests.chaos.disturbed import KINDS, Disturbance, Report, cancelled_after_s, disturbed_mission
 
 
 def main() -> int:
@@ -21,7 +21,12 @@ def main() -> int:
     parser.add_argument("--frozen", type=float, default=0.2, help="share of freezes among the disturbances")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
+    parser.add_argument(
+        "--cancels", type=int, default=0, help="only kill aos-up in mid-motion, so many times"
+    )
     options = parser.parse_args()
+    if options.cancels:
+        return _cancels(options.cancels, options.seed)
     reports = []
     for seed in range(options.seed, options.seed + options.missions):
         with tempfile.TemporaryDirectory(prefix="aos-chaos-") as folder:
@@ -33,6 +38,20 @@ def main() -> int:
         print(f"{seed}: {'; '.join(report.faults) or report.ending}  ({what})", flush=True)
     print(_table(reports))
     return int(any(report.faults for report in reports))
+
+
+def _cancels(times: int, seed: int) -> int:
+    """Exit code 0 where the robot was stopped each time within 3 s of the death of its aos-up."""
+    after_s = []
+    for number in range(seed, seed + times):
+        with tempfile.TemporaryDirectory(prefix="aos-chaos-", ignore_cleanup_errors=True) as folder:
+            took_s = cancelled_after_s(Path(folder), number)
+        print(f"{number}: {'not stopped' if took_s is None else f'stopped after {took_s:.2f} s'}", flush=True)
+        after_s.append(took_s)
+    good = [took_s for took_s in after_s if took_s is not None and took_s <= 3.0]
+    most = f", the last after {max(good):.2f} s" if good else ""
+    print(f"{len(good)} of {times} robots were stopped within 3 s of the death of aos-up in mid-motion{most}")
+    return int(len(good) < times)
 
 
 def _text(disturbance: Disturbance) -> str:

@@ -14,12 +14,13 @@ import sys
 import threading
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
 from tests.processes import descendants, is_running
 
-__all__ = ["KINDS", "Disturbance", "Report", "disturbed_mission"]
+__all__ = ["KINDS", "Disturbance", "Report", "cancelled_after_s", "disturbed_mission"]
 
 _ROOT = Path(__file__).resolve().parents[2]
 _BIN = Path(sys.executable).parent
@@ -77,15 +78,15 @@ class Report(msgspec.Struct):
     faults: list[str] = []
 
 
-class _Up:
+class Up:
     """A running `aos-up --json`, whose events come in time or not at all."""
 
-    def __init__(self, folder: Path, *arguments: str | Path) -> None:
+    def __init__(self, folder: Path, *arguments: str | Path, moves_s: float = 0.15) -> None:
         self._log = (folder / "aos-up.log").open("a")
         self.process = subprocess.Popen(
             [_BIN / "aos-up", *arguments, "--json"],
             cwd=folder,
-            env=os.environ | {"AOS_MOTIONS": str(folder / "motions")},
+            env=os.environ | {"AOS_MOTIONS": str(folder / "motions"), "AOS_MOVES_S": str(moves_s)},
             stdout=subprocess.PIPE,
             stderr=self._log,
             text=True,
@@ -135,15 +136,9 @@ def disturbed_mission(
     """
     chance = random.Random(seed)
     report = Report(seed, [])
-    text = _DEPLOY.format(
-        bundle=_ROOT / "deploy/bundles/bench/tiger",
-        robot=_ROOT / "tests/chaos/robot.py",
-        seed=seed,
-        steps=steps,
-    )
-    (folder / "tester.yaml").write_text(text)
+    _write_deploy_file(folder, seed, steps)
     pids: set[int] = set()
-    up = _Up(folder, "tester.yaml")
+    up = Up(folder, "tester.yaml")
     try:
         for _ in range(times):
             for _ in range(chance.randint(1, 3)):
@@ -178,16 +173,54 @@ def disturbed_mission(
     return report
 
 
-def _kill(folder: Path, up: _Up, disturbance: Disturbance, victims: list[int]) -> _Up:
+def _write_deploy_file(folder: Path, seed: int, steps: int) -> None:
+    text = _DEPLOY.format(
+        bundle=_ROOT / "deploy/bundles/bench/tiger",
+        robot=_ROOT / "tests/chaos/robot.py",
+        seed=seed,
+        steps=steps,
+    )
+    (folder / "tester.yaml").write_text(text)
+
+
+def cancelled_after_s(folder: Path, seed: int) -> float | None:
+    """Kills an aos-up in mid-motion; returns when the adapter has stopped the robot, None if it does not.
+
+    The motion would take a minute.
+    """
+    _write_deploy_file(folder, seed, steps=3)
+    up = Up(folder, "tester.yaml", moves_s=60.0)
+    motions = folder / "motions"
+    if not _comes(lambda: motions.exists() and "begun" in motions.read_text()):
+        up.process.kill()
+        return None
+    time.sleep(random.Random(seed).uniform(0.0, 0.5))
+    begun_s = time.monotonic()
+    os.kill(up.process.pid, signal.SIGKILL)
+    up.process.wait()
+    is_cancelled = _comes(lambda: "cancelled" in motions.read_text())
+    return time.monotonic() - begun_s if is_cancelled else None
+
+
+def _comes(holds: Callable[[], bool]) -> bool:
+    until_s = time.monotonic() + 60.0
+    while not holds():
+        if time.monotonic() > until_s:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+def _kill(folder: Path, up: Up, disturbance: Disturbance, victims: list[int]) -> Up:
     for victim in victims:
         _signal(victim, signal.SIGKILL)
     if disturbance.kind != "aos-up":
         return up
     up.process.wait()
-    return _Up(folder, "--resume")
+    return Up(folder, "--resume")
 
 
-def _freeze(folder: Path, up: _Up, disturbance: Disturbance, victims: list[int]) -> _Up:
+def _freeze(folder: Path, up: Up, disturbance: Disturbance, victims: list[int]) -> Up:
     for victim in victims:
         _signal(victim, signal.SIGSTOP)
     time.sleep(disturbance.frozen_s)
@@ -196,7 +229,7 @@ def _freeze(folder: Path, up: _Up, disturbance: Disturbance, victims: list[int])
     return up
 
 
-def _of_kind(kind: str, up: _Up) -> list[int]:
+def _of_kind(kind: str, up: Up) -> list[int]:
     """One process of a kind below an aos-up; of what runs behind a guard the process, not the guard."""
     if kind == "aos-up":
         return [up.process.pid]

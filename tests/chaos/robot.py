@@ -6,7 +6,7 @@ import asyncio
 import os
 from typing import Any
 
-MOVES_S = 0.15
+MOVES_S = float(os.environ.get("AOS_MOVES_S", "0.15"))
 
 
 async def _move(call: Any) -> None:
