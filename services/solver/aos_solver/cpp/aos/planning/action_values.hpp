@@ -2,12 +2,15 @@
 // the action, with honest standard errors.
 //
 // A search decides by what it has found so far: a lower bound, or a value that rests on guesses where the search ended.
-// The mission plans anew at each step, and each time it finds more. Two rules turn the one into the other.
+// The mission plans anew at each step, and each time it finds more. Three rules turn the one into the other.
 //
 // - Between proven bounds nothing is known: the value is in their middle, and its error is that of an even distribution.
-// - A tree ends in guesses, such as rollouts or the values of seen states. At the root, the search has moved the guess by
-//   its gain. Searches from the tree's leaves may move their guesses as far. The value is moved by half of that, with an
-//   error of the other half. The share of the value that lies beyond the leaves is `beyond`.
+// - A tree that ends in values of seen states promises too much, and a tree does not know that the mission plans anew.
+//   Missions that are played by these values with next to no planning return too little (group_missions.hpp). The value is
+//   in the middle. Neither is proven, so the error is half of the distance.
+// - A tree that ends in rollouts guesses too low. At the root, the search has moved the guess by its gain. Searches from
+//   the tree's leaves may move their guesses as far. The value is moved by half of that, with an error of the other half.
+//   The share of the value that lies beyond the leaves is `beyond`.
 #pragma once
 
 #include <algorithm>
@@ -26,13 +29,32 @@ struct TreeReach {
   std::vector<double> beyond;
 };
 
-// The values of actions whose estimates come from a tree.
+// What a tree promises of the action that was chosen, and what missions return that are played from its belief.
+struct Promise {
+  double most = 0;
+  double played = 0;
+};
+
+// The values of actions whose estimates come from a tree that ends in values of seen states.
+inline std::vector<ActionEstimate> values_of_promise(std::vector<ActionEstimate> estimates, const Promise& promise, int choice) {
+  const double chosen = estimates[static_cast<std::size_t>(choice)].q;
+  const auto [lowest, highest] = std::minmax({promise.most, promise.played, chosen});
+  const double moved = (lowest + highest) / 2 - chosen;
+  for (ActionEstimate& estimate : estimates) {
+    if (estimate.n == 0) continue;
+    // All values move alike, so that the order of the decision stays.
+    estimate.q = std::min(estimate.q + moved, estimate.at_most);
+    estimate.standard_error = std::hypot(estimate.standard_error, (highest - lowest) / 2);
+  }
+  return estimates;
+}
+
+// The values of actions whose estimates come from a tree that ends in rollouts.
 inline std::vector<ActionEstimate> values_of_tree(std::vector<ActionEstimate> estimates, const TreeReach& reach, int choice) {
   const double moved = reach.gain * reach.beyond[static_cast<std::size_t>(choice)] / 2;
   for (std::size_t a = 0; a < estimates.size(); ++a) {
     ActionEstimate& estimate = estimates[a];
     if (estimate.n == 0) continue;
-    // All values move alike, so that the order of the decision stays.
     estimate.q = std::min(estimate.q + moved, estimate.at_most);
     estimate.standard_error = std::hypot(estimate.standard_error, reach.gain * reach.beyond[a] / 2);
   }

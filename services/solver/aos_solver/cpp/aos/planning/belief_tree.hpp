@@ -24,7 +24,6 @@
 #include "aos/base/progress.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
-#include "aos/planning/action_values.hpp"
 #include "aos/planning/best_action.hpp"
 #include "aos/planning/budget.hpp"
 #include "aos/planning/exploration.hpp"
@@ -98,14 +97,11 @@ class BeliefTree {
     }
     return result;
   }
-  // Where the tree ends, and what it has gained over the values there, which are too high.
-  TreeReach reach(const Belief<Model>& belief) const {
-    TreeReach result;
-    result.beyond.assign(space_.actions(), 1);
-    if (nodes_.empty()) return result;
-    result.gain = belief.probability_of(Ending::running) * (nodes_[0].value - nodes_[0].first_value);
-    for (std::size_t a = 0; a < space_.actions(); ++a) result.beyond[a] = beyond_action(actions_[a]);
-    return result;
+  // The mean value of the belief's states.
+  double value_of_states(int horizon) const {
+    double sum = 0;
+    for (const auto& [state, weight] : root_) sum += weight * values_.value(state, horizon);
+    return sum;
   }
 
  private:
@@ -130,7 +126,6 @@ class BeliefTree {
     std::uint32_t times = 0;  // how often it was drawn
     std::uint32_t n = 0;
     double value = 0;
-    double first_value = 0;  // before it was searched
   };
   struct Visit {
     std::uint32_t node;
@@ -162,7 +157,7 @@ class BeliefTree {
       }
     }
     work_ += per_value * belief.size() * space_.actions();
-    nodes_[number].value = nodes_[number].first_value = value(number);
+    nodes_[number].value = value(number);
     return number;
   }
 
@@ -256,25 +251,6 @@ class BeliefTree {
       best = std::max(best, action.q);
     }
     return best;
-  }
-
-  // The discounted probability to come to where the tree ends, by the best actions.
-  double beyond_action(const ActionNode& action) const {
-    if (action.n == 0) return 1;
-    std::vector<std::uint32_t> distinct = action.children;
-    std::ranges::sort(distinct);
-    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
-    double sum = 0;
-    for (const std::uint32_t child : distinct) sum += nodes_[child].times * beyond_node(child);
-    const auto count = static_cast<double>(std::max<std::size_t>(action.children.size(), 1));
-    return Model::discount * action.running * sum / count;
-  }
-  double beyond_node(std::uint32_t number) const {
-    if (nodes_[number].n < settled_visits) return 1;
-    const std::span<const ActionNode> actions{&actions_[number * space_.actions()], space_.actions()};
-    const auto is_best = [&](const ActionNode& action) { return action.n > 0 && action.q >= nodes_[number].value; };
-    const auto best = std::ranges::find_if(actions, is_best);
-    return best != actions.end() ? beyond_action(*best) : 1;
   }
 
   // The variance of what an action is worth after one observation.

@@ -86,6 +86,15 @@ class Despot {
     }
     return result;
   }
+  // Whether values of states are known, which give upper bounds.
+  bool has_values() const { return evaluation_.has_values(); }
+  // The mean value of the belief's states.
+  double value_of_states(const Belief<Model>& belief) const { return belief.probability_of(Ending::running) * origin_; }
+  // The upper bound of an action that was tried: what the scenarios may return.
+  double upper(const Belief<Model>& belief, int action) const {
+    const ActionNode& node = actions_[nodes_[0].first_action + static_cast<std::size_t>(action)];
+    return belief.probability_of(Ending::running) * (origin_ + node.upper);
+  }
   // Where the tree ends, and what it has gained over the default policies.
   TreeReach reach(const Belief<Model>& belief) const {
     TreeReach result;

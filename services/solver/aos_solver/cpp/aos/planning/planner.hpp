@@ -23,6 +23,7 @@
 #include "aos/planning/despot.hpp"
 #include "aos/planning/exact_search.hpp"
 #include "aos/planning/exploration.hpp"
+#include "aos/planning/group_missions.hpp"
 #include "aos/planning/mdp_values.hpp"
 #include "aos/planning/point_based.hpp"
 #include "aos/planning/pomcp.hpp"
@@ -59,6 +60,7 @@ class Planner {
     const auto prepared = thread_time();
     preparing_ = prepared - start - searching_;
     const std::uint64_t simulations = searched(belief, budget, horizon, random);
+    play_group(belief, budget, horizon, random);
     searching_ += thread_time() - prepared;
     return simulations + tried_in_vain_;
   }
@@ -140,9 +142,31 @@ class Planner {
     exact_.start_over();
     belief_tree_.start_over();
     point_based_.start_over();
+    missions_.start_over();
   }
 
  private:
+  // The values of states in which the last search ends its tree; null if there is no tree or it ends in rollouts.
+  const StateValues<Model>* values_of_tree_ends() const {
+    switch (used_) {
+      case PlannerKind::pomcp: return pomcp_.state_values();
+      case PlannerKind::despot: return despot_->has_values() ? &values_ : nullptr;
+      case PlannerKind::belief_tree: return &values_;
+      default: return nullptr;
+    }
+  }
+  double mean_value_of_states(const Belief<Model>& belief) const {
+    if (used_ == PlannerKind::pomcp) return pomcp_.value_of_states(belief);
+    return used_ == PlannerKind::despot ? despot_->value_of_states(belief) : belief_tree_.value_of_states(horizon_);
+  }
+  // Plays a group of missions where it is time for that (group_missions.hpp).
+  void play_group(const Belief<Model>& belief, Budget budget, int horizon, Sampler random) {
+    const StateValues<Model>* const values = values_of_tree_ends();
+    if (values == nullptr || belief.probability_of(Ending::running) <= 0 || !missions_.is_due(budget, horizon)) return;
+    missions_.play(belief, *values, values == &values_ ? &values_ : nullptr, horizon, choice(estimates(belief), barred_),
+                   Sampler{random.bits()});
+  }
+
   // Searches by the planner that was chosen and prepared.
   std::uint64_t searched(const Belief<Model>& belief, Budget budget, int horizon, Sampler& random) {
     switch (used_) {
@@ -223,21 +247,23 @@ class Planner {
     switch (used_) {
       case PlannerKind::exact: return exact_.values();
       case PlannerKind::sarsop: return point_based_.values(std::move(estimates), choice);
-      case PlannerKind::despot: {
-        bound(belief, estimates);
-        for (ActionEstimate& estimate : estimates) estimate.standard_error = despot_->error(belief);
-        return values_of_tree(std::move(estimates), despot_->reach(belief), choice);
-      }
-      case PlannerKind::belief_tree: {
-        bound(belief, estimates);
-        return values_of_tree(std::move(estimates), belief_tree_.reach(belief), choice);
-      }
-      default: {
-        bound(belief, estimates);
-        const TreeReach reach = pomcp_.reach(estimates, choice, belief);
-        return values_of_tree(std::move(estimates), reach, choice);
-      }
+      default: return values_of_search(belief, std::move(estimates), choice);
     }
+  }
+  std::vector<ActionEstimate> values_of_search(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
+    bound(belief, estimates);
+    if (used_ == PlannerKind::despot) {
+      for (ActionEstimate& estimate : estimates) estimate.standard_error = despot_->error(belief);
+    }
+    const bool was_searched = estimates[static_cast<std::size_t>(choice)].n > 0;
+    if (values_of_tree_ends() == nullptr) {
+      const TreeReach reach = used_ == PlannerKind::despot ? despot_->reach(belief) : pomcp_.reach(estimates, choice, belief);
+      return values_of_tree(std::move(estimates), reach, choice);
+    }
+    if (!was_searched || !missions_.is_known()) return estimates;
+    const double most = used_ == PlannerKind::despot ? despot_->upper(belief, choice) : estimates[static_cast<std::size_t>(choice)].q;
+    const double played = mean_value_of_states(belief) - belief.probability_of(Ending::running) * missions_.loss();
+    return values_of_promise(std::move(estimates), {most, played}, choice);
   }
 
   std::string bounds_text(int horizon, double slack) const {
@@ -270,6 +296,7 @@ class Planner {
   PointBased<Model> point_based_{space_};
   BeliefTree<Model> belief_tree_{space_, values_};
   std::unique_ptr<Despot<Model>> despot_;
+  GroupMissions<Model> missions_;
   PlannerKind used_ = PlannerKind::pomcp;
   int horizon_ = 1;       // of the last search
   BarredActions barred_;  // in the last search

@@ -90,7 +90,10 @@ class Pomcp {
     draw_towards(prior_, result, [&](const ActionEstimate& estimate) { return is_well_visited(estimate.n, max_visits); });
     return result;
   }
-  // Where the trees of the last search end, and what they have gained over the values there.
+  // What is known of the values of states, and their mean over the belief of the last search; null and 0 if nothing is known.
+  const StateValues<Model>* state_values() const { return state_values_; }
+  double value_of_states(const Belief<Model>& belief) const { return belief.probability_of(Ending::running) * mdp_value_; }
+  // Where the trees of the last search end, and what they have gained over the rollouts there.
   TreeReach reach(const std::vector<ActionEstimate>& estimates, int choice, const Belief<Model>& belief) const {
     TreeReach result;
     for (int a = 0; a < Model::action_count(); ++a) {
@@ -103,9 +106,8 @@ class Pomcp {
       }
       result.beyond.push_back(n > 0 ? beyond / n : 1);
     }
-    const double guessed = source_ == ValueSource::none ? rolled_out_ : mdp_value_;
     const ActionEstimate& chosen = estimates[static_cast<std::size_t>(choice)];
-    if (chosen.n > 0) result.gain = chosen.q - belief.probability_of(Ending::running) * guessed;
+    if (chosen.n > 0) result.gain = chosen.q - belief.probability_of(Ending::running) * rolled_out_;
     return result;
   }
   // Whether values are drawn towards a prior.

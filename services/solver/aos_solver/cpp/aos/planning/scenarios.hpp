@@ -97,6 +97,7 @@ class ScenarioEvaluation {
     has_list_ = has_values_ && values_.space().lists_observations();
     if (has_values_ && code_cost_ == 0) code_cost_ = cost_of_step<Model>();
   }
+  bool has_values() const { return has_values_; }
   std::uint32_t seen(const State& state) const { return has_values_ ? values_.number_of(state) : 0; }
 
   // Steps a scenario and counts the work. `has_ended` tells whether the mission is over then.
