@@ -77,22 +77,21 @@ def test_the_first_decision_tells_what_missions_return_that_put_off_a_prize(exec
 
 
 @pytest.mark.parametrize(
-    ("planner", "simulations", "names"),
+    ("planner", "names"),
     [
-        ("pomcp", 500, ("counter/8", "dense/101", "battery/112")),
-        ("despot", 500, ("counter/8", "doors/106", "hallway/21")),
-        ("sarsop", 5000, ("dense/23",)),
+        ("pomcp", ("counter/8", "dense/101", "battery/112")),
+        ("despot", ("counter/8", "doors/106", "hallway/21")),
     ],
 )
-def test_the_first_decision_of_a_tree_and_of_bounds_tells_what_missions_return(
-    planner: str, simulations: int, names: tuple[str, ...], executable: Path
+def test_the_first_decision_of_a_tree_tells_what_missions_return(
+    planner: str, names: tuple[str, ...], executable: Path
 ) -> None:
     """Trees alone promise too much in `counter/8`, and too little in the others."""
     found = Values()
-    options = {"simulations": simulations, "missions": 10, "planners": planner, "truth": 0.5}
+    options = {"simulations": 500, "missions": 10, "planners": planner, "truth": 0.5}
     asked = [named_problem(name, 1_000_000) for name in names]
     for problem, answer in reports(executable, "regret", options, asked):
-        assert not found.add(problem, answer), found.told(problem, answer)
+        assert not found.add(problem, answer), found.faults_text(problem, answer)
     assert len(found.all_of(planner)) == len(names)
 
 
