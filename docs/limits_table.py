@@ -116,14 +116,14 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "memory of `aos solve`",
             "aos_solver.offline.solving._ADDRESS_SPACE_BYTES", "bytes", "the best so far",
         ),
-        Row("`aos plan --exact`", "aos_solver.child.engine.EXACT_TIME_S", "s", "AOS220"),
+        Row("`aos plan --exact`", "aos_solver.child.mission_questions.EXACT_TIME_S", "s", "AOS220"),
         Row(
             "an answer of the engine, beside what it may plan",
-            "aos_solver.child.engine.ANSWER_DEADLINE_S", "s", "AOS211",
+            "aos_solver.child.asking.ANSWER_DEADLINE_S", "s", "AOS211",
         ),
         Row(
             "a decision, beyond its budget in time",
-            "aos_solver.child.engine.PLANNING_DEADLINE_S", "s", "AOS211",
+            "aos_solver.child.mission_questions.PLANNING_DEADLINE_S", "s", "AOS211",
         ),
         Row(
             "`aos lint` looks for goals and preconditions that nothing leads to",

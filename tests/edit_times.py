@@ -82,7 +82,7 @@ async def one_decision(bundle: Path, simulations: int) -> list[float]:
     marks.append(time.monotonic())
     engine = await Engine.start(built, seed=1)
     marks.append(time.monotonic())
-    await engine.plan(simulations=simulations, seed=1)
+    await engine.plan(simulations=simulations, seed=1, planner="pomcp")
     marks.append(time.monotonic())
     await engine.close()
     stages = [after - before for before, after in itertools.pairwise(marks)]

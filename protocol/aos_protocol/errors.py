@@ -30,6 +30,7 @@ __all__ = [
     "DeployError",
     "DocumentError",
     "EndlessCodeError",
+    "EngineDefectError",
     "IntractableError",
     "LateAnswerError",
     "LostAnswerError",
@@ -94,6 +95,7 @@ CODES: dict[str, str] = {
     "AOS214": "a reward that is not a number",
     "AOS215": "a model fault: an index, a weight list or a container limit",
     "AOS216": "bounds that contradict each other; please report it",
+    "AOS217": "the engine failed outside of the documents' code; please report it",
     "AOS220": "exact evaluation is not tractable",
     "AOS302": "every state of the belief is terminal",
     "AOS303": "every action risks more than the mission's constraints allow",
@@ -193,6 +195,12 @@ class EndlessCodeError(CodeFaultError):
     code = "AOS211"
 
 
+class EngineDefectError(ModelError):
+    """A defect of the engine, which is no fault of the documents."""
+
+    code = "AOS217"
+
+
 class IntractableError(ModelError):
     """The answer cannot be enumerated: a draw is continuous, or there is too much of it."""
 
@@ -267,6 +275,8 @@ _SITUATIONS: dict[str, type[AosError]] = {
     "AOS211": EndlessCodeError,
     "AOS214": CodeFaultError,
     "AOS215": CodeFaultError,
+    "AOS216": EngineDefectError,
+    "AOS217": EngineDefectError,
     "AOS220": IntractableError,
     "AOS601": LateAnswerError,
     "AOS604": NobodyAnswersError,

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from models import built_bundle, engine_of
 
-from aos_solver.child.engine import Planner
+from aos_solver.child.engine import Planner, Restriction
 
 
 @pytest.mark.parametrize("planner", ["pomcp", "despot", "sarsop", "auto"])
@@ -17,7 +17,9 @@ async def test_a_barred_action_is_never_the_decision(
     async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
         barred: list[int] = []
         while len(barred) < 4:
-            plan = await engine.plan(simulations=2000, seed=1, planner=planner, barred=barred)
+            plan = await engine.plan(
+                simulations=2000, seed=1, planner=planner, within=Restriction(barred=barred)
+            )
             assert plan.index not in barred
             barred.append(plan.index)
         # Nothing of it stays: the next decision is free again.

@@ -15,7 +15,7 @@ from processes import HANG_S
 from aos_protocol.errors import ModelError
 from aos_solver.child.answers import ExportedBelief
 from aos_solver.child.command_line import command_line
-from aos_solver.child.engine import Engine
+from aos_solver.child.engine import Engine, Restriction
 
 LAMP = {
     "lamp.ef": "project: lamp\nhorizon: 3\nstate_variable: bool is_on\nreward_code:\n"
@@ -43,7 +43,7 @@ async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
     engine = await Recorded.start(built, seed=1)
     try:
         await engine.summary()
-        await engine.plan(seed=1, simulations=10, barred=())
+        await engine.plan(seed=1, simulations=10, within=Restriction(barred=()), planner="pomcp")
         await engine.ponder(0, seed=1, time_s=0.0)
         await engine.count_processor_time(False)
         await engine.exact(2)

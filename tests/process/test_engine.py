@@ -123,7 +123,7 @@ async def test_the_search_orders_actions_as_the_exact_values_do(
 ) -> None:
     async with engine_of(await built_bundle(bundles / f"armadillo-{kind}", cache_dir)) as engine:
         exact = await _exact(engine, 8)
-        plan = await engine.plan(simulations=1_000_000, seed=1, horizon=8)
+        plan = await engine.plan(simulations=1_000_000, seed=1, horizon=8, planner="pomcp")
     assert abs(plan.best.q - max(exact.values())) < 0.5
     found = {value.action: value.q for value in plan.actions}
     for better in EXACT_AT_8[kind]:
@@ -138,7 +138,7 @@ async def test_a_simulation_budget_and_a_seed_repeat_to_the_bit(bundles: Path, c
     for _ in range(2):
         async with engine_of(built) as engine:
             await engine.update("pick", "pick_succeeded")
-            plans.append((await engine.plan(simulations=20_000, seed=7)).actions)
+            plans.append((await engine.plan(simulations=20_000, seed=7, planner="pomcp")).actions)
     assert plans[0] == plans[1]
 
 
@@ -193,7 +193,7 @@ async def test_model_code_that_crashes_is_named_by_its_document_line(cache_dir: 
     listening = (0).to_bytes(4, "little")
     async with engine_of(await built_text(crashing, cache_dir)) as engine:
         with pytest.raises(ModelError, match=r"listen\.sd:5") as error:
-            await engine.plan(simulations=100, seed=1)
+            await engine.plan(simulations=100, seed=1, planner="pomcp")
         assert error.value.code == "AOS210"
         assert "signal 11" in str(error.value)
         await engine.reset_worlds([1])

@@ -13,9 +13,11 @@ from models import built_text, engine_of
 from processes import HANG_S
 
 from aos_language.load import load_files
-from aos_protocol.errors import ModelError
+from aos_protocol.errors import EngineDefectError, ModelError
+from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
+from aos_solver.child.engine_child import EngineChild, EngineStart
 from aos_solver.child.printed import PRINT_LIMIT_BYTES
 from aos_solver.mission.hot_plug import ModelShelf, RunningModel
 
@@ -67,7 +69,21 @@ async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_p
     command = [str(built.executable), str(tmp_path / "blame"), "", "1", "widen", "12"]
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
     answers, _ = await asyncio.wait_for(engine.communicate(b"sing\n"), timeout=HANG_S)
-    assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS213"
+    assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS217"
+
+
+async def test_a_fault_outside_of_the_documents_code_is_the_engines_and_says_what_to_report(
+    cache_dir: Path,
+) -> None:
+    built = await built_text(LAMP, cache_dir)
+    child = await EngineChild.start(built, EngineStart(seed=1, policy="widen"))
+    try:
+        with pytest.raises(EngineDefectError, match=r"AOS217.*please report it with the bundle") as caught:
+            await child.ask("step_world\taction=0x", dict, HANG_S)
+        assert caught.value.diagnostics == ()
+        assert (await child.ask("summary", BeliefSummary, HANG_S)).entropy == 0
+    finally:
+        await child.close()
 
 
 async def test_a_model_that_prints_without_end_fills_no_log(

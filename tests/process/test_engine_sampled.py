@@ -80,7 +80,7 @@ __moduleResponse = high;
 async def test_readings_of_an_unseen_level_agree_as_two_correlated_normals_do(cache_dir: Path) -> None:
     async with engine_of(await built_text(GAUGE, cache_dir)) as engine:
         first = await engine.update("read", "high")
-        plan = await engine.plan(simulations=1000, seed=1)
+        plan = await engine.plan(simulations=1000, seed=1, planner="pomcp")
         second = await engine.update("read", "high")
     assert not first.summary.is_exact
     assert first.probability == pytest.approx(1 / 2, abs=0.03)
@@ -101,7 +101,7 @@ async def test_too_many_combinations_of_draws_are_sampled(cache_dir: Path) -> No
 
 async def test_rollouts_leave_out_what_cannot_be_run_whatever_the_policy_weighs(cache_dir: Path) -> None:
     async with engine_of(await built_text(TEMPTING, cache_dir)) as engine:
-        plan = await engine.plan(simulations=2, seed=1)
+        plan = await engine.plan(simulations=2, seed=1, planner="pomcp")
     values = {value.action: value for value in plan.actions}
     assert (values["leap"].n, values["read"].n) == (1, 1)
     read = values["read"]

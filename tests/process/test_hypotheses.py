@@ -11,7 +11,7 @@ from mappings import mapping_text
 from models import built_text, engine_of
 
 from aos_protocol.messages import BeliefSummary
-from aos_solver.child.engine import Engine
+from aos_solver.child.engine import Engine, Restriction
 
 LAMPS = {
     "lamps.ef": """project: lamps
@@ -161,13 +161,14 @@ async def test_a_search_may_do_without_a_skill_and_start_from_the_cautious_belie
 ) -> None:
     await lamps.update("blue", "done")
     await lost(lamps, "red", ran=0.9)
-    everything = await lamps.plan(seed=1, simulations=2000)
-    plan = await lamps.plan(seed=1, simulations=2000, without=["red", "press"], cautious=cautious)
+    everything = await lamps.plan(seed=1, simulations=2000, planner="pomcp")
+    within = Restriction(without=["red", "press"], cautious=cautious)
+    plan = await lamps.plan(seed=1, simulations=2000, within=within, planner="pomcp")
     assert {action.action for action in plan.actions} == {"blue", "check", "see"}
     assert plan.best.action == lamps.description.actions[plan.index].name
     # Without the red lamp there is nothing to earn.
     assert [action.q for action in plan.actions] == [0.0] * 3
     assert not (await lamps.may_reach_goal(without=["red", "press"], cautious=cautious)).is_reachable
     assert (await lamps.may_reach_goal(cautious=cautious)).is_reachable
-    again = await lamps.plan(seed=1, simulations=2000)
+    again = await lamps.plan(seed=1, simulations=2000, planner="pomcp")
     assert [action.q for action in again.actions] == [action.q for action in everything.actions]

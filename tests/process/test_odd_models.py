@@ -66,7 +66,7 @@ NOTHING = {
 async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir: Path) -> None:
     async with engine_of(await built_text(CROWDED, cache_dir)) as engine:
         assert len(engine.description.actions) == 1000
-        plan = await engine.plan(simulations=20_000, seed=1, threads=2)
+        plan = await engine.plan(simulations=20_000, seed=1, threads=2, planner="pomcp")
         assert plan.index in (7, 8)
         after = await engine.update(plan.best.action, "done")
     assert after.probability == pytest.approx(1)
@@ -74,7 +74,7 @@ async def test_a_thousand_actions_over_a_thousand_cells_are_told_apart(cache_dir
 
 async def test_one_action_with_texts_and_a_loop_without_a_bound_is_planned(cache_dir: Path) -> None:
     async with engine_of(await built_text(SINGLE, cache_dir)) as engine:
-        plan = await engine.plan(simulations=5_000, seed=1)
+        plan = await engine.plan(simulations=5_000, seed=1, planner="pomcp")
         assert plan.best.q == pytest.approx(1 + 0.9 + 0.81 + 0.729 + 0.6561, abs=0.3)
         assert {response.response for response in plan.predicted} == {"it is hot", "it is cold"}
         update = await engine.update("toss", "it is hot")

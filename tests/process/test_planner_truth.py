@@ -123,7 +123,7 @@ async def test_random_worlds_have_the_values_that_an_independent_program_gives(
     truth = CHANCE.values(world, np.full(STATES, 1 / STATES), HORIZON)
     exact = [value.q for value in (await chance.exact()).actions]
     assert exact == pytest.approx(truth, abs=1e-9)
-    plan = await chance.plan(simulations=200_000, seed=1)
+    plan = await chance.plan(simulations=200_000, seed=1, planner="pomcp")
     assert plan.best.q == pytest.approx(max(truth), abs=0.03)
     assert max(truth) - truth[plan.index] < 0.03
 
@@ -137,16 +137,16 @@ async def test_the_tiger_is_listened_for_while_it_was_heard_on_both_sides(tiger:
     async with engine_of(tiger) as engine:
         decisions = []
         for heard in ("tiger_left", "tiger_right", "tiger_left"):
-            decisions.append((await engine.plan(simulations=50_000, seed=3)).best.action)
+            decisions.append((await engine.plan(simulations=50_000, seed=3, planner="pomcp")).best.action)
             await engine.update("listen", heard)
-        decisions.append((await engine.plan(simulations=50_000, seed=3)).best.action)
+        decisions.append((await engine.plan(simulations=50_000, seed=3, planner="pomcp")).best.action)
     assert decisions == ["listen"] * 4
 
 
 async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel) -> None:
     async with engine_of(tiger) as engine:
         exact = {value.action: value.q for value in (await engine.exact(4)).actions}
-        plan = await engine.plan(simulations=200_000, seed=2, horizon=4)
+        plan = await engine.plan(simulations=200_000, seed=2, horizon=4, planner="pomcp")
     assert plan.best.q == pytest.approx(max(exact.values()), abs=0.3)
     assert exact[plan.best.action] == max(exact.values())
 
@@ -154,9 +154,9 @@ async def test_a_short_look_ahead_has_the_tigers_exact_value(tiger: BuiltModel) 
 async def test_threads_that_share_a_budget_repeat_to_the_bit(tiger: BuiltModel) -> None:
     async def decide() -> Plan:
         async with engine_of(tiger) as engine:
-            await engine.plan(simulations=5_001, seed=4, threads=3)
+            await engine.plan(simulations=5_001, seed=4, threads=3, planner="pomcp")
             await engine.update("listen", "tiger_left")
-            return await engine.plan(simulations=5_001, seed=5, threads=3)
+            return await engine.plan(simulations=5_001, seed=5, threads=3, planner="pomcp")
 
     first, again = await decide(), await decide()
     assert first.actions == again.actions
@@ -166,9 +166,9 @@ async def test_threads_that_share_a_budget_repeat_to_the_bit(tiger: BuiltModel) 
 
 async def test_threads_decide_as_one_thread_does(chance: Engine) -> None:
     await _enter(chance, 0)
-    alone = await chance.plan(simulations=100_000, seed=1)
+    alone = await chance.plan(simulations=100_000, seed=1, planner="pomcp")
     await _enter(chance, 0)
-    together = await chance.plan(simulations=100_000, seed=1, threads=2)
+    together = await chance.plan(simulations=100_000, seed=1, threads=2, planner="pomcp")
     assert together.index == alone.index
     assert together.best.q == pytest.approx(alone.best.q, abs=0.03)
 
@@ -177,14 +177,14 @@ async def test_pondering_while_acting_leaves_a_warm_start_and_stops_when_it_is_a
     tiger: BuiltModel,
 ) -> None:
     async with engine_of(tiger) as engine:
-        await engine.plan(simulations=100, seed=1)
+        await engine.plan(simulations=100, seed=1, planner="pomcp")
         await engine.update("listen", "tiger_left")
-        idle = await engine.plan(simulations=100, seed=2)
+        idle = await engine.plan(simulations=100, seed=2, planner="pomcp")
         await engine.ponder(idle.index, seed=3, time_s=0.2)
         predicted = await engine.predict(idle.index)  # What is asked now ends the pondering...
         await engine.ponder(idle.index, seed=3, time_s=60)
         await engine.update(idle.best.action, predicted.predicted[0].response)  # ...and so does this.
-        warm = await engine.plan(simulations=100, seed=4)
+        warm = await engine.plan(simulations=100, seed=4, planner="pomcp")
     assert warm.known_simulations > idle.known_simulations
 
 
@@ -192,6 +192,6 @@ async def test_a_belief_that_has_ended_costs_no_simulations(bundles: Path, cache
     async with engine_of(await built_bundle(bundles / "bench" / "tag", cache_dir)) as engine:
         particles = await engine.export_belief()
         await engine.update("tag", "tagged")
-        ended = await engine.plan(simulations=1000, seed=1, threads=2)
+        ended = await engine.plan(simulations=1000, seed=1, threads=2, planner="pomcp")
     assert particles.is_exact
     assert all(value.q == 0 for value in ended.actions)

@@ -41,9 +41,9 @@ async def decided(built: BuiltModel) -> list[Plan | BeliefUpdate]:
     them."""
     engine = await Engine.start(built, seed=7)
     try:
-        before = await engine.plan(simulations=5000, seed=3)
+        before = await engine.plan(simulations=5000, seed=3, planner="pomcp")
         update = await engine.update(before.actions[before.index].action, "DefaultObservation")
-        after = await engine.plan(simulations=5000, seed=4)
+        after = await engine.plan(simulations=5000, seed=4, planner="pomcp")
     finally:
         await engine.close()
     return [untimed(before), update, untimed(after)]

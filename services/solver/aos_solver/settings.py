@@ -8,6 +8,7 @@ import msgspec
 
 from aos_protocol.documents import Constraint
 from aos_runtime.lifecycle import ServiceSettings
+from aos_solver.child.mission_questions import DEFAULT_PLANNER, Planner
 from aos_solver.mission.failures import SkillRule
 
 __all__ = ["Settings"]
@@ -38,7 +39,7 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     set_aside_s: float = 300.0
     hold_s: float = 600.0
     skills: dict[str, SkillRule] = msgspec.field(default_factory=dict)
-    planner: Literal["pomcp", "despot", "sarsop", "auto"] = "auto"
+    planner: Planner = DEFAULT_PLANNER
     threads: int = 1
     ponder_while_acting: bool = True
     impossible_observation: Literal["hold", "widen", "reset"] = "widen"

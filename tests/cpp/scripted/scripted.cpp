@@ -91,7 +91,7 @@ void print_state(JsonWriter& json, State& state) {
 
 int find_action(const std::string& name) {
   for (int action = 0; action < static_cast<int>(model.actions->size()); ++action) {
-    if (name == action_at(action).name) return action;
+    if (name == action_at(action).words->name) return action;
   }
   std::exit(3);
 }
@@ -154,7 +154,7 @@ void describe() {
   JsonWriter json;
   json.begin_array();
   for (int action = 0; action < static_cast<int>(model.actions->size()); ++action) {
-    json.begin_object().member("action", action_at(action).name).key("parameters");
+    json.begin_object().member("action", action_at(action).words->name).key("parameters");
     skill_of(action).write_parameters(action_at(action).parameters, json);
     json.end_object();
   }

@@ -17,6 +17,7 @@
 #include "cell_tables.cpp"
 #include "enumeration.cpp"
 #include "expected_rewards.cpp"
+#include "faults.cpp"
 #include "learned_values.cpp"
 #include "loops.cpp"
 #include "number_cells.cpp"

@@ -38,11 +38,15 @@ __all__ = [
 
 
 class GroundedAction(msgspec.Struct, frozen=True):
-    """A skill with values for its parameters: `name` is `skill(parameter=value)`, the values plain data."""
+    """A skill with values for its parameters: `name` is `skill(parameter=value)`, the values plain data.
+
+    `arguments` are the values as the name has them; a value of a state variable has the variable's name.
+    """
 
     name: str
     skill: str
     parameters: dict[str, Any]
+    arguments: dict[str, str] = {}
 
 
 class EngineDescription(msgspec.Struct, frozen=True):

@@ -15,7 +15,14 @@ from typing import Literal, Self, TypeVar
 import msgspec
 
 from aos_protocol.diagnostics import Diagnostic, Severity
-from aos_protocol.errors import AosError, CodeFaultError, EndlessCodeError, ModelError, error_from_code
+from aos_protocol.errors import (
+    AosError,
+    CodeFaultError,
+    EndlessCodeError,
+    EngineDefectError,
+    ModelError,
+    error_from_code,
+)
 from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EngineDescription, EngineFault, Progress
@@ -42,7 +49,12 @@ ANSWER_LIMIT_BYTES = 32 * 1024**2
 
 _MEMORY_HINT = (
     "Document code that writes past a plain array or through a pointer may have harmed the engine's memory "
-    "before: look for such code. If there is none, this is a mistake of AOS"
+    "before: look for such code. If there is none, this is a mistake of AOS; please report it with the "
+    "bundle, the command with its seed, and this message"
+)
+_REPORT_HINT = (
+    "This is a mistake of AOS and not of the documents; please report it with the bundle, the command with "
+    "its seed, and this message"
 )
 
 
@@ -175,7 +187,9 @@ class EngineChild:
         """The error of model code, at the document place of that number if it is one."""
         spans = self._built.emitted.snippets
         if not 0 < piece <= len(spans):
-            return error_from_code(code, message)
+            error = error_from_code(code, message)
+            error.hint = _REPORT_HINT if isinstance(error, EngineDefectError) else error.hint
+            return error
         span = spans[piece - 1]
         hint = "Look at this piece of the document"
         diagnostic = Diagnostic(Severity.ERROR, code, message, span, hint)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Unpack
-
 import msgspec
 
 from aos_solver.child.answers import Plan
-from aos_solver.child.engine import Apart, Engine, Planner
+from aos_solver.child.engine import Engine
+from aos_solver.child.mission_questions import DEFAULT_PLANNER, UNRESTRICTED, Planner, Restriction
 
 __all__ = ["Search"]
 
@@ -26,7 +25,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     seed: int
     time_s: float | None = None
     horizon: int | None = None
-    planner: Planner = "auto"
+    planner: Planner = DEFAULT_PLANNER
     threads: int = 1
     ponder_while_acting: bool = True
 
@@ -34,8 +33,8 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""
         return self.seed * SEEDS_PER_MISSION + step
 
-    async def run(self, engine: Engine, step: int, **apart: Unpack[Apart]) -> Plan:
-        """Decide on the engine's belief."""
+    async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
+        """Decide on what the engine believes, with what the restriction leaves."""
         return await engine.plan(
             simulations=None if self.time_s is not None else self.simulations,
             time_s=self.time_s,
@@ -43,7 +42,7 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
             horizon=self.horizon,
             planner=self.planner,
             threads=self.threads,
-            **apart,
+            within=within,
         )
 
     async def ponder(self, engine: Engine, step: int, index: int) -> None:

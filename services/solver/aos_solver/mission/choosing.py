@@ -8,7 +8,7 @@ import msgspec
 
 from aos_protocol.messages import BeliefSummary, DecisionRecord
 from aos_solver.child.answers import Plan, Risks
-from aos_solver.child.engine import Engine
+from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.endings import (
     Ending,
     ending_after_planning,
@@ -115,14 +115,15 @@ class Chooser:
 
         It is where the mission would be over but for that belief, or else nothing would be worth doing.
         """
-        without = sorted(set_aside)
+        within = Restriction(barred=barred, without=sorted(set_aside))
+        cautiously = Restriction(barred=barred, without=within.without, cautious=True)
         if not self._terms.is_cautious:
-            return await self._search.run(engine, step, barred=barred, without=without), False
+            return await self._search.run(engine, step, within), False
         if is_held_back(belief, self._limits):
-            return await self._search.run(engine, step, barred=barred, without=without, cautious=True), True
-        plan = await self._search.run(engine, step, barred=barred, without=without)
+            return await self._search.run(engine, step, cautiously), True
+        plan = await self._search.run(engine, step, within)
         if belief.cautious is not None and is_worth_nothing(plan.best, self._limits):
-            cautious = await self._search.run(engine, step, barred=barred, without=without, cautious=True)
+            cautious = await self._search.run(engine, step, cautiously)
             if not is_worth_nothing(cautious.best, self._limits):
                 return cautious, True
         return plan, False

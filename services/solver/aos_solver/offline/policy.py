@@ -8,7 +8,6 @@ from __future__ import annotations
 import time
 from functools import cached_property
 from pathlib import Path
-from typing import Unpack
 
 import msgspec
 import numpy as np
@@ -16,7 +15,8 @@ import numpy as np
 from aos_protocol.errors import PlanningError
 from aos_protocol.messages import ActionValue
 from aos_solver.child.answers import ExportedBelief, Plan
-from aos_solver.child.engine import Apart, Engine
+from aos_solver.child.engine import Engine
+from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
 from aos_solver.child.search import Search
 from aos_solver.offline.alpha_vectors import AlphaVectors, Choice, RegionSize
 
@@ -113,24 +113,25 @@ class PolicySearch(Search, frozen=True, kw_only=True):
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""
 
-    async def run(self, engine: Engine, step: int, **apart: Unpack[Apart]) -> Plan:
+    async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
         """The policy's action at the engine's belief; PlanningError AOS322 if the policy does not fit.
 
-        Its values suppose that all skills can be used later, also those `without` which it decides now.
+        Its values suppose that all skills can be used later, also those without which it decides now.
 
         Where the policy would stop it is the best of the other actions, whose value is then below that of
         stopping: whether the mission ends is for the mission's limits to say.
         """
         begun_s = time.perf_counter()
         self.policy.check_model(engine.model_digest)
-        cautious, without = apart.get("cautious", False), apart.get("without", ())
-        choice = self.policy.choose(await engine.export_belief(is_whole=False, cautious=cautious))
+        choice = self.policy.choose(await engine.export_belief(is_whole=False, cautious=within.cautious))
         names = [action.name for action in engine.description.actions]
-        left_out = [n for n, action in enumerate(engine.description.actions) if action.skill in without]
+        left_out = [
+            n for n, action in enumerate(engine.description.actions) if action.skill in within.without
+        ]
         values = choice.values[: len(names)].copy()
-        values[[*apart.get("barred", ()), *left_out]] = -np.inf
+        values[[*within.barred, *left_out]] = -np.inf
         best = int(np.argmax(values))
-        prediction = await engine.predict(best, cautious=cautious)
+        prediction = await engine.predict(best, cautious=within.cautious)
         actions = tuple(
             ActionValue(name, float(value), int(plans), 0.0)
             for name, value, plans in zip(names, choice.values, choice.plans, strict=False)

@@ -17,6 +17,7 @@
 #include "aos/belief/hypotheses.hpp"
 #include "aos/belief/kept_beliefs.hpp"
 #include "aos/child/command.hpp"
+#include "aos/child/faults.hpp"
 #include "aos/child/left_out.hpp"
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/wording.hpp"
@@ -77,7 +78,7 @@ class BeliefCommands {
     const Observation observation = observation_of<Model>(action, command.text("response"));
     const ObservedNumbers numbers = numbers_from(command.text("numbers"));
     const auto locals = command.optional_text("locals");
-    Uncorrected uncorrected;
+    Fault uncorrected;  // without a code where nothing went wrong
     const auto by = [&](const Belief<Model>& belief, auto&& sink) {
       return locals ? corrected_posterior(belief, action, observation, sink, *locals, uncorrected)
                     : belief.posterior(action, observation, sink, random_);
@@ -106,8 +107,9 @@ class BeliefCommands {
     json.member("is_excluded", !is_left_out && believed_.excludes(found, report));
     json.member("has_other_numbers", has_other_numbers && !is_impossible);
     if (!uncorrected.code.empty()) {
-      json.key("uncorrected").begin_object().member("code", uncorrected.code).member("text", uncorrected.text);
-      json.member("piece", uncorrected.piece).end_object();
+      json.key("uncorrected").begin_object();
+      write_members(json, uncorrected);
+      json.end_object();
     }
     json.key("summary");
     if (is_left_out) {
@@ -180,26 +182,20 @@ class BeliefCommands {
  private:
   using Hypotheses = aos::Hypotheses<Model>;
 
-  // Why an observation did not correct the belief. The code is empty if it did.
-  struct Uncorrected {
-    std::string code;
-    std::string text;
-    std::uint32_t piece = 0;
-  };
-
   template <class Numbers>
   std::pair<Belief<Model>, double> corrected_posterior(const Belief<Model>& belief, int action, Observation observation,
-                                                       Numbers& numbers, std::string_view locals, Uncorrected& uncorrected) {
+                                                       Numbers& numbers, std::string_view locals, Fault& uncorrected) {
     try {
       Model::read_locals(action, locals);
       const typename Model::Correcting correcting{observation};
       // A replay of this step would not be corrected, so the corrected belief has no history.
       const auto [posterior, log_probability] = belief.without_history().posterior(action, observation, numbers, random_);
       return {posterior.without_history(), log_probability};
-    } catch (const ModelFault& fault) {
-      uncorrected = {fault.code, fault.text, blame::piece()};
-    } catch (const std::exception& error) {
-      uncorrected = {"AOS215", error.what(), blame::piece()};
+    } catch (const ModelFault&) {
+      uncorrected = current_fault();
+    } catch (const std::exception&) {
+      if (blame::piece() == 0) throw;
+      uncorrected = current_fault();
     }
     return belief.posterior(action, observation, numbers, random_);
   }

@@ -15,50 +15,19 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <memory>
 #include <string_view>
 
-#include "aos/base/fault.hpp"
 #include "aos/base/progress.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/commands.hpp"
+#include "aos/child/faults.hpp"
 #include "aos/child/watchdog.hpp"
 #include "aos/model/blame.hpp"
 
 namespace aos {
 
 namespace detail {
-
-inline void write_fault(JsonWriter& json, std::string_view code, std::string_view text) {
-  json.clear();
-  json.begin_object().key("fault").begin_object().member("code", code).member("text", text);
-  json.member("piece", blame::piece()).end_object().end_object();
-}
-
-// Runs `work`. A fault becomes the answer.
-template <class Work>
-void guarded(JsonWriter& json, Work&& work) {
-  try {
-    work();
-  } catch (const ModelFault& fault) {
-    write_fault(json, fault.code, fault.text);
-  } catch (const NotEnumerable& limit) {
-    blame::at(0);
-    write_fault(json, "AOS220", limit.reason);
-  } catch (const BadCommand& bad) {
-    blame::at(0);
-    write_fault(json, "AOS213", bad.text);
-  } catch (const point_based::CrossedBounds& crossed) {
-    blame::at(0);
-    write_fault(json, "AOS216", crossed.what());
-  } catch (const std::exception& error) {
-    write_fault(json, "AOS215", error.what());
-  } catch (...) {
-    write_fault(json, "AOS215", "model code threw something");
-  }
-  blame::at(0);
-}
 
 inline void share_blame(const char* path) {
   const int file = ::open(path, O_RDWR);
@@ -110,7 +79,7 @@ int run_child(int argc, char** argv) {
                                                : ImpossiblePolicy::widen;
   std::unique_ptr<Commands<Model>> commands;
   JsonWriter json;
-  detail::guarded(json, [&] {
+  guarded(json, [&] {
     Model::prepare();
     commands = std::make_unique<Commands<Model>>(std::strtoull(argv[3], nullptr, 10), policy, argv[2]);
     commands->describe(json);
@@ -126,7 +95,7 @@ int run_child(int argc, char** argv) {
     if (!text.empty() && text.back() == '\n') text.remove_suffix(1);
     json.clear();
     progress::tell_to(detail::say_progress);
-    detail::guarded(json, [&] { commands->answer(Command{text}, json); });
+    guarded(json, [&] { commands->answer(Command{text}, json); });
     progress::tell_to(nullptr);  // nobody reads while nothing is asked
     watchdog::allow(0);
     detail::say(out, json);

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "aos/base/json.hpp"
 #include "aos/base/progress.hpp"
@@ -32,7 +34,9 @@ class Commands {
       const int skill = Model::skill_of(action);
       json.begin_object().member("name", Model::action_name(action)).member("skill", Model::skill_name(skill));
       Model::write_parameters(action, json.key("parameters"));
-      json.end_object();
+      json.key("arguments").begin_object();
+      for (const auto& [parameter, value] : Model::arguments_of(action)) json.member(parameter, value);
+      json.end_object().end_object();
     }
     json.end_array().key("responses").begin_object();
     for (int skill = 0; skill < Model::skill_count; ++skill) {
@@ -46,37 +50,8 @@ class Commands {
   }
 
   void answer(const Command& command, JsonWriter& json) {
-    const std::string_view name = command.name();
     if (command.optional_text("max_seconds")) watchdog::allow(command.number<double>("max_seconds"));
-    if (name == "describe") return describe(json);
-    if (name == "tell_progress") return tell_progress(json, command);
-    if (name == "summary") return beliefs_.summary(json);
-    if (name == "reset_belief") return beliefs_.reset(json);
-    if (name == "draw_belief") return beliefs_.draw(json);
-    if (name == "predict") return beliefs_.predict(json, command);
-    if (name == "update") return beliefs_.update(json, command);
-    if (name == "update_without_observation") return beliefs_.update_without_observation(json, command);
-    if (name == "export_belief") return beliefs_.export_belief(json, command);
-    if (name == "describe_beliefs") return beliefs_.describe_beliefs(json);
-    if (name == "import_belief") return beliefs_.import_belief(json, command);
-    if (name == "restore_belief") return beliefs_.restore(json, command);
-    if (name == "risks") return write_risks(json, command, beliefs_.belief());
-    if (name == "plan") return planning_.plan(json, command);
-    if (name == "ponder") return planning_.ponder(json, command);
-    if (name == "count_processor_time") return planning_.count_processor_time(json, command);
-    if (name == "exact") return planning_.exact(json, command);
-    if (name == "reach") return planning_.reach(json, command);
-    if (name == "may_reach_goal") return planning_.may_reach_goal(json, command);
-    if (name == "list") return planning_.list(json, command);
-    if (name == "write_listing") return planning_.write_listing(json, command);
-    if (name == "reset_world") return worlds_.reset(json, command);
-    if (name == "step_world") return worlds_.step(json, command);
-    if (name == "show_world") return worlds_.show(json);
-    if (name == "reset_worlds") return worlds_.reset_many(json, command);
-    if (name == "step_worlds") return worlds_.step_many(json, command);
-    if (name == "rate") return write_code_rate<Model>(json, command);
-    if (name == "rate_by_table") return write_table_rate<Model>(json, command);
-    throw BadCommand{"unknown command: " + std::string{name}};
+    answer_to(command.name())(*this, json, command);
   }
 
   // From now on, answers that take long are preceded by lines of progress, one in so many milliseconds.
@@ -91,10 +66,66 @@ class Commands {
   }
 
  private:
+  using Answer = void (*)(Commands& commands, JsonWriter& json, const Command& command);
+  using Beliefs = BeliefCommands<Model>;
+  using Planning = PlanningCommands<Model>;
+  using Worlds = WorldCommands<Model>;
+
+  // The answer of one part. A function without a command takes no fields.
+  template <auto part, auto answer>
+  static void by(Commands& commands, JsonWriter& json, const Command& command) {
+    auto& answering = commands.*part;
+    if constexpr (std::is_invocable_v<decltype(answer), decltype(answering), JsonWriter&, const Command&>) {
+      (answering.*answer)(json, command);
+    } else {
+      (answering.*answer)(json);
+    }
+  }
+
+  static Answer answer_to(std::string_view command) {
+    static constexpr std::pair<std::string_view, Answer> table[] = {
+        {"describe", [](Commands& commands, JsonWriter& json, const Command&) { commands.describe(json); }},
+        {"tell_progress", [](Commands&, JsonWriter& json, const Command& command) { tell_progress(json, command); }},
+        {"rate", [](Commands&, JsonWriter& json, const Command& command) { write_code_rate<Model>(json, command); }},
+        {"rate_by_table",
+         [](Commands&, JsonWriter& json, const Command& command) { write_table_rate<Model>(json, command); }},
+        {"risks", [](Commands& commands, JsonWriter& json, const Command& command) {
+           write_risks(json, command, commands.beliefs_.belief());
+         }},
+        {"summary", by<&Commands::beliefs_, &Beliefs::summary>},
+        {"reset_belief", by<&Commands::beliefs_, &Beliefs::reset>},
+        {"draw_belief", by<&Commands::beliefs_, &Beliefs::draw>},
+        {"predict", by<&Commands::beliefs_, &Beliefs::predict>},
+        {"update", by<&Commands::beliefs_, &Beliefs::update>},
+        {"update_without_observation", by<&Commands::beliefs_, &Beliefs::update_without_observation>},
+        {"export_belief", by<&Commands::beliefs_, &Beliefs::export_belief>},
+        {"describe_beliefs", by<&Commands::beliefs_, &Beliefs::describe_beliefs>},
+        {"import_belief", by<&Commands::beliefs_, &Beliefs::import_belief>},
+        {"restore_belief", by<&Commands::beliefs_, &Beliefs::restore>},
+        {"plan", by<&Commands::planning_, &Planning::plan>},
+        {"ponder", by<&Commands::planning_, &Planning::ponder>},
+        {"count_processor_time", by<&Commands::planning_, &Planning::count_processor_time>},
+        {"exact", by<&Commands::planning_, &Planning::exact>},
+        {"reach", by<&Commands::planning_, &Planning::reach>},
+        {"may_reach_goal", by<&Commands::planning_, &Planning::may_reach_goal>},
+        {"list", by<&Commands::planning_, &Planning::list>},
+        {"write_listing", by<&Commands::planning_, &Planning::write_listing>},
+        {"reset_world", by<&Commands::worlds_, &Worlds::reset>},
+        {"step_world", by<&Commands::worlds_, &Worlds::step>},
+        {"show_world", by<&Commands::worlds_, &Worlds::show>},
+        {"reset_worlds", by<&Commands::worlds_, &Worlds::reset_many>},
+        {"step_worlds", by<&Commands::worlds_, &Worlds::step_many>},
+    };
+    for (const auto& [name, answer] : table) {
+      if (name == command) return answer;
+    }
+    throw BadCommand{"unknown command: " + std::string{command}};
+  }
+
   Planner<Model> search_;
-  BeliefCommands<Model> beliefs_;
-  PlanningCommands<Model> planning_;
-  WorldCommands<Model> worlds_;
+  Beliefs beliefs_;
+  Planning planning_;
+  Worlds worlds_;
 };
 
 }  // namespace aos

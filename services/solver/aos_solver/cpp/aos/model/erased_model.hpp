@@ -32,7 +32,9 @@ struct ErasedModel {
 
   static void prepare() { compiled_model.prepare(); }
   static int action_count() { return static_cast<int>(compiled_model.actions->size()); }
-  static const char* action_name(int action) { return grounded(action).name; }
+  static const char* action_name(int action) { return grounded(action).words->name.c_str(); }
+  // The parameters of an action with the texts of their values.
+  static const auto& arguments_of(int action) { return grounded(action).words->arguments; }
   static int skill_of(int action) { return grounded(action).skill; }
   static const char* skill_name(int skill) { return compiled_model.skills[skill].name; }
   static int response_count(int skill) { return compiled_model.skills[skill].response_count; }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <deque>
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "aos/base/random.hpp"
@@ -12,11 +14,23 @@
 
 namespace aos {
 
-// `parameters` points to values of the skill's type. These and the name stay where they are.
+// An action in words: `name` is `skill(parameter=value, ...)`, or the skill's alone, and `arguments` are its parameters
+// with the text of their values. A parameter that stands for a state variable has the variable's name.
+struct ActionWords {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>> arguments;
+};
+
+// `parameters` points to values of the skill's type. These and the words stay where they are.
 struct GroundedAction {
   int skill = 0;
   const void* parameters = nullptr;
-  const char* name = "";
+  const ActionWords* words = nullptr;
+};
+
+struct GroundedActions {
+  std::vector<GroundedAction> actions;
+  std::deque<ActionWords> words;  // the elements of a deque stay where they are
 };
 
 template <class Skill>
@@ -71,15 +85,13 @@ struct Argument {
 // Adds the groundings of one skill to the actions of the model.
 class Groundings {
  public:
-  Groundings(std::vector<GroundedAction>& actions, int skill, const char* name)
-      : actions_(actions), skill_(skill), name_(name) {}
+  Groundings(GroundedActions& all, int skill, const char* name) : all_(all), skill_(skill), name_(name) {}
 
-  // Adds an action named `skill(parameter=value, ...)`; without parameters it is named as the skill.
   // `parameters` are of the skill's type and must outlive the actions.
   void add(std::initializer_list<Argument> arguments, const void* parameters);
 
  private:
-  std::vector<GroundedAction>& actions_;
+  GroundedActions& all_;
   int skill_;
   const char* name_;
 };

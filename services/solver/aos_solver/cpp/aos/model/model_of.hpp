@@ -104,13 +104,14 @@ class ModelOf {
     set_default_values(draft, draws);
     Project::set_constants(draft);
     prepared_.start = draft;
-    prepared_.actions.clear();
+    prepared_.grounded = {};
     ground(Skills{}, draft);
-    if (prepared_.actions.empty()) throw ModelFault{"AOS119", "no skill has a grounded action"};
+    if (prepared_.grounded.actions.empty()) throw ModelFault{"AOS119", "no skill has a grounded action"};
+    blame::at(0);
   }
 
-  static int action_count() { return static_cast<int>(prepared_.actions.size()); }
-  static constexpr const std::vector<GroundedAction>& grounded_actions() { return prepared_.actions; }
+  static int action_count() { return static_cast<int>(prepared_.grounded.actions.size()); }
+  static constexpr const std::vector<GroundedAction>& grounded_actions() { return prepared_.grounded.actions; }
 
   static void initial(State& state, auto& random) {
     if constexpr (Project::draws_defaults) {
@@ -210,7 +211,7 @@ class ModelOf {
   // The state before the initial belief, the actions, and what real observations give.
   struct Prepared {
     State start;
-    std::vector<GroundedAction> actions;
+    GroundedActions grounded;
     typename Skills::Locals locals;
   };
   inline static Prepared prepared_;
@@ -232,12 +233,12 @@ class ModelOf {
   template <class... Listed>
   static void ground(SkillList<Listed...>, const Draft& draft) {
     int number = 0;
-    (Listed::make_groundings(draft, Groundings{prepared_.actions, number++, Listed::aos_name}), ...);
+    (Listed::make_groundings(draft, Groundings{prepared_.grounded, number++, Listed::aos_name}), ...);
   }
 
   // Calls `use` with the type of the action's skill and with the action's parameters.
   static decltype(auto) with_action(int action, auto&& use) {
-    const GroundedAction& chosen = prepared_.actions[action];
+    const GroundedAction& chosen = prepared_.grounded.actions[action];
     return with_skill(Skills{}, chosen.skill, [&]<class Skill>(std::type_identity<Skill> skill) -> decltype(auto) {
       return use(skill, parameters_of<Skill>(chosen));
     });
@@ -246,10 +247,10 @@ class ModelOf {
   // Calls `use` with a skill's type and the parameters of each of its groundings, skill by skill.
   template <class... Listed>
   static void with_each_grounding(SkillList<Listed...>, auto&& use) {
-    auto action = prepared_.actions.begin();
+    auto action = prepared_.grounded.actions.begin();
     int number = 0;
     const auto groundings_of = [&]<class Skill>(std::type_identity<Skill> skill) {
-      for (; action != prepared_.actions.end() && action->skill == number; ++action) use(skill, parameters_of<Skill>(*action));
+      for (; action != prepared_.grounded.actions.end() && action->skill == number; ++action) use(skill, parameters_of<Skill>(*action));
       ++number;
     };
     (groundings_of(std::type_identity<Listed>{}), ...);

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -92,14 +91,15 @@ std::string_view observation_text(Observation number) {
 }
 
 void Groundings::add(std::initializer_list<Argument> arguments, const void* parameters) {
-  static std::deque<std::string> names;  // the elements of a deque stay where they are
+  ActionWords& words = all_.words.emplace_back();
   std::string list;
   for (const auto& [parameter, value] : arguments) {
     if (!list.empty()) list += ", ";
     ((list += parameter) += '=') += value;
+    words.arguments.emplace_back(parameter, value);
   }
-  const std::string& name = names.emplace_back(list.empty() ? name_ : name_ + ("(" + list + ")"));
-  actions_.push_back({skill_, parameters, name.c_str()});
+  words.name = list.empty() ? name_ : name_ + ("(" + list + ")");
+  all_.actions.push_back({skill_, parameters, &words});
 }
 
 }  // namespace aos

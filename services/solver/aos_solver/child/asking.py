@@ -1,0 +1,188 @@
+"""The child process of one model behind its questions: started, asked, killed and started again.
+
+The service survives whatever model code does: every question has a deadline; a crash, a hang and an exit
+become a ModelError that names the document line; the next question starts a new child with the belief that
+the old one had.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from typing import Self, TypeVar
+
+import msgspec
+
+from aos_protocol.errors import AosError, ModelError
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import EngineDescription, EngineFault, Progress
+from aos_solver.child.command_line import command_line
+from aos_solver.child.engine_child import (
+    EngineChild,
+    EngineStart,
+    ImpossiblePolicy,
+    KilledError,
+    OverdueError,
+)
+from aos_solver.child.replay import at_its_statement
+from aos_solver.child.shared_memory import SharedMemory
+from aos_solver.emission.emit import Bound
+from aos_solver.emission.program import Observed
+
+__all__ = ["ANSWER_DEADLINE_S", "Asking", "Done"]
+
+log = logging.getLogger(__name__)
+
+A = TypeVar("A")
+
+ANSWER_DEADLINE_S = 30.0
+
+
+class Done(msgspec.Struct, frozen=True):
+    """The answer that says nothing more."""
+
+
+class Asking:
+    """Owns the child process of one built model. Questions are asked one at a time."""
+
+    def __init__(self, built: BuiltModel, seed: int, impossible_observation: ImpossiblePolicy) -> None:
+        self._built = built
+        self._seed = seed
+        self._policy = impossible_observation
+        self._child: EngineChild | None = None
+        self._beliefs: SharedMemory | None = None
+        self._changes = 0
+        self._correction_faults: dict[EngineFault, AosError] = {}
+        self._world: list[str] = []
+        self._asking = asyncio.Lock()
+        self.on_progress: Callable[[Progress], None] | None = None
+        """The function that hears how far the work on an answer is, some times a second where it takes
+        long."""
+        self.description: EngineDescription
+
+    @classmethod
+    async def start(
+        cls,
+        built: BuiltModel,
+        *,
+        seed: int,
+        impossible_observation: ImpossiblePolicy = "widen",
+        keeps_belief: bool = True,
+    ) -> Self:
+        """Starts the child on the initial belief; ModelError if the model cannot even begin.
+
+        A child that is started again gets the belief, of which each child keeps a copy in our memory. Without
+        `keeps_belief` it gets the initial belief.
+        """
+        engine = cls(built, seed, impossible_observation)
+        if keeps_belief:
+            engine._beliefs = SharedMemory.create("aos-beliefs")
+        try:
+            await engine._start_child()
+        except BaseException:
+            await engine.close()
+            raise
+        return engine
+
+    async def close(self) -> None:
+        """Ends the child. A closed engine is not asked again."""
+        await self._drop_child()
+        if self._beliefs is not None:
+            self._beliefs.close()
+            self._beliefs = None
+
+    @property
+    def model_digest(self) -> str:
+        """The digest of the model that is asked."""
+        return self._built.emitted.digest
+
+    @property
+    def state_digest(self) -> str:
+        """The digest of the state's layout: engines with the same one can exchange beliefs."""
+        return self._built.emitted.state_digest
+
+    @property
+    def observed(self) -> Mapping[str, tuple[Observed, ...]]:
+        """The numbers that skills report beside their responses, for those that do."""
+        return self._built.emitted.observed
+
+    @property
+    def bounds(self) -> tuple[Bound, ...]:
+        """The mission's constraints."""
+        return self._built.emitted.bounds
+
+    @property
+    def pid(self) -> int | None:
+        """The guarded child's process id; None while there is no child."""
+        return self._child.pid if self._child else None
+
+    def variables_of(self, action: str) -> dict[str, str]:
+        """The state variables that parameters of the action stand for; computed parameters stand for none."""
+        grounded = self.description.actions[self._index(action)]
+        return grounded.arguments if grounded.skill in self._built.emitted.choosing_skills else {}
+
+    def _index(self, action: str) -> int:
+        for index, grounded in enumerate(self.description.actions):
+            if grounded.name == action:
+                return index
+        raise ModelError(f"there is no action {action}", code="AOS501")
+
+    async def _change_belief(self, command: str, kind: type[A]) -> A:
+        answer = await self._ask(command, kind)
+        self._changes += 1
+        return answer
+
+    async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
+        async with self._asking:
+            if self._child is None or not self._child.is_running:
+                await self._restart_child()
+            assert self._child is not None
+            try:
+                return await self._child.ask(command, kind, deadline_s, self.on_progress)
+            except KilledError as error:
+                log.warning("asking again: %s", error)
+                await self._restart_child()
+                return await self._child.ask(command, kind, deadline_s, self.on_progress)
+            except OverdueError:
+                raise
+            except AosError as error:
+                raise await self._at_its_statement(error, self._changes, [*self._world, command]) from None
+
+    async def _at_its_statement(self, fault: AosError, changes: int, commands: Sequence[str]) -> AosError:
+        """The fault at its statement, if a replay of the commands finds it after so many changes."""
+        commands = [*self._restoration(changes), *commands]
+        return await at_its_statement(fault, self._built, self._start, commands)
+
+    async def _start_child(self) -> None:
+        try:
+            self._child = await EngineChild.start(self._built, self._start)
+        except AosError as error:
+            raise await at_its_statement(error, self._built, self._start, []) from None
+        self.description = self._child.description
+
+    @property
+    def _start(self) -> EngineStart:
+        return EngineStart(self._seed, self._policy, "" if self._beliefs is None else self._beliefs.path)
+
+    async def _restart_child(self) -> None:
+        await self._drop_child()
+        await self._start_child()
+        assert self._child is not None
+        try:
+            for command in [*self._restoration(self._changes), *self._world]:
+                await self._child.ask(command, Done, ANSWER_DEADLINE_S)
+        except AosError:
+            await self._drop_child()
+            raise
+
+    def _restoration(self, changes: int) -> list[str]:
+        """Returns the commands that bring a new child to the belief after so many changes, the last or the
+        one before it."""
+        is_kept = changes > 0 and self._beliefs is not None
+        return [command_line("restore_belief", change=changes)] if is_kept else []
+
+    async def _drop_child(self) -> None:
+        child, self._child = self._child, None
+        if child is not None:
+            await child.close()

@@ -1,0 +1,155 @@
+"""The questions about what is believed, and the observations that change it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from typing import Any
+
+import msgspec
+
+from aos_protocol.errors import AosError
+from aos_protocol.messages import BeliefSummary
+from aos_solver.child.answers import (
+    BeliefCount,
+    BeliefUpdate,
+    EngineFault,
+    ExportedBelief,
+    ExportedBeliefs,
+    Prediction,
+)
+from aos_solver.child.asking import Asking, Done
+from aos_solver.child.command_line import command_line
+from aos_solver.child.local_values import UnusableLocals, local_values_line
+from aos_solver.child.observed_numbers import numbers_field
+
+__all__ = ["BeliefQuestions"]
+
+log = logging.getLogger(__name__)
+
+
+class BeliefQuestions(Asking):
+    """Beliefs that are told, changed, taken along and taken over."""
+
+    async def summary(self) -> BeliefSummary:
+        return await self._ask("summary", BeliefSummary)
+
+    async def reset_belief(self) -> BeliefSummary:
+        """Goes back to the initial belief."""
+        return await self._change_belief("reset_belief", BeliefSummary)
+
+    async def draw_belief(self) -> BeliefSummary:
+        """Goes back to the initial belief, as particles even where it could be enumerated."""
+        return await self._change_belief("draw_belief", BeliefSummary)
+
+    async def predict(self, index: int, *, cautious: bool = False) -> Prediction:
+        """Returns the responses that may be observed after an action."""
+        return await self._ask(command_line("predict", action=index, cautious=cautious or None), Prediction)
+
+    async def update(
+        self,
+        action: str,
+        response: str,
+        local_variables: Mapping[str, str] | None = None,
+        numbers: Mapping[str, Any] | None = None,
+        refuted_below: float = 0.01,
+    ) -> BeliefUpdate:
+        """Bayes' rule after an action and its observation: a response, and the numbers reported beside it.
+
+        The local variables of a real outcome, as text, correct the belief where the skill's documents say so.
+        The update's remark says why numbers or local variables could not be used. The cautious belief is
+        given up once all that was observed since it began is less probable in it by this factor.
+        """
+        index = self._index(action)
+        skill = self.description.actions[index].skill
+        observed = self.observed.get(skill, ())
+        question = {
+            "action": index,
+            "response": response,
+            "numbers": numbers_field(observed, numbers or {}),
+            "refuted_below": refuted_below,
+        }
+        update = await self._corrected(action, question, local_variables)
+        if not update.has_other_numbers:
+            return update
+        given = {**(numbers or {}), **(local_variables or {})}
+        given_text = ", ".join(f"{number.name} = {given.get(number.name, 'nothing')}" for number in observed)
+        remark = (
+            f"the numbers of {action} do not count ({given_text}): "
+            f"the model reports others with the response {response}"
+        )
+        log.warning("%s", remark)
+        remark = f"{remark}; {update.remark}" if update.remark else remark
+        return msgspec.structs.replace(update, remark=remark)
+
+    async def _corrected(
+        self, action: str, question: Mapping[str, Any], local_variables: Mapping[str, str] | None
+    ) -> BeliefUpdate:
+        """The answer to an update, with the local variables where the skill's documents want them."""
+        wanted = self._built.emitted.locals.get(self.description.actions[self._index(action)].skill)
+        command = command_line("update", **question)
+        if wanted is None or local_variables is None:
+            return await self._change_belief(command, BeliefUpdate)
+        try:
+            command = command_line("update", **question, locals=local_values_line(wanted, local_variables))
+        except UnusableLocals as reason:
+            update, why = await self._change_belief(command, BeliefUpdate), str(reason)
+        else:
+            before = self._changes
+            update = await self._change_belief(command, BeliefUpdate)
+            if update.uncorrected is None:
+                return update
+            why = (await self._correction_fault(update.uncorrected, command, before)).message
+        remark = f"the local variables of {action} do not correct the belief: {why}"
+        log.warning("%s", remark)
+        return msgspec.structs.replace(update, remark=remark)
+
+    async def _correction_fault(self, fault: EngineFault, command: str, before: int) -> AosError:
+        """Returns why local variables did not correct the belief that was there after so many changes.
+
+        The statement is looked for once: the mission waits for it, and meets the fault at every outcome.
+        """
+        if fault not in self._correction_faults:
+            assert self._child is not None
+            error = self._child.fault(fault.code, fault.text, fault.piece)
+            self._correction_faults[fault] = await self._at_its_statement(error, before, [command])
+        return self._correction_faults[fault]
+
+    async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
+        """The mixture of "it ran" and "it did not", with one cause for all such ends in a row of a skill."""
+        index = self._index(action)
+        command = command_line("update_without_observation", action=index, ran_probability=ran_probability)
+        return await self._change_belief(command, BeliefUpdate)
+
+    async def export_belief(
+        self, *, is_whole: bool = True, cautious: bool = False, number: int | None = None
+    ) -> ExportedBelief:
+        """The whole belief, however many pieces it takes; nobody changes it meanwhile.
+
+        Without `is_whole` states are told without what does not matter. A `number` is that of one of all
+        beliefs, see `export_beliefs`.
+        """
+        fields = {"is_whole": is_whole, "cautious": cautious or None, "number": number}
+        belief = await self._ask(command_line("export_belief", first=0, **fields), ExportedBelief)
+        particles = list(belief.particles)
+        while len(particles) < belief.states:
+            command = command_line("export_belief", first=len(particles), **fields)
+            particles += (await self._ask(command, ExportedBelief)).particles
+        return msgspec.structs.replace(belief, particles=tuple(particles))
+
+    async def export_beliefs(self) -> ExportedBeliefs:
+        """All that is believed: the belief of each hypothesis, and the cautious one; see hypotheses.hpp."""
+        count = await self._ask("describe_beliefs", BeliefCount)
+        beliefs = [await self.export_belief(number=number) for number in range(count.beliefs)]
+        return ExportedBeliefs(count.words, tuple(beliefs))
+
+    async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
+        """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
+        return await self._change_belief(belief.command, BeliefSummary)
+
+    async def import_beliefs(self, beliefs: ExportedBeliefs) -> BeliefSummary:
+        """Takes over all that an engine believes whose model has the same state layout."""
+        *first, last = beliefs.commands
+        for command in first:
+            await self._ask(command, Done)
+        return await self._change_belief(last, BeliefSummary)

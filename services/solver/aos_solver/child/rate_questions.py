@@ -1,0 +1,27 @@
+"""The question how quickly the model gives samples."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from aos_solver.child.answers import SampleCount
+from aos_solver.child.asking import ANSWER_DEADLINE_S, Asking
+from aos_solver.child.command_line import command_line
+
+__all__ = ["RateQuestions", "Stepping"]
+
+Stepping = Literal["code", "table"]
+"""The ways to make steps: by the documents' code, or by a table of all steps, which POMCP has of small
+models."""
+
+
+class RateQuestions(Asking):
+    """Samples by the second."""
+
+    async def rate(
+        self, seconds: float, seed: int, stepping: Stepping = "code", max_seconds: float | None = None
+    ) -> SampleCount:
+        """Draws samples with random actions for so long; by a table none where searches use no table."""
+        name = "rate" if stepping == "code" else "rate_by_table"
+        command = command_line(name, seconds=seconds, seed=seed, max_seconds=max_seconds)
+        return await self._ask(command, SampleCount, deadline_s=seconds + ANSWER_DEADLINE_S)
