@@ -32,7 +32,7 @@ from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 from aos_runtime.clock import Clock
 from aos_runtime.guard import NOT_STARTED
-from aos_runtime.lifecycle import ROUTER_S, ServiceSettings
+from aos_runtime.lifecycle import ROUTER_S, STORAGE_STATUS, ServiceSettings
 from aos_runtime.subscription import merged
 
 __all__ = ["ROUTER", "Supervisor", "supervised"]
@@ -314,7 +314,7 @@ class Supervisor:
         # Before it was ready, only what the next start may find otherwise is tried again.
         is_mistake = status in _MISTAKES or self._run.fault(program.name) is not None
         may_succeed = (
-            not self._is_hopeless(program) if was_ready else bool(program.command) and not is_mistake
+            not self._is_hopeless(program, status) if was_ready else bool(program.command) and not is_mistake
         )
         has_starts = program.is_restarted and running.restarts.are_left(self._clock.monotonic_s())
         if may_succeed and has_starts:
@@ -322,9 +322,12 @@ class Supervisor:
         # What an adapter served is unavailable; the mission goes on with the rest.
         return GIVEN_UP if was_ready and self._has_other_adapters(running) else THE_RUN_ENDS
 
-    def _is_hopeless(self, program: Program) -> bool:
+    def _is_hopeless(self, program: Program, status: int) -> bool:
+        if program.is_adapter:
+            return False
         fault = self._run.fault(program.name)
-        return fault is not None and not program.is_adapter and fault.code.startswith(_HOPELESS)
+        # On a full disk there may be no space for the fault.
+        return fault.code.startswith(_HOPELESS) if fault is not None else status == STORAGE_STATUS
 
     def _has_other_adapters(self, running: _Running) -> bool:
         others = (other for other in self._running.values() if other is not running)

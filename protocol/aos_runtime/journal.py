@@ -3,11 +3,14 @@
 SQLite in WAL mode with synchronous=FULL: an append returns when the row is on the disk (half a millisecond
 on a good disk, five on a poor one), so append before telling anybody. Payloads are JSON, so that any SQLite
 tool reads a journal. One process writes, any number read.
+
+Each row has a checksum, and the numbers have no gap, so that a journal that was damaged is refused.
 """
 
 from __future__ import annotations
 
 import sqlite3
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -23,14 +26,17 @@ if TYPE_CHECKING:
 
 __all__ = ["Journal", "JournalRow"]
 
-_SCHEMA_VERSION = 1
+_SCHEMA_VERSION = 2
+_WITHOUT_CHECKSUMS = 1
+"""The version before, which is still read."""
 
 _SCHEMA = f"""
 CREATE TABLE IF NOT EXISTS entries (
     seq INTEGER PRIMARY KEY AUTOINCREMENT,
     stamp_ns INTEGER NOT NULL,
     kind TEXT NOT NULL,
-    payload TEXT NOT NULL
+    payload TEXT NOT NULL,
+    checksum INTEGER NOT NULL
 ) STRICT;
 CREATE TRIGGER IF NOT EXISTS entries_stay BEFORE UPDATE ON entries
     BEGIN SELECT RAISE(ABORT, 'the journal is append-only'); END;
@@ -39,6 +45,9 @@ CREATE TRIGGER IF NOT EXISTS entries_remain BEFORE DELETE ON entries
 PRAGMA user_version = {_SCHEMA_VERSION};
 """
 
+
+_REFUSALS = (sqlite3.Error, UnicodeDecodeError)
+"""The second one comes where SQLite's message quotes a schema that was damaged."""
 
 _PAGES_IN_A_CHECKPOINT = 100
 """A checkpoint comes after this many pages: where none waits for the disk, many small ones are better than a
@@ -57,10 +66,13 @@ class JournalRow(NamedTuple):
 class Journal:
     """Rows in the order in which they were appended."""
 
-    def __init__(self, connection: sqlite3.Connection, path: Path, clock: Clock) -> None:
+    def __init__(
+        self, connection: sqlite3.Connection, path: Path, clock: Clock, version: int = _SCHEMA_VERSION
+    ) -> None:
         self._connection = connection
         self._path = path
         self._clock = clock
+        self._has_checksums = version != _WITHOUT_CHECKSUMS
 
     @classmethod
     def open(cls, path: str | Path, *, clock: Clock | None = None, survives_power_loss: bool = True) -> Self:
@@ -72,16 +84,16 @@ class Journal:
         path = Path(path)
         try:
             connection = sqlite3.connect(path, isolation_level=None)
-        except sqlite3.Error as error:
+        except _REFUSALS as error:
             raise _fault("AOS701", path, error) from error
         try:
-            _check_version(connection, path, may_be_new=True)
+            _check_version(connection, path, is_to_write=True)
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute(f"PRAGMA synchronous = {'FULL' if survives_power_loss else 'OFF'}")
             if not survives_power_loss:
                 connection.execute(f"PRAGMA wal_autocheckpoint = {_PAGES_IN_A_CHECKPOINT}")
             connection.executescript(_SCHEMA)
-        except sqlite3.Error as error:
+        except _REFUSALS as error:
             connection.close()
             raise _fault("AOS701", path, error) from error
         except StorageError:
@@ -98,14 +110,14 @@ class Journal:
         connection = sqlite3.connect(path, isolation_level=None)
         try:
             connection.execute("PRAGMA query_only = ON")
-            _check_version(connection, path, may_be_new=False)
-        except sqlite3.Error as error:
+            version = _check_version(connection, path, is_to_write=False)
+        except _REFUSALS as error:
             connection.close()
             raise _fault("AOS702", path, error) from error
         except StorageError:
             connection.close()
             raise
-        return cls(connection, path, SystemClock())
+        return cls(connection, path, SystemClock(), version)
 
     def __enter__(self) -> Self:
         return self
@@ -119,13 +131,13 @@ class Journal:
 
     def append(self, kind: str, payload: Message) -> int:
         """The row's number, once the row is on the disk. StorageError AOS701 if it could not be written."""
-        text = msgspec.json.encode(payload).decode()
+        text, stamp_ns = msgspec.json.encode(payload).decode(), self._clock.now_ns()
         try:
             cursor = self._connection.execute(
-                "INSERT INTO entries (stamp_ns, kind, payload) VALUES (?, ?, ?)",
-                (self._clock.now_ns(), kind, text),
+                "INSERT INTO entries (stamp_ns, kind, payload, checksum) VALUES (?, ?, ?, ?)",
+                (stamp_ns, kind, text, _checksum(stamp_ns, kind, text)),
             )
-        except sqlite3.Error as error:
+        except _REFUSALS as error:
             raise _fault("AOS701", self._path, error) from error
         assert cursor.lastrowid is not None
         return cursor.lastrowid
@@ -135,7 +147,7 @@ class Journal:
         """The number of the last row, 0 in an empty journal."""
         try:
             (last,) = self._connection.execute("SELECT coalesce(max(seq), 0) FROM entries").fetchone()
-        except sqlite3.Error as error:
+        except _REFUSALS as error:
             raise _fault("AOS702", self._path, error) from error
         return int(last)
 
@@ -144,28 +156,56 @@ class Journal:
         return list(self.walk(kind, since))
 
     def walk(self, kind: str | None = None, since: int = 0) -> Iterator[JournalRow]:
-        """Yields the same rows one after the other, so that a long journal need not fit into memory."""
+        """Yields the same rows one after the other, so that a long journal need not fit into memory.
+
+        StorageError AOS702 at a row that is damaged, and where rows of no one kind are lacking.
+        """
+        checksum = "checksum" if self._has_checksums else "NULL"
+        number = since - 1 if since > 0 else 0
         try:
-            for seq, stamp_ns, of_kind, text in self._connection.execute(
-                "SELECT seq, stamp_ns, kind, payload FROM entries"
+            last = self._last_written() if kind is None else 0
+            for seq, stamp_ns, of_kind, text, check in self._connection.execute(
+                f"SELECT seq, stamp_ns, kind, payload, {checksum} FROM entries"
                 " WHERE seq >= :since AND (:kind IS NULL OR kind = :kind) ORDER BY seq",
                 {"since": since, "kind": kind},
             ):
+                if self._has_checksums and check != _checksum(stamp_ns, of_kind, text):
+                    raise self._damaged(f"row {seq} is damaged")
+                if kind is None and seq != number + 1:
+                    raise self._damaged(f"row {seq} follows row {number}")
+                number = seq
                 yield JournalRow(seq, stamp_ns, of_kind, text.encode())
-        except sqlite3.Error as error:
+        except _REFUSALS as error:
             raise _fault("AOS702", self._path, error) from error
+        if number < last:
+            raise self._damaged(f"the rows after {number} are lacking")
+
+    def _last_written(self) -> int:
+        """The number of the last row as SQLite keeps it apart from the rows."""
+        found = self._connection.execute("SELECT seq FROM sqlite_sequence WHERE name = 'entries'").fetchone()
+        return int(found[0]) if found is not None else 0
+
+    def _damaged(self, what: str) -> StorageError:
+        return StorageError(f"the journal {self._path}: {what}", code="AOS702")
 
 
-def _check_version(connection: sqlite3.Connection, path: Path, *, may_be_new: bool) -> None:
-    version = connection.execute("PRAGMA user_version").fetchone()[0]
+def _checksum(stamp_ns: int, kind: str, payload: str) -> int:
+    return zlib.crc32(f"{stamp_ns} {kind} {payload}".encode())
+
+
+def _check_version(connection: sqlite3.Connection, path: Path, *, is_to_write: bool) -> int:
+    """Returns the version of the schema; StorageError AOS702 for one that this program does not know."""
+    version = int(connection.execute("PRAGMA user_version").fetchone()[0])
     is_new = version == 0 and not connection.execute("SELECT 1 FROM sqlite_schema").fetchone()
-    if version != _SCHEMA_VERSION and not (is_new and may_be_new):
+    is_known = is_new if is_to_write else version == _WITHOUT_CHECKSUMS
+    if version != _SCHEMA_VERSION and not is_known:
         raise StorageError(
             f"{path} is not a journal of this version",
             code="AOS702",
             hint=f"Its schema is {version}, this program reads {_SCHEMA_VERSION}",
         )
+    return version
 
 
-def _fault(code: str, path: Path, error: sqlite3.Error) -> StorageError:
+def _fault(code: str, path: Path, error: Exception) -> StorageError:
     return StorageError(f"the journal {path}: {error}", code=code)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import sqlite3
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Cancel, MissionState
-from aos_runtime.journal import Journal
+from aos_runtime.journal import Journal, JournalRow
 
 
 class StoppedClock:
@@ -107,3 +108,58 @@ def test_a_full_disk_is_an_error_and_the_rows_before_it_stay(tmp_path: Path) -> 
             journal.append("cancel", Cancel("x" * 100_000))
         assert caught.value.code == "AOS701"
         assert len(journal.rows()) == 1
+
+
+def test_a_journal_of_before_the_checksums_can_be_read_and_not_be_written(tmp_path: Path) -> None:
+    path = tmp_path / "journal.db"
+    with Journal.open(path) as journal:
+        journal.append("cancel", Cancel("kept"))
+    database = sqlite3.connect(path)
+    database.execute("ALTER TABLE entries DROP COLUMN checksum")
+    database.execute("PRAGMA user_version = 1")
+    database.close()
+    with Journal.read(path) as journal:
+        assert len(journal.rows()) == 1
+    with pytest.raises(StorageError, match="not a journal of this version"):
+        Journal.open(path)
+
+
+@pytest.mark.parametrize("lacking", [1, 3, 5])
+def test_a_row_that_is_lacking_is_an_error(tmp_path: Path, lacking: int) -> None:
+    path = tmp_path / "journal.db"
+    with Journal.open(path) as journal:
+        for number in range(5):
+            journal.append("cancel", Cancel(str(number)))
+    database = sqlite3.connect(path, isolation_level=None)
+    database.execute("DROP TRIGGER entries_remain")
+    database.execute("DELETE FROM entries WHERE seq = ?", (lacking,))
+    database.close()
+    with Journal.read(path) as journal, pytest.raises(StorageError) as caught:
+        journal.rows()
+    assert caught.value.code == "AOS702"
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_flipped_bit_is_an_error_or_changes_no_row(tmp_path: Path, seed: int) -> None:
+    path = tmp_path / "journal.db"
+    with Journal.open(path, clock=StoppedClock()) as journal:
+        for number in range(40):
+            journal.append("cancel", Cancel(f"reason {number} " * 12))
+        rows = journal.rows()
+    whole = path.read_bytes()
+    draw = random.Random(seed)
+    read = [read_damaged(path, whole, draw) for _ in range(100)]
+    assert all(found is None or found == rows for found in read)
+    assert read.count(None) > 10  # The others are in places where no row is.
+
+
+def read_damaged(path: Path, whole: bytes, draw: random.Random) -> list[JournalRow] | None:
+    """The rows of a journal with one bit flipped; None where it is refused."""
+    damaged = bytearray(whole)
+    damaged[draw.randrange(len(whole))] ^= 1 << draw.randrange(8)
+    path.write_bytes(damaged)
+    try:
+        with Journal.read(path) as journal:
+            return journal.rows()
+    except StorageError as error:
+        return None if error.code == "AOS702" else []
