@@ -6,8 +6,8 @@
 //
 // - Between proven bounds nothing is known: the value is in their middle, and its error is that of an even distribution.
 // - A tree that ends in values of seen states promises too much, and a tree does not know that the mission plans anew.
-//   Missions that are played by these values with next to no planning return too little (group_missions.hpp). The value is
-//   in the middle. Neither is proven, so the error is half of the distance.
+//   Missions that are played by these values with next to no planning return too little (group_missions.hpp). Neither is
+//   proven. The value stays the tree's, and its error is half of the distance to the one that is further away.
 // - A tree that ends in rollouts guesses too low. At the root, the search has moved the guess by its gain. Searches from
 //   the tree's leaves may move their guesses as far. The value is moved by half of that, with an error of the other half.
 //   The share of the value that lies beyond the leaves is `beyond`.
@@ -29,22 +29,21 @@ struct TreeReach {
   std::vector<double> beyond;
 };
 
-// What a tree promises of the action that was chosen, and what missions return that are played from its belief.
+// What a tree promises of the action that was chosen, and what missions return that are played from its belief, with the
+// standard error of that.
 struct Promise {
   double most = 0;
   double played = 0;
+  double played_error = 0;
 };
 
 // The values of actions whose estimates come from a tree that ends in values of seen states.
 inline std::vector<ActionEstimate> values_of_promise(std::vector<ActionEstimate> estimates, const Promise& promise, int choice) {
   const double chosen = estimates[static_cast<std::size_t>(choice)].q;
-  const auto [lowest, highest] = std::minmax({promise.most, promise.played, chosen});
-  const double moved = (lowest + highest) / 2 - chosen;
+  const double reach = std::max(std::abs(promise.most - chosen), std::abs(promise.played - chosen)) / 2;
   for (ActionEstimate& estimate : estimates) {
     if (estimate.n == 0) continue;
-    // All values move alike, so that the order of the decision stays.
-    estimate.q = std::min(estimate.q + moved, estimate.at_most);
-    estimate.standard_error = std::hypot(estimate.standard_error, (highest - lowest) / 2);
+    estimate.standard_error = std::hypot(estimate.standard_error, reach, promise.played_error);
   }
   return estimates;
 }

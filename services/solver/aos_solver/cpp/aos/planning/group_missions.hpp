@@ -77,6 +77,7 @@ class GroupMissions {
   bool is_known() const { return is_known_; }
   // What a mission returns less than the mean value of its states.
   double loss() const { return loss_; }
+  double loss_error() const { return loss_error_; }
 
  private:
   using State = typename Model::State;
@@ -183,6 +184,9 @@ class GroupMissions {
     const auto count = static_cast<double>(losses_.size());
     loss_ = 0;
     for (const double loss : losses_) loss_ += loss / count;
+    double squares = 0;
+    for (const double loss : losses_) squares += (loss - loss_) * (loss - loss_);
+    loss_error_ = std::sqrt(squares / count / std::max(count - 1, 1.0));
     is_known_ = count > 0;
   }
 
@@ -192,6 +196,7 @@ class GroupMissions {
   Operations step_cost_ = 0;  // 0: not known yet
   double cost_ = 0;           // of a follower
   double loss_ = 0;
+  double loss_error_ = 0;
   // Of the group that is played:
   const StateValues<Model>* values_ = nullptr;
   const MdpValues<Model>* listed_ = nullptr;

@@ -262,8 +262,9 @@ class Planner {
     }
     if (!was_searched || !missions_.is_known()) return estimates;
     const double most = used_ == PlannerKind::despot ? despot_->upper(belief, choice) : estimates[static_cast<std::size_t>(choice)].q;
-    const double played = mean_value_of_states(belief) - belief.probability_of(Ending::running) * missions_.loss();
-    return values_of_promise(std::move(estimates), {most, played}, choice);
+    const double running = belief.probability_of(Ending::running);
+    const double played = mean_value_of_states(belief) - running * missions_.loss();
+    return values_of_promise(std::move(estimates), {most, played, running * missions_.loss_error()}, choice);
   }
 
   std::string bounds_text(int horizon, double slack) const {
