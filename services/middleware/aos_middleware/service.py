@@ -96,7 +96,7 @@ class _Middleware:
             await bus.answer(keys.mapping_state, MappingQuery, self._answer_state)
             await self._service.ready()
             tasks.create_task(self._served.follow())
-            tasks.create_task(self._adopt_current())
+            tasks.create_task(self._follow_registry())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
                     tasks.create_task(self._mappings.adopt(revision))
@@ -105,6 +105,15 @@ class _Middleware:
         # The ledger first: what an activation makes of its vanishing worker is no outcome to remember.
         self._ledger.close()
         await self._mappings.close()
+
+    async def _follow_registry(self) -> None:
+        """Asks for the documents, and again when the registry comes: what it told meanwhile is lost."""
+        await self._adopt_current()
+        registry = self._service.keys.live("registry")
+        async with self._service.bus.presence(registry) as presence:
+            async for _, is_there in presence:
+                if is_there:
+                    await self._adopt_current()
 
     async def _adopt_current(self) -> None:
         """Takes what the registry holds already; without it the announcement will come."""

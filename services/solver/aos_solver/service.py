@@ -39,6 +39,7 @@ from aos_runtime.asking import ask_until_answered
 from aos_runtime.journal import Journal
 from aos_runtime.lifecycle import Service
 from aos_runtime.reported_state import state_when
+from aos_runtime.subscription import merged
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Progress
 from aos_solver.child.engine import Engine
@@ -117,7 +118,7 @@ class _Solver:
             await bus.answer(keys.check_model, CheckModel, self._check)
             await bus.answer(keys.resume_mission, ResumeMission, self._resume)
             await self._service.ready()
-            tasks.create_task(self._make_current())
+            tasks.create_task(self._follow_registry())
             if self._memory.epoch and not self._memory.has_ended:
                 tasks.create_task(self._start(StartMission(), ""))  # It goes on without being told.
             tasks.create_task(self._run_mission())
@@ -173,6 +174,14 @@ class _Solver:
 
     # --- models --------------------------------------------------------------------------------------
 
+    async def _follow_registry(self) -> None:
+        """Asks for the documents, and again when the registry comes: what it told meanwhile is lost."""
+        await self._make_current()
+        async with self._bus.presence(self._keys.live("registry")) as presence:
+            async for _, is_there in presence:
+                if is_there:
+                    await self._make_current()
+
     async def _make_current(self) -> None:
         """Builds what the registry holds already. Where it holds nothing, an announcement will come."""
         try:
@@ -199,13 +208,15 @@ class _Solver:
     async def _mapping_revision(self) -> int:
         """The revision that the middleware runs; 0 while it cannot be asked."""
         try:
-            state = await self._bus.ask(
-                self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
-            )
+            return (await self._ask_mapping_state()).revision
         except BusError as error:
             log.warning("the middleware does not tell its revision: %s", error)
             return 0
-        return state.revision
+
+    async def _ask_mapping_state(self) -> MappingState:
+        return await self._bus.ask(
+            self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
+        )
 
     def _report_progress(self, remark: str) -> None:
         log.info("%s", remark)
@@ -269,9 +280,15 @@ class _Solver:
 
     async def _follow_mappings(self) -> None:
         """Follows which skills can be run, as the middleware tells it."""
-        async with self._bus.listen(self._keys.mapping_state, MappingState) as states:
-            async for _, state in states:
-                self._take_mapping_state(state)
+        told = self._bus.listen(self._keys.mapping_state, MappingState)
+        async with merged(told, self._bus.presence(self._keys.live("middleware"))) as events:
+            async for _, event in events:
+                if isinstance(event, MappingState):
+                    self._take_mapping_state(event)
+                elif event:
+                    # What it told while it, or the router, was away is lost.
+                    with contextlib.suppress(BusError):
+                        self._take_mapping_state(await self._ask_mapping_state())
 
     def _take_mapping_state(self, state: MappingState) -> None:
         if state.unavailable != self.unavailable:
