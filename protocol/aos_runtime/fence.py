@@ -53,7 +53,8 @@ class Fence:
         SkillError AOS506 for an epoch that is not the mission's, AOS514 for an id of another motion.
         """
         await self._check_epoch(request.id, request.epoch)
-        if self._meanings.get(request.id, meaning(request)) != meaning(request):
+        known = self._meanings.get(request.id)
+        if known is not None and known != meaning(request):
             raise SkillError(
                 f"activation {request.id} stands for another skill or other parameters",
                 code="AOS514",

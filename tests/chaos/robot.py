@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+from pathlib import Path
 from typing import Any
 
 MOVES_S = float(os.environ.get("AOS_MOVES_S", "0.15"))
@@ -32,5 +33,5 @@ async def open_door(call: Any, door: str) -> None:
 
 
 def _note(what: str, call: Any) -> None:
-    with open(os.environ["AOS_MOTIONS"], "a") as motions:  # noqa: PTH123
+    with Path(os.environ["AOS_MOTIONS"]).open("a") as motions:
         motions.write(f"{what} {call.id}\n")

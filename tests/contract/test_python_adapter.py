@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -53,10 +54,9 @@ def block(call):
     while not call.is_cancelled:
         time.sleep(0.01)
 
-async def wait_for_file(call, name):
+def wait_for_pipe(call, name):
     call.publish("/moving")
-    while not Path(name).exists():
-        await asyncio.sleep(0.01)
+    Path(name).read_bytes()  # Until somebody has written.
     return {"motion": id(call)}
 
 async def hang(call):
@@ -241,6 +241,22 @@ async def test_a_cancelled_function_ends_and_the_next_one_runs(robot: Robot, fun
         assert (await robot.cancel("/skill")).ids == ("m-1",)
     assert (await running).code == "AOS507"
     assert (await robot.call("/drive", 2, x=0)).fields == {"success": True}
+
+
+async def test_a_call_that_comes_again_while_it_runs_joins_it_and_its_id_is_for_nothing_else(
+    robot: Robot, tmp_path: Path
+) -> None:
+    await robot.start(wait="robot.py:wait_for_pipe")
+    pipe = tmp_path / "go on"
+    os.mkfifo(pipe)
+    async with robot.bus.listen(robot.keys.topic("/moving"), TopicMessage) as moving:
+        first = asyncio.create_task(robot.call("/wait", 1, name=str(pipe)))
+        await anext(moving)
+    again = asyncio.create_task(robot.call("/wait", 1, name=str(pipe)))
+    # Questions of one asker are taken in order.
+    assert (await robot.refusal("/wait", 1, name="another")).code == "AOS514"
+    await asyncio.to_thread(pipe.write_bytes, b"")
+    assert await again == await first
 
 
 async def test_what_moves_is_stopped_when_the_middleware_was_away_for_too_long(robot: Robot) -> None:

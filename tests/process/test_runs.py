@@ -37,13 +37,12 @@ SLOW_ROBOT = """\
 import asyncio
 
 async def listen(call):
-    await asyncio.sleep(5)
-    return {"loudest": "left"}
+    await asyncio.Event().wait()
 
 async def open_door(call, door):
-    await asyncio.sleep(5)
+    await asyncio.Event().wait()
 """
-"""A mission that goes on costs nothing: a robot that is played would decide a thousand times a second."""
+"""A mission that goes on costs nothing: its robot moves for ever."""
 
 
 class Up:

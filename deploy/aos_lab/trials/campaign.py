@@ -66,7 +66,7 @@ async def play_campaign(
     folder: Path,
     out: Path,
     on_trial: Callable[[], None],
-    place: Place = Place(),  # noqa: B008 - it is frozen
+    place: Place | None = None,
 ) -> Played:
     """Plays a mission of each seed. Records in `out` are used where they were made of the same.
 
@@ -89,6 +89,7 @@ async def play_campaign(
         on_trial()
 
     player: _Player
+    place = place or Place()
     jobs = place.jobs
     if remaining:
         await asyncio.to_thread(out.mkdir, parents=True, exist_ok=True)

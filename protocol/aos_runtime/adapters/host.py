@@ -39,6 +39,7 @@ from aos_runtime.adapters.settings import AdapterSettings, Binding
 from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
 from aos_runtime.older_python import timeout
+from aos_runtime.subscription import Subscription
 
 __all__ = ["Host", "load_adapter", "serve_adapter"]
 
@@ -221,26 +222,28 @@ class Host:
         if self._settings.folder not in sys.path:
             sys.path.append(self._settings.folder)  # For classes that stand beside the deploy file.
         self._adapter = load_adapter(self._settings.adapter, self)
-        await self._adapter.start()
-        await self._service.ready()
-        watching = asyncio.create_task(self._watch_middleware())
-        try:
-            await self._failed
-        finally:
-            watching.cancel()
-
-    async def _watch_middleware(self) -> None:
-        """Stops what moves when the middleware, or the bus, was away for too long."""
+        # Before anything is served: whoever calls may be gone a moment later.
         async with self._service.bus.presence(self._service.keys.live("middleware")) as presence:
-            is_there = True  # A call by hand needs none.
-            while True:
-                try:
-                    async with timeout(None if is_there else MIDDLEWARE_AWAY_S):
-                        _, is_there = await anext(presence)
-                except TimeoutError:
-                    is_there = True  # What runs is stopped once.
-                    if self._running is not None:
-                        await self._stop(self._running, "the middleware has gone")
+            await self._adapter.start()
+            await self._service.ready()
+            watching = asyncio.create_task(self._watch_middleware(presence))
+            try:
+                await self._failed
+            finally:
+                watching.cancel()
+
+    async def _watch_middleware(self, presence: Subscription[tuple[str, bool]]) -> None:
+        """Stops what moves when the middleware, or the bus, was away for too long."""
+        is_there = True  # A call by hand needs none.
+        while True:
+            try:
+                async with timeout(None if is_there else MIDDLEWARE_AWAY_S):
+                    _, is_there = await anext(presence)
+            except TimeoutError:
+                is_there = True  # What runs is stopped once.
+                running = self._running
+                if running is not None and not await self._stop(running, "the middleware has gone"):
+                    self._stuck(running.call)
 
     async def close(self) -> None:
         # Whoever stops the process cancels what `run` waits for, which is no failure.
