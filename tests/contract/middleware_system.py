@@ -224,6 +224,7 @@ async def running_system(
     project = msgspec.structs.replace(project, skills=(*project.skills, sense))
     registry = Registry(other, keys, project)
     await other.answer(keys.project, ProjectQuery, registry.answer)
+    await other.announce(keys.live("registry"))
     system = System(bus, keys, run_dir, registry, Adapter(other, keys))
     try:
         await system.start(endpoint, **settings)
