@@ -169,6 +169,10 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "aos_deploy.deploy_file.MissionPart.hold_s", "s", "AOS513", "`mission.hold_s`",
         ),
         Row(
+            "a replay of the mission's past in new documents",
+            "aos_solver.mission.takeover.REPLAY_S", "s", "the belief is projected",
+        ),
+        Row(
             "solver waits for an activation longer than the activation's own limit",
             "aos_solver.service.ACTIVATION_MARGIN_S", "s", "outcome `unknown`",
         ),

@@ -35,14 +35,14 @@ __moduleResponse = clicked;
 """,
     "press.am": mapping_text("clicked: True", project="lamp", skill="press"),
 }
+BROKEN_START = """initial_belief:
+vector<int> none;
+state.is_on = none.at(3);
+"""
 
 
 async def started(built: BuiltModel) -> Engine:
     return await Engine.start(built, seed=1)
-
-
-async def revision() -> int:
-    return 1
 
 
 async def test_a_response_that_no_text_can_be_is_refused(cache_dir: Path) -> None:
@@ -52,16 +52,17 @@ async def test_a_response_that_no_text_can_be_is_refused(cache_dir: Path) -> Non
     assert caught.value.code == "AOS310"
 
 
-async def test_documents_with_another_state_wait_for_another_mission(cache_dir: Path) -> None:
+async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache_dir: Path) -> None:
     built = await built_text(LAMP, cache_dir)
-    shelf = ModelShelf(cache_dir, lambda remark: None, started, revision)
-    wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on")}
+    shelf = ModelShelf(cache_dir, lambda remark: None, started, lambda revision: True)
+    wider = LAMP | {"lamp.ef": LAMP["lamp.ef"].replace("bool is_on", "int is_on") + BROKEN_START}
     project = load_files({name: text.encode() for name, text in wider.items()}).project
     assert project is not None
     async with engine_of(built) as engine:
         (refusal,) = await shelf.check(project, RunningModel(1, engine))
     await shelf.close()
     assert (refusal.code, refusal.span.file) == ("AOS112", "lamp.ef")
+    assert "give the running mission no belief" in refusal.message
 
 
 async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:

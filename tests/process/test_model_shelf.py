@@ -15,7 +15,9 @@ from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import ExportedBeliefs
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import ModelShelf, RunningModel
+from aos_solver.mission.hot_plug import ModelShelf
+from aos_solver.mission.past import Evidence, Past, updated
+from aos_solver.mission.takeover import RunningModel
 
 LAMP = {
     "lamp.ef": """project: lamp
@@ -34,6 +36,8 @@ __reward = -COST;
     "look.am": mapping_text("light: True", "dark: True", project="lamp", skill="look"),
 }
 
+LIGHT = Evidence("look", "look", "light")
+
 
 def lamp(revision: int) -> ProjectRevision:
     """Documents that differ in a cost, so that each revision is a model of its own."""
@@ -44,22 +48,24 @@ def lamp(revision: int) -> ProjectRevision:
 
 
 class Workshop:
-    """A shelf whose engines are real and remembered, and a middleware that answers when the test lets it."""
+    """A shelf whose engines are real and remembered, and a middleware that has what the test says."""
 
     def __init__(self, cache_dir: Path) -> None:
         self.engines: list[Engine] = []
-        self.middleware_is_asked = asyncio.Event()
-        self.middleware_may_answer = asyncio.Event()
-        self.shelf = ModelShelf(cache_dir, lambda remark: None, self._start, self._mapping_revision)
+        self.mapped = {1, 2, 3}
+        self.past = Past()
+        self.shelf = ModelShelf(
+            cache_dir, lambda remark: None, self._start, lambda revision: revision in self.mapped
+        )
 
     async def _start(self, built: BuiltModel) -> Engine:
         self.engines.append(await Engine.start(built, seed=1))
         return self.engines[-1]
 
-    async def _mapping_revision(self) -> int:
-        self.middleware_is_asked.set()
-        await self.middleware_may_answer.wait()
-        return 100
+    async def taken(self, running: RunningModel) -> RunningModel:
+        """The model after a boundary."""
+        takeover = await self.shelf.newest(running, self.past)
+        return running if takeover is None else takeover.model
 
     @property
     def living(self) -> list[Engine]:
@@ -69,12 +75,13 @@ class Workshop:
 
 @asynccontextmanager
 async def workshop(cache_dir: Path) -> AsyncIterator[Workshop]:
-    """Gives a workshop and leaves nobody's child behind."""
+    """Gives a workshop, of which nobody's child is left."""
     made = Workshop(cache_dir)
     try:
         yield made
-    finally:
         await made.shelf.close()
+        assert made.living == []
+    finally:
         for engine in made.engines:
             await engine.close()
 
@@ -83,8 +90,23 @@ async def running_lamp(made: Workshop) -> RunningModel:
     """Revision 1 in a mission that has seen light."""
     await made.shelf.make(lamp(1))
     running = await made.shelf.first()
-    await running.engine.update("look", "light")
+    made.past.steps.append(LIGHT)
+    await updated(running.engine, LIGHT, 0.01)
     return running
+
+
+class Slowed:
+    """An engine's import that waits until the test lets it go on."""
+
+    def __init__(self, engine: Engine) -> None:
+        self.begun, self.may_go_on = asyncio.Event(), asyncio.Event()
+        self._import = engine.import_beliefs
+        engine.import_beliefs = self  # type: ignore[method-assign]
+
+    async def __call__(self, beliefs: ExportedBeliefs) -> BeliefSummary:
+        self.begun.set()
+        await self.may_go_on.wait()
+        return await self._import(beliefs)
 
 
 async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_lost_nor_left_running(
@@ -95,21 +117,21 @@ async def test_a_revision_that_is_ready_while_an_older_one_is_taken_is_neither_l
         belief = await running.engine.export_belief()
         assert len(belief.particles) == 1
         await made.shelf.make(lamp(2))
+        slowed = Slowed(made.engines[1])
         async with asyncio.TaskGroup() as tasks:
-            taking = tasks.create_task(made.shelf.newest(running))
-            await made.middleware_is_asked.wait()
+            taking = tasks.create_task(made.taken(running))
+            await slowed.begun.wait()
             making = tasks.create_task(made.shelf.make(lamp(3)))
             # Revision 3 has its engine and wants its place on the shelf while revision 2 is being taken.
             while len(made.engines) < 3:
                 await asyncio.wait({making}, timeout=0.01)
-            await asyncio.wait({making}, timeout=0.05)
-            made.middleware_may_answer.set()
+            slowed.may_go_on.set()
         model = taking.result()
+        assert model.revision == 2
         assert model.engine.pid is not None, "the mission got an engine that was closed"
-        newest = await made.shelf.newest(model)
+        newest = await made.taken(model)
         assert newest.revision == 3
         assert (await newest.engine.export_belief()).particles == belief.particles
-        assert made.living == [newest.engine]
 
 
 async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready(cache_dir: Path) -> None:
@@ -118,20 +140,35 @@ async def test_a_revision_that_nobody_took_is_closed_when_the_next_is_ready(cach
             await made.shelf.make(lamp(revision))
         assert len(made.engines) == 2
         assert (await made.shelf.first()).revision == 2
+        await made.shelf.settled()
         assert made.living == made.engines[1:]
 
 
-async def test_a_revision_that_cannot_take_the_belief_is_given_up_and_the_mission_goes_on(
-    cache_dir: Path,
-) -> None:
+async def test_a_revision_that_the_middleware_does_not_run_is_not_waited_for(cache_dir: Path) -> None:
     async with workshop(cache_dir) as made:
-        made.middleware_may_answer.set()
+        made.mapped.remove(2)
+        running = await running_lamp(made)
+        await made.shelf.make(lamp(2))
+        assert await made.taken(running) is running
+        made.mapped.add(2)
+        assert (await made.taken(running)).revision == 2
+
+
+async def test_a_revision_that_cannot_import_the_belief_replays_the_mission_instead(cache_dir: Path) -> None:
+    async with workshop(cache_dir) as made:
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
         made.engines[1].import_beliefs = refuse  # type: ignore[method-assign]
-        assert await made.shelf.newest(running) is running
-        assert await made.shelf.newest(running) is running
-        assert made.living == [running.engine]
+        assert await made.taken(running) is running
+        takeover = None
+        while takeover is None:
+            await asyncio.wait({asyncio.create_task(running.engine.summary())})
+            takeover = await made.shelf.newest(running, made.past)
+        assert (takeover.row.by, takeover.row.steps, takeover.row.why) == (
+            "replay",
+            1,
+            "AOS201: the state does not fit",
+        )
 
 
 async def refuse(_: ExportedBeliefs) -> BeliefSummary:
@@ -144,13 +181,12 @@ async def test_a_shelf_that_ends_while_a_revision_waits_for_its_place_leaves_no_
     async with workshop(cache_dir) as made:
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
-        taking = asyncio.create_task(made.shelf.newest(running))
-        await made.middleware_is_asked.wait()
+        slowed = Slowed(made.engines[1])
+        taking = asyncio.create_task(made.taken(running))
+        await slowed.begun.wait()
         making = asyncio.create_task(made.shelf.make(lamp(3)))
         while len(made.engines) < 3:
             await asyncio.wait({making}, timeout=0.01)
         for task in (making, taking):
             task.cancel()
             await asyncio.wait({task})
-        await made.shelf.close()
-        assert made.living == [running.engine]

@@ -16,13 +16,24 @@ from aos_protocol.messages import (
     ConstraintRisk,
     DecisionRecord,
     MissionState,
+    ModelAdopted,
     SkillProgress,
 )
 
-__all__ = ["JsonView", "PlainView", "decision_line", "effort_text", "endings_text", "lines_of", "risk_text"]
+__all__ = [
+    "JsonView",
+    "PlainView",
+    "adopted_line",
+    "decision_line",
+    "effort_text",
+    "endings_text",
+    "lines_of",
+    "risk_text",
+]
 
 
 _TELLING_AGAIN_S = 5.0
+_SHOWN_MOVES = 8
 
 
 class PlainView:
@@ -83,13 +94,27 @@ def lines_of(event: Event) -> list[str]:
         case Told():
             return [event.text]
         case DecisionRecord():
-            return [decision_line(event)]
+            return [*([] if event.adopted is None else [adopted_line(event.adopted)]), decision_line(event)]
         case MissionState():
             return [f"mission {event.phase}: {event.remark}" if event.remark else f"mission {event.phase}"]
         case BundleReport():
             return _report_lines(event)
         case SkillProgress():
             return [f"{event.path} {event.state} {event.progress:.0%} {event.text}".rstrip()]
+
+
+def adopted_line(adopted: ModelAdopted) -> str:
+    """Says which model has taken over, how it came to its belief, and which variables that has moved."""
+    by: str = adopted.by
+    if adopted.by == "replay":
+        foreign = f", {adopted.foreign} of them counted for nothing" if adopted.foreign else ""
+        by = f"replay of {adopted.steps} steps{foreign}"
+    moved = sorted(adopted.moved.items(), key=lambda each: -each[1])
+    shown = [f"{name} by {distance:.3f}" for name, distance in moved[:_SHOWN_MOVES]]
+    more = f" and {len(moved) - _SHOWN_MOVES} more" if len(moved) > _SHOWN_MOVES else ""
+    what = f"; moved: {', '.join(shown)}{more}" if shown else ""
+    why = f" ({adopted.why})" if adopted.why else ""
+    return f"revision {adopted.revision} takes over from {adopted.before}, its belief by {by}{why}{what}"
 
 
 def decision_line(record: DecisionRecord) -> str:

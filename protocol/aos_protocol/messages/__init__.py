@@ -42,6 +42,7 @@ from aos_protocol.messages.mission import (
     PredictedObservation,
     ResumeMission,
     StartMission,
+    TakeoverWay,
 )
 from aos_protocol.messages.skills import (
     Activate,
@@ -101,5 +102,6 @@ __all__ = [
     "SkillResult",
     "StartMission",
     "Stray",
+    "TakeoverWay",
     "TopicMessage",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
@@ -27,6 +27,7 @@ __all__ = [
     "PredictedObservation",
     "ResumeMission",
     "StartMission",
+    "TakeoverWay",
 ]
 
 
@@ -59,12 +60,28 @@ class MissionBegun(Message, frozen=True):
     model_digest: str
 
 
+TakeoverWay = Literal["import", "replay", "projection"]
+"""The way in which a model comes to its belief when it takes over a mission that runs."""
+
+
 class ModelAdopted(Message, frozen=True):
-    """The journal's row for a model that takes the place of another one while the mission runs."""
+    """The journal's row for a model that takes the place of another one, `before`, while the mission runs.
+
+    `by` is how it came to its belief: by `import` where the state is the same, by `replay` of the mission's
+    `steps`, or by `projection`. Of the replayed steps so many are `foreign`: their action or response is not
+    in the new documents, and they let extrinsic changes alone act. `moved` has the variables of both models
+    whose distribution is another one now, and by how much in total variation; compounds and arrays by their
+    parts. `why` says what stood in the way of the ways before.
+    """
 
     revision: int
     model_digest: str
     before: int
+    by: TakeoverWay = "import"
+    steps: int = 0
+    foreign: int = 0
+    moved: dict[str, float] = {}
+    why: str = ""
 
 
 class ResumeMission(Message, frozen=True):
@@ -194,7 +211,8 @@ class DecisionRecord(Message, frozen=True):
     made the decision with so many `threads`; `why` says why it was that planner and what it has found.
     `constraints` are the mission's, each with what the decision risks. The decision does without the skills
     that are `set_aside`, each with the reason; `actions` has none of theirs. With `is_cautious` it is for the
-    belief in which nothing ran that was not observed.
+    belief in which nothing ran that was not observed. `adopted` tells of the model that has taken over since
+    the decision before.
     """
 
     sequence: int
@@ -226,6 +244,7 @@ class DecisionRecord(Message, frozen=True):
     is_cautious: bool = False
     preparation_s: float = 0.0
     update_s: float = 0.0
+    adopted: ModelAdopted | None = None
 
 
 class HistoryQuery(Message, frozen=True):

@@ -94,7 +94,8 @@ class MappingState(Message, frozen=True):
     """The newest revision whose mappings run (0 before the first), its skills, and the newest one refused.
 
     `unavailable` are the skills that cannot be run now, each with the reason. `announced` says of each skill
-    how often an adapter has announced that it serves the skill's path.
+    how often an adapter has announced that it serves the skill's path. `revisions` are those whose mappings
+    are kept: skills of each of them can be run by them.
     """
 
     revision: int
@@ -102,6 +103,7 @@ class MappingState(Message, frozen=True):
     refused: int = 0
     unavailable: dict[str, str] = {}
     announced: dict[str, int] = {}
+    revisions: tuple[int, ...] = ()
 
 
 class SkillCall(Message, frozen=True):

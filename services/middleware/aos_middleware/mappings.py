@@ -1,7 +1,8 @@
 """The mappings of a project's revisions: generated, loaded, and exchanged between activations.
 
-The newest two revisions are kept: the solver may still decide with the model before the newest one, whose
-responses are those of that revision's mappings. A mapping that did not change is shared between them.
+The newest four revisions are kept, and that of the newest activation: the solver may still decide with the
+model before the newest ones, whose responses are those of that revision's mappings. A mapping that did not
+change is shared between them.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from aos_protocol.spelling import did_you_mean
 
 __all__ = ["Mappings", "emit_project"]
 
-_KEPT = 2
+_KEPT = 4
 
 _log = logging.getLogger("aos.middleware")
 
@@ -67,13 +68,17 @@ class Mappings:
         self._refusal: AosError | None = None
         self._refused = 0
         self._announced = 0
+        self._in_use = 0
         self._adopting = asyncio.Lock()
         self._has_first = asyncio.Event()
 
     @property
     def state(self) -> MappingState:
-        """The newest revision in use with its skills, sorted, and the newest that was refused."""
-        return MappingState(self._revision, tuple(sorted(self._newest)), self._refused)
+        """The newest revision with its skills, sorted, the newest that was refused, and those that are
+        kept."""
+        return MappingState(
+            self._revision, tuple(sorted(self._newest)), self._refused, revisions=tuple(sorted(self._kept))
+        )
 
     @property
     def paths(self) -> dict[str, str]:
@@ -85,6 +90,7 @@ class Mappings:
 
         SkillError AOS501 if there is no such skill; the reason of the refusal if no revision could be used.
         """
+        self._in_use = max(self._in_use, revision)
         mappings = self._kept.get(revision) or self._newest
         if skill in mappings:
             return mappings[skill]
@@ -135,7 +141,10 @@ class Mappings:
         if outdated:
             await _load(set(mappings.values()) - outdated)
         self._kept[announced.revision] = mappings
-        self._kept = dict(sorted(self._kept.items())[-_KEPT:])
+        newest = sorted(self._kept)[-_KEPT:]
+        self._kept = {
+            revision: each for revision, each in self._kept.items() if revision in (*newest, self._in_use)
+        }
         self._write(emitted)
         _log.info("revision %d: mappings of %s", announced.revision, ", ".join(sorted(mappings)))
         self._has_first.set()

@@ -47,9 +47,11 @@ from aos_solver.child.search import Search
 from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.history import history_page
-from aos_solver.mission.hot_plug import ModelShelf, RunningModel
+from aos_solver.mission.hot_plug import ModelShelf
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import BEGUN, MissionMemory, folded
+from aos_solver.mission.past import Past
+from aos_solver.mission.takeover import RunningModel, Takeover
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
@@ -96,11 +98,12 @@ class _Solver:
             Path(settings.cache_dir),
             self._report_progress,
             self._start_engine,
-            self._mapping_revision,
+            lambda revision: revision in self._mapped,
             settings.constraints,
         )
+        self._shelf.on_ready = lambda: self._changed.set()
         self._name = Path(settings.run_dir).name
-        self._running: RunningModel | None = None
+        self._mapped: tuple[int, ...] = ()
         self._search = self._settings_as(Search)
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
@@ -125,13 +128,11 @@ class _Solver:
             tasks.create_task(self._follow_mappings())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
-                    tasks.create_task(self._shelf.make(revision))
+                    tasks.create_task(self._make(revision))
 
     async def close(self) -> None:
         """Leaves the journal as it is: why the solver was stopped, whoever stopped it knows."""
         await self._shelf.close()
-        if self._running is not None:
-            await self._running.engine.close()
         self._journal.close()
 
     def _settings_as(self, kind: type[T]) -> T:
@@ -143,10 +144,9 @@ class _Solver:
     async def _start(self, _: StartMission, __: str) -> MissionState:
         """Starts the mission once its model runs; tells the caller why if it cannot."""
         async with self._starting:
-            if self._running is None:
-                self._running = await self._shelf.first()
+            running = self._shelf.running or await self._shelf.first()
             policy = Path(self._settings.policy) if self._settings.policy else None
-            self._search = following(self._settings_as(Search), policy, model_digest=self._running.digest)
+            self._search = following(self._settings_as(Search), policy, model_digest=running.digest)
         self._started.set()
         return self._state()
 
@@ -163,7 +163,7 @@ class _Solver:
         return await asyncio.to_thread(history_page, self._journal_path, self._name, query)
 
     async def _check(self, question: CheckModel, _: str) -> ModelCheck:
-        return ModelCheck(await self._shelf.check(question.project, self._running))
+        return ModelCheck(await self._shelf.check(question.project, self._shelf.running))
 
     def _state(self) -> MissionState:
         if self._mission is not None:
@@ -196,6 +196,12 @@ class _Solver:
             return
         await self._shelf.make(revision)
 
+    async def _make(self, revision: ProjectRevision) -> None:
+        """Builds a revision, and asks whether the middleware has it: what it told may be lost."""
+        await self._shelf.make(revision)
+        if self._mission is not None:
+            await self._await_mappings(revision.revision)
+
     async def _start_engine(self, built: BuiltModel) -> Engine:
         engine = await Engine.start(
             built,
@@ -204,14 +210,6 @@ class _Solver:
         )
         engine.on_progress = self._report_planning
         return engine
-
-    async def _mapping_revision(self) -> int:
-        """The revision that the middleware runs; 0 while it cannot be asked."""
-        try:
-            return (await self._ask_mapping_state()).revision
-        except BusError as error:
-            log.warning("the middleware does not tell its revision: %s", error)
-            return 0
 
     async def _ask_mapping_state(self) -> MappingState:
         return await self._bus.ask(
@@ -234,11 +232,12 @@ class _Solver:
         if self._memory.has_ended:
             return
         await self._started.wait()
-        assert self._running is not None
-        self._mission = self._begun(self._running, self._memory)
+        running = self._shelf.running
+        assert running is not None
+        self._mission = self._begun(running, self._memory)
         # The steps are needed once: a long mission has many.
         self._memory = MissionMemory()
-        await self._await_mappings(self._running.revision)
+        await self._await_mappings(running.revision)
         state = await self._mission.run()
         log.info("the mission ended: %s, %s", state.ending, state.remark)
 
@@ -276,7 +275,7 @@ class _Solver:
             )
             self._take_mapping_state(state)
         except AosError as error:
-            log.warning("the mission starts without the mappings of revision %d: %s", revision, error)
+            log.warning("the middleware has no mappings of revision %d: %s", revision, error)
 
     async def _follow_mappings(self) -> None:
         """Follows which skills can be run, as the middleware tells it."""
@@ -294,6 +293,7 @@ class _Solver:
         if state.unavailable != self.unavailable:
             log.info("unavailable skills: %s", state.unavailable or "none")
         self.unavailable, self.announced = state.unavailable, state.announced
+        self._mapped = state.revisions
         self._changed.set()
 
     async def until_changed(self, timeout_s: float) -> None:
@@ -321,6 +321,5 @@ class _Solver:
             timeout_s=request.deadline_s + ACTIVATION_MARGIN_S,
         )
 
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        self._running = await self._shelf.newest(running)
-        return self._running
+    async def newest_model(self, running: RunningModel, past: Past) -> Takeover | None:
+        return await self._shelf.newest(running, past)

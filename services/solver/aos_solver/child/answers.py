@@ -122,7 +122,8 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
 
     With numbers P is a density, in units of the numbers. `has_other_numbers` says that the model reports no
     such numbers with that response, so that the response counted alone. `uncorrected` is why the local
-    variables of the outcome did not correct the belief. `remark` tells people of both.
+    variables of the outcome did not correct the belief. `remark` tells people of both. `is_foreign` says that
+    the model has no such action or response, so that only time passed.
     """
 
     log_probability: float
@@ -132,6 +133,7 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
     has_other_numbers: bool = False
     uncorrected: EngineFault | None = None
     remark: str = ""
+    is_foreign: bool = False
 
     @property
     def probability(self) -> float:

@@ -122,6 +122,10 @@ class Asking:
         grounded = self.description.actions[self._index(action)]
         return grounded.arguments if grounded.skill in self._built.emitted.choosing_skills else {}
 
+    def has_action(self, action: str) -> bool:
+        """Returns whether the model has a grounded action of this name."""
+        return any(grounded.name == action for grounded in self.description.actions)
+
     def _index(self, action: str) -> int:
         for index, grounded in enumerate(self.description.actions):
             if grounded.name == action:
@@ -145,6 +149,10 @@ class Asking:
                 await self._restart_child()
                 return await self._child.ask(command, kind, deadline_s, self.on_progress)
             except OverdueError:
+                raise
+            except asyncio.CancelledError:
+                # Its answer would be taken for that of the next question.
+                await self._drop_child()
                 raise
             except AosError as error:
                 raise await self._at_its_statement(error, self._changes, [*self._world, command]) from None

@@ -18,7 +18,8 @@ import msgspec
 from aos_language.cpp.snippets import read_cpp
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Span
-from aos_solver.emission.program import Local, ObjectList, Observed, Piece, Program, Skill, Variable
+from aos_solver.emission.layout import Layout, layout_of, saved_variables
+from aos_solver.emission.program import Local, ObjectList, Observed, Piece, Program, Skill
 
 __all__ = ["MODEL_FILE", "Bound", "EmittedModel", "Origin", "emit"]
 
@@ -60,7 +61,8 @@ class EmittedModel(msgspec.Struct, frozen=True):
     `locals` are the local variables that the engine wants with a real observation, for each skill whose
     observations correct the belief; `observed` are the numbers that a skill reports. `choosing_skills` are
     those whose parameters stand for state variables. `bounds` are the mission's constraints, in the order of
-    the model's. `names` are those of shared code and enum values, which every section sees.
+    the model's. `names` are those of shared code and enum values, which every section sees. `layout` is that
+    of the state. The responses of `texting_skills` may be any text.
     """
 
     project: str
@@ -75,6 +77,8 @@ class EmittedModel(msgspec.Struct, frozen=True):
     choosing_skills: frozenset[str] = frozenset()
     bounds: tuple[Bound, ...] = ()
     names: frozenset[str] = frozenset()
+    layout: Layout = Layout()
+    texting_skills: frozenset[str] = frozenset()
 
     def locate(self, line: int, byte_column: int = 1) -> Span | None:
         """The document place of a place in the file; None for code that no document gave."""
@@ -106,6 +110,8 @@ def emit(program: Program) -> EmittedModel:
         locals={skill.name: skill.locals for skill in program.skills if skill.is_corrected},
         observed={skill.name: skill.observed for skill in program.skills if skill.observed},
         choosing_skills=frozenset(s.name for s in program.skills if s.possible_parameters is None),
+        layout=layout_of(program),
+        texting_skills=frozenset(skill.name for skill in program.skills if skill.has_text_response),
         names=program.shared_names | {value for enum in program.enums for value in enum.values},
         bounds=tuple(
             Bound(constraint.never.snippet.code, constraint.probability) for constraint in program.constraints
@@ -129,7 +135,7 @@ def _laid_out(program: Program) -> tuple[str, dict[int, tuple[Origin, ...]]]:
         facts=_facts(program),
         special_states=[state for state in program.special_states if state.condition or state.section],
         watched_skills=_watched_skills(program),
-        saved_variables=_saved_variables(program),
+        saved_variables=saved_variables(program),
         members_of=lambda objects: _members_of(objects, own_names["State"]),
         declares=lambda piece: bool(read_cpp(piece.snippet.code).declarations),
         par_names=lambda variable: ", ".join(f"par{n}" for n, _ in enumerate(variable.axes, 1)),
@@ -310,11 +316,6 @@ def _watched_skills(program: Program) -> list[Skill]:
     return [skill for skill in program.skills if changes is not None and changes.uses(skill.name)]
 
 
-def _saved_variables(program: Program) -> tuple[Variable, ...]:
-    """Returns the variables of a saved state, whatever the particle of this very model holds."""
-    return tuple(v for v in program.variables if not (v.is_constant and v.is_parameter_value))
-
-
 def _members_of(objects: ObjectList, state: str) -> list[str]:
     return [f"&{state}::{name}" for name in objects.members]
 
@@ -331,7 +332,7 @@ def _state_digest(program: Program) -> str:
         (c.name, [(field.name, _shape(field.type)) for field in c.fields]) for c in program.compounds
     ]
     enums = [(enum.name, enum.values) for enum in program.enums]
-    variables = [(v.name, _shape(v.type)) for v in _saved_variables(program)]
+    variables = [(v.name, _shape(v.type)) for v in saved_variables(program)]
     return _sha256(json.dumps([enums, compounds, variables, flags]))
 
 

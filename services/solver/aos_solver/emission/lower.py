@@ -108,7 +108,7 @@ class _Lowering:
         constants = self._shared_piece(late=False)
         compounds = lower_compounds(environment, self._types, self._pieces, code.outside)
         variables = lower_variables(
-            environment,
+            project,
             self._changes,
             self._types,
             self._pieces,

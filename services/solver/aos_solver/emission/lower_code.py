@@ -34,7 +34,7 @@ from aos_solver.emission.lower_types import Types
 from aos_solver.emission.program import DeclaredVariable, EnumVariable, Loop, Piece, Section, Statement
 from aos_solver.emission.rewrite import NO_LOOPS, EnumValues, LoopsOfPiece, Rewriting, rewrite
 
-__all__ = ["Phase", "Pieces", "SectionLowering", "sections_of"]
+__all__ = ["BELIEF", "Phase", "Pieces", "SectionLowering", "sections_of"]
 
 
 class Phase(msgspec.Struct, frozen=True):

@@ -12,7 +12,7 @@ from aos_protocol.documents import Environment, Project, StateVariable
 from aos_solver.emission.lower_capacities import Capacities
 from aos_solver.emission.lower_code import Pieces, sections_of
 from aos_solver.emission.lower_types import Types, ordered_compounds
-from aos_solver.emission.lower_writes import Changes, drawing_defaults
+from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
 from aos_solver.emission.program import Compound, Field, ObjectList, ParameterValues, Variable
 from aos_solver.emission.rewrite import Rewriting
 
@@ -76,7 +76,7 @@ def lower_compounds(
 
 
 def lower_variables(
-    environment: Environment,
+    project: Project,
     changes: Changes,
     types: Types,
     pieces: Pieces,
@@ -85,7 +85,9 @@ def lower_variables(
     findings: Findings,
 ) -> tuple[Variable, ...]:
     """The state variables in their order; AOS124 for a parameter value that is drawn at random."""
+    environment = project.environment
     drawn = frozenset(drawing_defaults(environment))
+    later = changes_of(project, after_start=True)
     lowered = []
     for variable in environment.variables:
         if variable.is_parameter_value and variable.name in drawn:
@@ -109,6 +111,7 @@ def lower_variables(
                 default_code=pieces.code(code, outside) if code is not None else None,
                 axes=axes,
                 is_relevant=variable.name not in irrelevant,
+                is_fixed=variable.name not in later.variables and variable.type not in later.object_types,
             )
         )
     return tuple(lowered)

@@ -24,7 +24,7 @@ from aos_language.cpp.snippets import (
 from aos_language.document_code import shared_code_of, snippets_of
 from aos_language.local_types import reported_variables
 from aos_protocol.documents import Environment, Project
-from aos_solver.emission.lower_code import sections_of
+from aos_solver.emission.lower_code import BELIEF, sections_of
 
 __all__ = ["LAMBDA", "Changes", "changes_of", "drawing_defaults"]
 
@@ -108,13 +108,18 @@ class Changes:
             self.variables.add(mention.path[1])
 
 
-def changes_of(project: Project) -> Changes:
-    """Everything that the code of the documents can change while a particle lives."""
+def changes_of(project: Project, *, after_start: bool = False) -> Changes:
+    """Everything that the code of the documents can change while a particle lives.
+
+    With `after_start` what the defaults and the initial belief set counts for nothing.
+    """
     changes = Changes(project)
     environment = project.environment
     for skill in project.skills:
         changes.variables.update(reported_variables(skill.mapping, environment))
     for phase, assignments in sections_of(project):
+        if after_start and phase is BELIEF:
+            continue
         copies = phase.changes
         if environment.is_one_state_model and phase.changes:
             copies = STATES
@@ -128,6 +133,8 @@ def changes_of(project: Project) -> Changes:
             changes.read(read_cpp_expression(special.condition.code), frozenset())
     for constraint in project.constraints:
         changes.read(read_cpp_expression(constraint.never.code), frozenset())
+    if after_start:
+        return changes
     drawn = frozenset(drawing_defaults(environment))
     is_drawn = False
     for variable in environment.variables:

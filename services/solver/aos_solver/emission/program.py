@@ -110,6 +110,7 @@ class Variable(msgspec.Struct, frozen=True):
     """A state variable. One that nothing changes is a constant, which no particle holds.
 
     `is_relevant`: what is earned or observed may depend on it (see `lower_relevance`).
+    `is_fixed`: nothing but its default and the initial belief sets it.
     `is_parameter_value`: actions may take it as a parameter. The default is an expression for the value, or
     statements over `state.`.
     """
@@ -122,6 +123,7 @@ class Variable(msgspec.Struct, frozen=True):
     default_code: Piece | None = None
     axes: tuple[Axis, ...] = ()
     is_relevant: bool = True
+    is_fixed: bool = False
 
     @property
     def is_over_enum(self) -> bool:

@@ -17,9 +17,9 @@ from aos_solver.mission.endings import (
 )
 from aos_solver.mission.endings import remark_of as remark_of_ending
 from aos_solver.mission.failures import Failures
-from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.ports import Available
 from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 __all__ = ["Choice", "Chooser", "Ended", "Held"]

@@ -1,8 +1,8 @@
 """Models in the making: from a project revision to a running engine, while a mission goes on.
 
-A revision is built and started in the background. At a decision boundary the mission takes the newest
-model that is ready on both sides, here and in the middleware, and the belief moves over. That works
-between models with the same state layout; others are refused before they are stored (AOS112).
+A revision is built and started in the background, and replays the mission's past there where it needs that.
+At a decision boundary the mission takes the newest model that is ready on both sides, here and in the
+middleware, and the belief moves over (takeover.py). No decision waits for a model.
 
 A mission uses a quick build at once. A thorough build is made meanwhile for the next start: within a mission
 it would win less than is lost with the search tree, which does not move over.
@@ -13,7 +13,6 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable
-from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -23,37 +22,25 @@ from aos_protocol.diagnostics import Diagnostic, Severity, has_errors
 from aos_protocol.documents import Constraint, Project
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import ProjectRevision
+from aos_runtime.clock import Clock, SystemClock
 from aos_solver.building.build import BuildKind, BuiltModel, build
 from aos_solver.child.engine import Engine
 from aos_solver.emission.emit import EmittedModel, emit
 from aos_solver.emission.lower import lower
 from aos_solver.emission.program import Program
+from aos_solver.mission.past import Past
+from aos_solver.mission.takeover import RunningModel, Successor, Takeover
 
 __all__ = ["ModelShelf", "RunningModel", "build_project", "emitted_model", "lowered"]
 
 log = logging.getLogger(__name__)
 
+SYSTEM_CLOCK = SystemClock()
+
 _LAST = 19
 """The niceness of what nobody waits for: of all that wants a processor it is served last."""
 
 _UNHURRIED_DEADLINE_S = 1800.0
-
-_PATIENCE_S = 1.0
-"""A decision waits this long for a revision that is on its way. The revision was compiled when it was
-checked, so that only its engine and the middleware's module have to start."""
-
-_ASK_AGAIN_S = 0.02
-
-
-class RunningModel(msgspec.Struct, frozen=True):
-    """A compiled model with its engine child."""
-
-    revision: int
-    engine: Engine
-
-    @property
-    def digest(self) -> str:
-        return self.engine.model_digest
 
 
 async def build_project(
@@ -90,10 +77,10 @@ def emitted_model(project: Project) -> EmittedModel:
 
 
 class ModelShelf:
-    """Holds the newest model that is ready to run, at most one besides the mission's own.
+    """Holds the model that runs, and the newest one that may take over from it.
 
     `_shelf` is locked by whoever puts a model there, takes it, or decides whether to take it: nothing is
-    replaced while the belief moves over. A model's engine is closed by the shelf until somebody has it.
+    replaced while the belief moves over. The shelf closes all engines, each once nobody asks it any more.
     """
 
     def __init__(
@@ -101,22 +88,38 @@ class ModelShelf:
         cache_dir: Path,
         on_progress: Callable[[str], None],
         start_engine: Callable[[BuiltModel], Awaitable[Engine]],
-        mapping_revision: Callable[[], Awaitable[int]],
+        is_mapped: Callable[[int], bool],
         constraints: tuple[Constraint, ...] = (),
+        *,
+        clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        """The models are those of the documents with the mission's `constraints`."""
+        """The models are those of the documents with the mission's `constraints`.
+
+        `is_mapped` says whether the middleware runs a revision too.
+        """
         self._cache_dir = cache_dir
         self._on_progress = on_progress
         self._start_engine = start_engine
-        self._mapping_revision = mapping_revision
+        self._is_mapped = is_mapped
         self._constraints = constraints
-        self._ready: RunningModel | None = None
+        self._clock = clock
+        self._running: RunningModel | None = None
+        self._past = Past()
+        self._ready: Successor | None = None
         self._fault: AosError | None = None
         self._shelf = asyncio.Condition()
         self._newest_revision = 0
-        self._unmapped_revision = 0
         self._building = asyncio.Lock()
         self._thorough: asyncio.Task[None] | None = None
+        self._ending: set[asyncio.Task[None]] = set()
+        self._is_closed = False
+        self.on_ready: Callable[[], None] = lambda: None
+        """The function that hears of a model that may take over."""
+
+    @property
+    def running(self) -> RunningModel | None:
+        """The model that was taken last."""
+        return self._running
 
     async def make(self, revision: ProjectRevision) -> None:
         """Build a revision and start its engine; a fault is kept for `first` and changes nothing else."""
@@ -137,25 +140,38 @@ class ModelShelf:
                 self._fault = error
                 self._shelf.notify_all()
             return
-        await self._put(model)
+        successor = Successor(model, self._clock)
+        try:
+            await self._put(successor)
+        except BaseException:
+            await successor.close()
+            raise
         await self._end_thorough_build()
-        self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
+        if not self._is_closed:
+            self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
 
     async def _built(self, project: Project) -> BuiltModel:
         constrained = msgspec.structs.replace(project, constraints=self._constraints)
         return await build_project(constrained, self._cache_dir, self._on_progress)
 
-    async def _put(self, model: RunningModel) -> None:
-        """Puts a model on the shelf, in place of one that nobody has taken."""
-        try:
-            async with self._shelf:
-                outdated, self._ready, self._fault = self._ready, model, None
-                self._shelf.notify_all()
-        except asyncio.CancelledError:
-            await model.engine.close()
-            raise
-        if outdated is not None:
-            await outdated.engine.close()
+    async def _put(self, successor: Successor) -> None:
+        """Puts a model on the shelf, in place of one that nobody has taken; its replay goes on there."""
+        async with self._shelf:
+            if self._is_closed:
+                return self._end(successor)
+            outdated, self._ready, self._fault = self._ready, successor, None
+            if outdated is not None:
+                self._end(outdated)
+            if self._running is not None:
+                successor.follow(self._running, self._past, self.on_ready)
+            self._shelf.notify_all()
+        self.on_ready()
+
+    def _end(self, ended: Successor | Engine) -> None:
+        """Closes what nobody asks any more, beside the mission."""
+        task = asyncio.create_task(ended.close())
+        self._ending.add(task)
+        task.add_done_callback(self._ending.discard)
 
     async def _build_thoroughly(self, emitted: EmittedModel) -> None:
         """Builds into the cache. Nobody waits for it: all other work goes first, and a fault is logged."""
@@ -185,76 +201,84 @@ class ModelShelf:
             if self._ready is None:
                 assert self._fault is not None
                 raise self._fault
-            model, self._ready = self._ready, None
-            return model
+            self._running, self._ready = self._ready.model, None
+            return self._running
 
-    async def newest(self, running: RunningModel) -> RunningModel:
-        """The running model, or its successor with the belief carried over and the old engine closed.
+    async def newest(self, running: RunningModel, past: Past) -> Takeover | None:
+        """The successor of the running model, with its belief; None where none is ready on both sides.
 
-        A successor on its way is waited for, but not long. One that cannot take the belief is given up.
+        Nothing is waited for: a model that is not ready yet may take over at a later call. One that cannot
+        take the belief is given up. The engine of the model that ran is not asked any more.
         """
-        await self._until_made()
+        self._running, self._past = running, past
+        if self._ready is None:
+            return None
         async with self._shelf:
             candidate = self._ready
-            if candidate is None or not await self._is_mapped(candidate.revision):
-                return running
-            if candidate.engine.state_digest != running.engine.state_digest:
-                log.warning("revision %d changes the state and waits for a new mission", candidate.revision)
-                return running
-            beliefs = await running.engine.export_beliefs()
-            try:
-                await candidate.engine.import_beliefs(beliefs)
-            except AosError as error:
-                log.warning("revision %d cannot take the belief: %s", candidate.revision, error)
-                self._ready = None
-                await candidate.engine.close()
-                return running
+            if candidate is None:
+                return None
+            is_mapped = self._is_mapped(candidate.model.revision)
+            takeover = await self._taken(candidate, past) if is_mapped else None
+            if takeover is None:
+                if self._ready is not None:
+                    candidate.follow(running, past, self.on_ready)
+                return None
+            self._ready, self._running = None, takeover.model
+            self._end(running.engine)
+        log.info(
+            "revision %d takes over from revision %d by %s",
+            takeover.model.revision,
+            running.revision,
+            takeover.row.by,
+        )
+        return takeover
+
+    async def _taken(self, candidate: Successor, past: Past) -> Takeover | None:
+        assert self._running is not None
+        if not candidate.is_ready(self._running, past):
+            return None
+        try:
+            return await candidate.take_over(self._running, past)
+        except AosError as error:
+            log.warning("revision %d is not used: %s", candidate.model.revision, error)
             self._ready = None
-        await running.engine.close()
-        log.info("revision %d takes over from revision %d", candidate.revision, running.revision)
-        return candidate
-
-    async def _until_made(self) -> None:
-        if self._building.locked():
-            with suppress(TimeoutError):
-                async with asyncio.timeout(_PATIENCE_S), self._building:
-                    pass
-
-    async def _is_mapped(self, revision: int) -> bool:
-        """Waits for the middleware, once for a revision; returns whether it runs the revision too."""
-        with suppress(TimeoutError):
-            async with asyncio.timeout(_PATIENCE_S):
-                while await self._mapping_revision() < revision:
-                    if revision == self._unmapped_revision:
-                        return False
-                    await asyncio.sleep(_ASK_AGAIN_S)
-                return True
-        self._unmapped_revision = revision
-        return False
+            self._end(candidate)
+            return None
 
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
-        """Returns what keeps these documents from being used now: compile errors, or another state layout."""
+        """Returns what keeps these documents from being used now: mistakes, or no belief for the mission."""
+        span = project.environment.span
         try:
             built = await self._built(project)
         except AosError as error:
-            if error.diagnostics:
-                return error.diagnostics
-            span = project.environment.span
-            return (Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),)
-        if running is not None and built.emitted.state_digest != running.engine.state_digest:
-            message = (
-                "the state variables differ from the running mission's, whose belief cannot be carried over"
+            return error.diagnostics or (
+                Diagnostic(Severity.ERROR, error.code, error.message, span, error.hint),
             )
-            hint = (
-                "Keep the state variables as they are, or end the mission and start it with the new documents"
-            )
-            return (Diagnostic(Severity.ERROR, "AOS112", message, project.environment.span, hint),)
+        if running is None:
+            return ()
+        try:
+            engine = await self._start_engine(built)
+        except AosError as error:
+            place = error.diagnostics[0].span if error.diagnostics else span
+            message = f"the new documents give the running mission no belief: {error.message}"
+            hint = "Mend the initial belief, or end the mission and start it with the new documents"
+            return (Diagnostic(Severity.ERROR, "AOS112", message, place, hint),)
+        await engine.close()  # It is stopped at once, also where nobody waits for its end.
         return ()
 
     async def close(self) -> None:
-        """Ends what is being built, and the engine that nobody has taken."""
+        """Ends what is being built, and all engines."""
+        self._is_closed = True
         await self._end_thorough_build()
         async with self._shelf:
             unused, self._ready = self._ready, None
-        if unused is not None:
-            await unused.engine.close()
+            running, self._running = self._running, None
+        for each in (unused, running.engine if running is not None else None):
+            if each is not None:
+                self._end(each)
+        await self.settled()
+
+    async def settled(self) -> None:
+        """Returns once all engines have ended that nobody asks any more."""
+        while self._ending:
+            await asyncio.wait(set(self._ending))

@@ -26,10 +26,11 @@ from aos_solver.child.answers import BeliefUpdate
 from aos_solver.mission.choosing import Choice, Chooser, Ended, Held
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
-from aos_solver.mission.hot_plug import RunningModel
-from aos_solver.mission.memory import MissionMemory
+from aos_solver.mission.memory import MissionMemory, Pending
+from aos_solver.mission.past import Evidence, Past, replayed, updated
 from aos_solver.mission.ports import Ports
 from aos_solver.mission.risk import RiskBudget
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 __all__ = ["Mission"]
@@ -60,6 +61,8 @@ class Mission:
         self._ports = ports
         self._failures = Failures(terms.failures)
         self._is_resumed = False
+        self._past = Past(terms.limits.refuted_below)
+        self._adopted: ModelAdopted | None = None
         self._budget = RiskBudget(model.engine.bounds)
         self._chooser = Chooser(terms, self._failures, ports, self._budget)
 
@@ -81,8 +84,11 @@ class Mission:
         if not await self._take_up():
             return
         while (ending := self._ending()) is None:
-            await self._adopt(await self._ports.newest_model(self._model))
+            if await self._adopt():
+                continue
             choice = await self._choose()
+            if choice is None:
+                continue
             if isinstance(choice, Ended):
                 return self._end(choice.ending, choice.remark)
             decision = self._decide(choice)
@@ -99,13 +105,15 @@ class Mission:
         whether the mission goes on.
         """
         memory, self._memory = self._memory, _NOTHING
-        for decision, observed, observed_ns in memory.steps:
+        self._past.steps += [self._evidence(step.decision, step.outcome) for step in memory.steps]
+        steps = iter(memory.steps)
+        async for update in replayed(self._model.engine, self._past):
+            decision, observed, observed_ns = next(steps)
             self._budget.take_up(decision.constraints)
-            update = await self._updated_belief(decision, observed)
             self._take_failure(decision, observed, update, self._s_of(observed_ns))
             self.belief = update.summary
             self.state = msgspec.structs.replace(self.state, step=decision.step)
-        if memory.pending is not None:
+        if memory.pending is not None and self._can_finish(memory.pending):
             decision, intention, outcome = memory.pending
             self._budget.take_up(decision.constraints)
             self._move_to("acting", decision.step, remark=decision.action)
@@ -127,10 +135,18 @@ class Mission:
             self._end(Ending.SKILLS_FAILED, self._failures.to_end)
         return not self._failures.to_end
 
-    async def _adopt(self, model: RunningModel) -> None:
-        if model is not self._model:
-            before, self._model = self._model, model
-            self._ports.journal("adopted", ModelAdopted(model.revision, model.digest, before.revision))
+    def _can_finish(self, pending: Pending) -> bool:
+        """Returns whether a decision can be carried out: one that nobody was asked for can be made anew."""
+        return pending.intention is not None or self._model.engine.has_action(pending.decision.action)
+
+    async def _adopt(self) -> bool:
+        """Lets the newest model take over if it is ready; returns whether one did."""
+        takeover = await self._ports.newest_model(self._model, self._past)
+        if takeover is None:
+            return False
+        self._model, self.belief, self._adopted = takeover.model, takeover.belief, takeover.row
+        self._ports.journal("adopted", takeover.row)
+        return True
 
     def _s_of(self, stamp_ns: int) -> float:
         """The monotonic time of a moment in the past."""
@@ -141,18 +157,21 @@ class Mission:
         """The ending that the belief calls for, or else the one that the world has come to."""
         return ending_of_belief(self.belief, self.state.step, self._terms.limits) or self._ports.world_ending
 
-    async def _choose(self) -> Choice | Ended:
-        """The next decision, or an ending; holds while nothing can be run."""
+    async def _choose(self) -> Choice | Ended | None:
+        """The next decision, or an ending; None after a hold, since nothing can be run."""
         engine, step = self._model.engine, self.state.step
-        while True:
-            self._move_to("planning", step)
-            choice = await self._chooser.choose(self._model, step + 1, self.belief)
-            if not isinstance(choice, Held):
-                return choice
-            await self._hold(choice.remark, lambda: self._chooser.is_something_available(engine))
+        self._move_to("planning", step)
+        choice = await self._chooser.choose(self._model, step + 1, self.belief)
+        if not isinstance(choice, Held):
+            return choice
+        await self._hold(choice.remark, lambda: self._chooser.is_something_available(engine), adopts=True)
+        return None
 
-    async def _hold(self, why: str, goes_on: Callable[[], bool]) -> None:
-        """Decides nothing until the mission goes on by itself or is resumed, for `hold_s` at most."""
+    async def _hold(self, why: str, goes_on: Callable[[], bool], *, adopts: bool = False) -> None:
+        """Decides nothing until the mission goes on by itself or is resumed, for `hold_s` at most.
+
+        Where it `adopts`, it also goes on with a model that takes over.
+        """
         hold_s = self._terms.hold_s
         ends_at_s = self._ports.clock.monotonic_s() + hold_s
         self._is_resumed = False
@@ -160,6 +179,8 @@ class Mission:
         while not (self._is_resumed or goes_on()):
             now_s = self._ports.clock.monotonic_s()
             left_s = ends_at_s - now_s
+            if adopts and await self._adopt():
+                return
             if left_s <= 0:
                 raise AosError(f"{why}; nothing has changed for {hold_s:g} s", code="AOS513")
             await self._ports.until_changed(min(left_s, self._failures.s_until_return(now_s)))
@@ -196,15 +217,18 @@ class Mission:
             constraints=spent,
             set_aside=choice.set_aside,
             is_cautious=choice.is_cautious,
+            adopted=self._adopted,
         )
+        self._adopted = None
         self._publish(record)
         return record
 
     async def _act(self, decision: DecisionRecord, intention: Activate | None = None) -> Outcome:
         """The outcome of a decision's activation; what was intended before is asked for as it was."""
-        request = self._request(decision)
         if intention is not None:
             request = msgspec.structs.replace(intention, epoch=self._terms.epoch)
+        else:
+            request = self._request(decision)
         self._ports.journal("intended", request)
         outcome = await self._ports.activate(request, decision.action)
         self._ports.journal("outcome", outcome)
@@ -223,7 +247,9 @@ class Mission:
 
     async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> None:
         before_s = self._ports.clock.monotonic_s()
-        update = await self._updated_belief(decision, outcome)
+        evidence = self._evidence(decision, outcome)
+        update = await updated(self._model.engine, evidence, self._past.refuted_below)
+        self._past.steps.append(evidence)
         update_s = self._ports.clock.monotonic_s() - before_s
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
         record = msgspec.structs.replace(
@@ -235,6 +261,7 @@ class Mission:
             outcome=outcome,
             surprise=update.surprise,
             update_s=update_s,
+            adopted=None,
             is_impossible=update.is_impossible,
             remark="; ".join(text for text in (update.remark, remark) if text),
         )
@@ -253,22 +280,19 @@ class Mission:
             announced=self._ports.announced,
         )
 
-    async def _updated_belief(self, decision: DecisionRecord, outcome: Outcome) -> BeliefUpdate:
-        """The belief after an outcome; without an observation by how probable it is that the skill ran."""
-        engine = self._model.engine
+    def _evidence(self, decision: DecisionRecord, outcome: Outcome) -> Evidence:
+        """The step as a belief sees it."""
         if outcome.status == "observed":
-            # An observation that does not come from a mapping has no local variables.
-            return await engine.update(
+            return Evidence(
                 decision.action,
+                decision.skill,
                 outcome.response,
-                outcome.local_variables or None,
+                outcome.local_variables,
                 outcome.numbers,
-                refuted_below=self._terms.limits.refuted_below,
             )
-        ran_probability = self._failures.ran_probability(outcome)
-        if ran_probability == 0:
-            return BeliefUpdate(0.0, False, await engine.summary())
-        return await engine.update_without_observation(decision.action, ran_probability=ran_probability)
+        return Evidence(
+            decision.action, decision.skill, ran_probability=self._failures.ran_probability(outcome)
+        )
 
     def _publish(self, record: DecisionRecord) -> None:
         self._ports.journal("decision", record)

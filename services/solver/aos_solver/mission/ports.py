@@ -11,7 +11,8 @@ from typing import Protocol
 from aos_protocol.messages import Activate, DecisionRecord, Message, MissionState, Outcome
 from aos_runtime.clock import Clock, SystemClock
 from aos_solver.mission.endings import Ending
-from aos_solver.mission.hot_plug import RunningModel
+from aos_solver.mission.past import Past
+from aos_solver.mission.takeover import RunningModel, Takeover
 
 __all__ = ["Available", "Models", "Ports", "QuietPorts", "Record", "Robot"]
 
@@ -64,8 +65,11 @@ class Record(Protocol):
 class Models(Protocol):
     """The supply of models while the mission runs."""
 
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        """The model for the next decision, with the running one's belief: the same, or a hot-plugged one."""
+    async def newest_model(self, running: RunningModel, past: Past) -> Takeover | None:
+        """The model that takes over before the next decision, with its belief; None if the same one goes on.
+
+        The `past` is that of the running model's belief.
+        """
         ...
 
 
@@ -96,6 +100,6 @@ class QuietPorts:
     def publish_state(self, state: MissionState) -> None:
         """Does nothing: nobody listens."""
 
-    async def newest_model(self, running: RunningModel) -> RunningModel:
-        """The same model."""
-        return running
+    async def newest_model(self, running: RunningModel, past: Past) -> Takeover | None:
+        """The same model goes on."""
+        return None

@@ -124,6 +124,16 @@ class Hypotheses {
     return after;
   }
 
+  // After the time of a step in which nothing was done: extrinsic changes alone.
+  Hypotheses passed(Sampler& random) const {
+    Hypotheses after = *this;
+    for (Hypothesis& each : after.all_) each.belief = each.belief.predicted(no_action, random);
+    after.mix();
+    after.cautious_.reset();
+    if (cautious_) after.keep_cautious(cautious_->predicted(no_action, random));
+    return after;
+  }
+
   // After an end that nobody observed, of an action that ran with this probability.
   Hypotheses unobserved(int action, double ran_probability, Sampler& random) const {
     Hypotheses after;

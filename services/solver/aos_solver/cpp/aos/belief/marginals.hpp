@@ -39,8 +39,8 @@ class Marginals {
   }
 
   // Writes an array with an entry for each variable: its name, its likeliest values, and the probability of the others.
-  void write(JsonWriter& json) {
-    choose_reported();
+  void write(JsonWriter& json, std::size_t max_of_one = max_reported_values, std::size_t max_in_all = max_reported_in_all) {
+    choose_reported(max_of_one, max_in_all);
     write_texts();
     json.begin_array();
     for (const Variable& variable : variables_) {
@@ -162,9 +162,9 @@ class Marginals {
     return entry->second;
   }
 
-  void choose_reported() {
-    const std::size_t share = max_reported_in_all / std::max<std::size_t>(variables_.size(), 1);
-    const std::size_t max_values = std::clamp<std::size_t>(share, 1, max_reported_values);
+  void choose_reported(std::size_t max_of_one, std::size_t max_in_all) {
+    const std::size_t share = max_in_all / std::max<std::size_t>(variables_.size(), 1);
+    const std::size_t max_values = std::clamp<std::size_t>(share, 1, max_of_one);
     for (Variable& variable : variables_) {
       std::stable_sort(variable.values.begin(), variable.values.end(),
                        [](const Value& left, const Value& right) { return left.weight > right.weight; });

@@ -19,6 +19,7 @@
 #include "aos/child/command.hpp"
 #include "aos/child/faults.hpp"
 #include "aos/child/left_out.hpp"
+#include "aos/child/projected_beliefs.hpp"
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
@@ -150,11 +151,54 @@ class BeliefCommands {
     json.member("words", to_base64(believed_.words())).end_object();
   }
 
+  // Lets the time of so many steps pass in which nothing is done and nothing is observed.
+  void pass_time(JsonWriter& json, const Command& command) {
+    Hypotheses after = believed_;
+    for (int step = command.number<int>("steps"); step > 0; --step) after = after.passed(random_);
+    json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
+    become(json.key("summary"), std::move(after));
+    json.end_object();
+  }
+
+  // Writes the marginals of all variables, with so many `values` in all.
+  void marginals(JsonWriter& json, const Command& command) const {
+    const auto values = command.number<std::size_t>("values");
+    Marginals<Model>{belief().particles()}.write(json.begin_object().key("marginals"), values, values);
+    json.end_object();
+  }
+
+  // Writes the joint distribution of some variables under the belief with this `number`; see projected_beliefs.hpp.
+  void export_joint(JsonWriter& json, const Command& command) const {
+    const auto all = believed_.beliefs();
+    const auto number = command.number<std::size_t>("number");
+    if (number >= all.size()) throw BadCommand{"there is no such belief"};
+    save_joint(json, command, *all[number]);
+  }
+
   // Takes over a belief, or one of several: these come one after the other, and with the last of them (`left` is 0) all
-  // are taken over. `words` tells them apart.
+  // are taken over. `words` tells them apart. With `project_belief` they come from an engine with other variables.
   void import_belief(JsonWriter& json, const Command& command) {
-    auto belief = load_belief<Model>(command.number<double>("error_bound"), command.flag("is_drawn"),
-                                     command.text("history"), command.number<std::size_t>("constants"), command.items());
+    take_over(json, command,
+              load_belief<Model>(command.number<double>("error_bound"), command.flag("is_drawn"), command.text("history"),
+                                 command.number<std::size_t>("constants"), command.items()));
+  }
+  void project_belief(JsonWriter& json, const Command& command) {
+    take_over(json, command, load_joint<Model>(command, random_));
+  }
+
+  // Takes over what an earlier engine kept after change number `change`.
+  void restore(JsonWriter& json, const Command& command) {
+    auto kept = kept_.restore(command.number<std::uint64_t>("change"));
+    if (!kept) throw BadCommand{"that belief was not kept"};
+    believed_ = *std::move(kept);
+    search_.forget();
+    json.begin_object().end_object();
+  }
+
+ private:
+  using Hypotheses = aos::Hypotheses<Model>;
+
+  void take_over(JsonWriter& json, const Command& command, Belief<Model> belief) {
     if (belief.particles().empty()) throw BadCommand{"an empty belief"};
     const bool is_one_of_many = command.optional_text("left").has_value();
     if (is_one_of_many && command.flag("is_first")) incoming_.clear();
@@ -169,18 +213,6 @@ class BeliefCommands {
     const auto words = from_base64<std::uint64_t>(command.text("words"));
     become(json, Hypotheses::of(std::move(all), words.value_or(Words{})));
   }
-
-  // Takes over what an earlier engine kept after change number `change`.
-  void restore(JsonWriter& json, const Command& command) {
-    auto kept = kept_.restore(command.number<std::uint64_t>("change"));
-    if (!kept) throw BadCommand{"that belief was not kept"};
-    believed_ = *std::move(kept);
-    search_.forget();
-    json.begin_object().end_object();
-  }
-
- private:
-  using Hypotheses = aos::Hypotheses<Model>;
 
   template <class Numbers>
   std::pair<Belief<Model>, double> corrected_posterior(const Belief<Model>& belief, int action, Observation observation,

@@ -65,6 +65,12 @@ struct ErasedModel {
     compiled_model.load_state(state.bytes, saved, constants);
   }
   static void visit_values(const State& state, ValueVisitor& visitor) { compiled_model.visit(state.bytes, visitor); }
+  // All variables that a saved state holds; the special states that count once and are spent, a bit for each.
+  static std::span<const Member> variables() { return compiled_model.variables; }
+  static std::uint64_t spent(const State& state) { return compiled_model.spent(state.bytes); }
+  static void set_end(State& state, Ending ending, std::uint64_t spent) {
+    compiled_model.set_end(state.bytes, ending, spent);
+  }
   // The parts of a state that no reward, observation or ending depends on.
   static std::span<const ByteRange> irrelevant() { return compiled_model.irrelevant; }
   // How many bytes of a state the model uses; the others are 0.
@@ -82,6 +88,10 @@ struct ErasedModel {
   static Step step(State& state, int action, Random& random) {
     if constexpr (!std::is_same_v<Random, Sampler>) {
       if (corrected_) return corrected_step(state, action, random);
+      if (action == no_action) {
+        compiled_model.pass(state.bytes, random);
+        return {};
+      }
     }
     return functions<Random>().step(state.bytes, action, random);
   }

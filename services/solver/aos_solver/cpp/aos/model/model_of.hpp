@@ -139,6 +139,10 @@ class ModelOf {
       }
     });
   }
+  static void pass(State& state, auto& random) {
+    aos::pass<Environment>(state, random);
+    blame::at(0);
+  }
   static Violations violations(const State& before, const State& next, int action) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       return Project::template violations<Skill>(before, next, parameters);
@@ -181,6 +185,16 @@ class ModelOf {
     auto ended = static_cast<std::uint64_t>(state.aos_ending);
     if constexpr (requires { state.aos_spent; }) ended ^= state.aos_spent << 2;
     return mixed(hashed(0, state), ended);
+  }
+  // All variables that a saved state holds; and the special states that count once and are spent, a bit for each.
+  static constexpr std::span<const Member> variables{Project::variables};
+  static std::uint64_t spent(const State& state) {
+    if constexpr (requires { state.aos_spent; }) return state.aos_spent;
+    return 0;
+  }
+  static void set_end(State& state, Ending ending, [[maybe_unused]] std::uint64_t spent) {
+    state.aos_ending = ending;
+    if constexpr (requires { state.aos_spent; }) state.aos_spent = static_cast<decltype(state.aos_spent)>(spent);
   }
   // The variables that differ between states, as text.
   static std::string save_state(const State& state) {

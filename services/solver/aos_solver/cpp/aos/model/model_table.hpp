@@ -52,6 +52,7 @@ struct ModelTable {
   bool has_state_heuristic;
   std::size_t ending_offset;
   std::span<const ByteRange> irrelevant;  // parts of a state
+  std::span<const Member> variables;      // that a saved state holds
   int constraint_count;
   bool constraints_look_ahead;
 
@@ -64,8 +65,12 @@ struct ModelTable {
   SavedConstants (*save_constants)();
   void (*load_state)(void* state, std::string_view saved, const SavedConstants& constants);
 
+  std::uint64_t (*spent)(const void* state);
+  void (*set_end)(void* state, Ending ending, std::uint64_t spent);
+
   DrawingFunctions<Sampler> sampling;
   DrawingFunctions<DirectedDraws> directed;
+  void (*pass)(void* state, DirectedDraws& random);
   void (*correct)(const void* before, void* next, int action, DirectedDraws& random);
   bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
   Violations (*violations)(const void* before, const void* next, int action);
@@ -112,6 +117,7 @@ constexpr ModelTable table_of() {
       .has_state_heuristic = Model::has_state_heuristic,
       .ending_offset = offsetof(State, aos_ending),
       .irrelevant = Model::irrelevant,
+      .variables = Model::variables,
       .constraint_count = Model::constraint_count,
       .constraints_look_ahead = Model::constraints_look_ahead,
       .prepare = Model::prepare,
@@ -129,8 +135,17 @@ constexpr ModelTable table_of() {
           [](void* state, std::string_view saved, const SavedConstants& constants) {
             Model::load_state(*static_cast<State*>(state), saved, constants);
           },
+      .spent = [](const void* state) { return Model::spent(*static_cast<const State*>(state)); },
+      .set_end = [](void* state, Ending ending,
+                    std::uint64_t spent) { Model::set_end(*static_cast<State*>(state), ending, spent); },
       .sampling = drawing_functions<Model, Sampler>(),
       .directed = drawing_functions<Model, DirectedDraws>(),
+      .pass =
+          [](void* state, DirectedDraws& random) {
+            ModelSource<DirectedDraws> draws{random};
+            Model::pass(*static_cast<State*>(state), draws);
+            blame::over();
+          },
       .correct =
           [](const void* before, void* next, int action, DirectedDraws& random) {
             if constexpr (Model::has_corrections) {

@@ -15,6 +15,9 @@ inline constexpr int ending_count = 4;
 using Observation = std::int64_t;
 
 inline constexpr Observation default_observation = -1;
+
+// The number that stands for no action where a belief is updated: time passes, and nothing is observed.
+inline constexpr int no_action = -1;
 inline constexpr const char* default_observation_text = "DefaultObservation";
 
 struct Step {

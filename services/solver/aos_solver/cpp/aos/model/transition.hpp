@@ -1,6 +1,7 @@
 // One simulated step in the phases of the documents: which phase reads and changes which copy of the state.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -81,6 +82,13 @@ struct EnvironmentDefaults {
   static double special_states(auto&, auto&) { return 0; }
   static void state_heuristic(const auto&, double&, auto&) {}
   static std::string state_text(const auto& state) { return leaves_text(state); }
+};
+
+// The skill of a step in which nothing is done.
+template <class Environment>
+struct NoSkill : SkillDefaults {
+  static constexpr std::array<const char*, 0> response_names{};
+  static constexpr bool keeps_state = !Environment::is_one_state;
 };
 
 // What a special state says: only that the mission ends, or also whether this is a failure.
@@ -209,6 +217,15 @@ Step step(State& state, const auto& parameters, auto& random) {
     return detail::step_after_the_end<Environment, Skill>(state, parameters, random);
   }
   return detail::transition<Environment, Skill>(state, parameters, random);
+}
+
+// Lets the time of a step pass: the extrinsic changes, and the special states that they lead to.
+template <class Environment, class State>
+void pass(State& state, auto& random) {
+  if constexpr (Environment::has_extrinsic_changes) {
+    if (state.aos_ending != Ending::running) return;
+    detail::transition<Environment, NoSkill<Environment>>(state, SkillDefaults::Parameters{}, random);
+  }
 }
 
 template <class Skill>
