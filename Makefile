@@ -6,7 +6,7 @@ UPGRADE :=
 COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header
 
-.PHONY: help setup check quick test format promote docs lock newcomer chaos clean
+.PHONY: help setup check quick test format promote docs lock newcomer chaos plug clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -41,6 +41,9 @@ lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.ven
 
 chaos:  ## kill and freeze processes of missions at random, and print what became of them
 	$(BIN)/python -m tests.chaos --missions 50
+
+plug:  ## measure what changes and what happens while a mission runs
+	$(BIN)/python -m tests.plug
 
 newcomer:  ## run README's two commands in a fresh clone, an empty home and without a compiler
 	tests/newcomer.sh

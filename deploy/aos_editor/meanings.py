@@ -138,6 +138,11 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             "The local variable whose text is the response.",
             {},
         ),
+        "stop_when": (
+            "A Python expression over local variables, looked at with each topic message: "
+            "the first time it is `True` the skill is cancelled.",
+            {},
+        ),
         "module_activation": (
             "`ros_service`, `ros_action` or `skill`: how the skill is called.",
             {

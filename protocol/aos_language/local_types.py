@@ -15,7 +15,7 @@ __all__ = ["RESERVED_LOCAL_NAMES", "LocalType", "local_type", "local_type_text",
 
 RESERVED_LOCAL_NAMES = frozenset({
     "CONSTANTS", "RESPONSE", "TOPICS", "__input", "__skill_error", "__skill_status", "local_variables",
-    "low_level_type", "observe", "parameters", "request", "stand_in",
+    "low_level_type", "observe", "parameters", "request", "stand_in", "stop_when",
 })  # fmt: skip
 """No local variable can have these names: the generated module uses them, or is given them."""
 

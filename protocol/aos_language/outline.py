@@ -126,6 +126,9 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
             yield _placed(f"  {assignment.path} becomes {assignment.value.code}", assignment.span)
     if mapping.response_variable:
         yield f"response is the text of {mapping.response_variable}"
+    if mapping.stop_when is not None:
+        yield _placed("stopped when", mapping.stop_when.span)
+        yield from _code(mapping.stop_when)
     for variable in mapping.local_variables:
         yield from _local_variable(variable)
 

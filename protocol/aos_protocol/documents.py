@@ -332,7 +332,9 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     """An abstraction mapping (AM): from parameters to the call, and from what happened to the observation.
 
     With `response_variable` the observation is the text of that local variable and the rules do not count.
-    One that `is_derived` is written nowhere: AOS made it from the skill document, where its places are.
+    `stop_when` is a Python expression over local variables. It is evaluated with each topic message while the
+    skill runs, and the first time it is True the skill is cancelled. One that `is_derived` is written
+    nowhere: AOS made it from the skill document, where its places are.
     """
 
     project: str
@@ -344,6 +346,7 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     local_variables: tuple[LocalVariable, ...] = ()
     response_variable_span: Span | None = None
     is_derived: bool = False
+    stop_when: Snippet | None = None
 
 
 class Skill(msgspec.Struct, frozen=True):

@@ -128,6 +128,8 @@ def decision_line(record: DecisionRecord) -> str:
     outcome = record.outcome
     is_observed = outcome.status == "observed"
     what = observation_text(outcome.response, outcome.numbers) if is_observed else outcome.status
+    if outcome.stopped_by:
+        what = f"{what} (stopped by {outcome.stopped_by})"
     if outcome.fault is not None:
         what = f"{what} ({outcome.fault.message})"
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"

@@ -155,8 +155,10 @@ def _observation(record: DecisionRecord) -> Text:
         return Text("...", style="dim")
     if outcome.status != "observed":
         return Text(outcome.status, style="red")
+    stopped = " (stopped)" if outcome.stopped_by else ""
     return Text(
-        observation_text(outcome.response, outcome.numbers), style="red" if record.is_impossible else ""
+        f"{observation_text(outcome.response, outcome.numbers)}{stopped}",
+        style="red" if record.is_impossible else "",
     )
 
 

@@ -2,9 +2,9 @@
 
 `declarations` looks at names and types, `defaults` at what variables start with, `model_code` at the C++ of
 environment and skills, `responses` at what the two halves of a skill say to each other, `mapping_code` at the
-Python of the mappings and `python_names` at the names in it, `endings` at what ends a mission,
-`observed_numbers` at numbers beside responses, `shared_code` at what all model code shares and
-`shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
+Python of the mappings, `stop_when` at what stops a skill and `python_names` at the names in it, `endings`
+at what ends a mission, `observed_numbers` at numbers beside responses, `shared_code` at what all model code
+shares and `shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from aos_language.check.responses import check_responses
 from aos_language.check.scope import Scope
 from aos_language.check.shared_code import check_shared_code, check_shared_names_are_used
 from aos_language.check.shared_mapping_code import check_shared_mapping_code
+from aos_language.check.stop_when import check_stop_when
 from aos_language.check.unused import check_unused_locals, check_unused_variables
 from aos_language.findings import Findings
 from aos_language.local_types import reported_variables
@@ -61,6 +62,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
     for name, mapping in assembly.mappings.items():
         before = len(findings)
         check_mapping(mapping, assembly.models.get(name), scope, findings, is_whole=is_whole)
+        check_stop_when(mapping, assembly.models.get(name), scope, findings, is_whole=is_whole)
         is_sound = len(findings) == before
         if assembly.environment is not None:
             check_reported_variables(mapping, assembly.environment, findings)

@@ -81,6 +81,7 @@ def snippets_of_mapping(mapping: AbstractionMapping) -> Iterator[Snippet]:
     for rule in mapping.rules:
         yield from [rule.condition] if rule.condition is not None else []
         yield from (assignment.value for assignment in rule.assignments)
+    yield from [mapping.stop_when] if mapping.stop_when is not None else []
     yield from (field.value for field in mapping.activation.fields)
     for variable in mapping.local_variables:
         yield from (snippet for snippet in (variable.initial_value, variable.code) if snippet is not None)

@@ -44,7 +44,8 @@ def check_unused_locals(
     mapping: AbstractionMapping, reported_to_model: Collection[str], findings: Findings
 ) -> None:
     """Local variables that no rule, no field of the request and no other code names, model code included."""
-    conditions = (rule.condition for rule in mapping.rules if rule.condition is not None)
+    conditions = [rule.condition for rule in mapping.rules if rule.condition is not None]
+    conditions += [mapping.stop_when] if mapping.stop_when is not None else []
     used = _words(conditions) | _words(field.value for field in mapping.activation.fields)
     used |= _words(assignment.value for rule in mapping.rules for assignment in rule.assignments)
     for variable in mapping.local_variables:

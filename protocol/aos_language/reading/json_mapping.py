@@ -27,6 +27,7 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> Abstrac
     """The mapping; None where the activation cannot be read."""
     record.ignore("GlueFramework")
     rules, variable = _responses(record)
+    stop_when = record.python_expression("StopWhen")
     locals_ = [_local_variable(item) for item in record.records("LocalVariablesInitialization", "a variable")]
     activation = _activation(record)
     if activation is None:
@@ -40,6 +41,7 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> Abstrac
         response_variable=variable.text if variable else "",
         local_variables=tuple(local for local in locals_ if local is not None),
         response_variable_span=variable.span if variable else None,
+        stop_when=stop_when,
     )
 
 

@@ -22,6 +22,7 @@ from aos_protocol.documents import (
     LocalVariable,
     LowLevelAssignment,
     ResponseRule,
+    Snippet,
 )
 
 __all__ = ["read_mapping"]
@@ -37,6 +38,7 @@ def read_mapping(
     rules = [_rule(section, findings) for section in sections.all("response")]
     variables = [_local_variable(section, findings) for section in sections.all("local_variable")]
     text_response = sections.last("response_local_variable")
+    stop_when = _stop_when(sections, findings)
     section = sections.last("module_activation")
     if section is None:
         findings.error("AOS105", f"the mapping {name} lacks `module_activation:`", sections.span)
@@ -53,7 +55,19 @@ def read_mapping(
         response_variable=text_response.value.text if text_response is not None else "",
         local_variables=tuple(variable for variable in variables if variable is not None),
         response_variable_span=text_response.value.span if text_response is not None else None,
+        stop_when=stop_when,
     )
+
+
+def _stop_when(sections: Sections, findings: Findings) -> Snippet | None:
+    section = sections.last("stop_when")
+    if section is None:
+        return None
+    expression = section.expression()
+    if expression is None:
+        hint = "Write a Python expression over local variables behind it"
+        findings.error("AOS105", "`stop_when:` has no expression", section.span, hint)
+    return expression
 
 
 def _rule(section: Section, findings: Findings) -> ResponseRule | None:

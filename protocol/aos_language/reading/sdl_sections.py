@@ -81,6 +81,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         "version": _LINE,
         "response": Word(parts={"response_rule": _PYTHON, "assign_variable": _LINE, "value": _PYTHON}),
         "response_local_variable": _LINE,
+        "stop_when": _PYTHON,
         "module_activation": Word(
             parts={
                 "imports": _LINE,

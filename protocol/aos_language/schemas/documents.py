@@ -262,6 +262,9 @@ def _mapping() -> Schema:
         GlueFramework={},
         ModuleResponse=responses,
         ModuleActivation=activation,
+        StopWhen=said(
+            expression(), "A Python expression over local variables: the skill is cancelled when it holds."
+        ),
         LocalVariablesInitialization=list_of(_local_variable()),
         required=("ModuleActivation",),
     )

@@ -197,6 +197,7 @@ def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
             **_given(FromStringLocalVariable=mapping.response_variable),
         },
         "ModuleActivation": {kind: service, **_given(MaxDuration=activation.max_duration_s)},
+        **_given(StopWhen=_code(mapping.stop_when)),
         "LocalVariablesInitialization": [_local_variable(variable) for variable in mapping.local_variables],
     }
 

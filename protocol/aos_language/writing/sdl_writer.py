@@ -144,6 +144,8 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
             yield from _expression("value", assignment.value)
     if mapping.response_variable:
         yield f"response_local_variable: {mapping.response_variable}"
+    if mapping.stop_when is not None:
+        yield from ("", *_expression("stop_when", mapping.stop_when))
     activation = mapping.activation
     yield from ("", f"module_activation: {activation.kind}")
     yield from map(_import, activation.imports)

@@ -62,7 +62,7 @@ class Outcome(Message, frozen=True):
     a number, or a list with null for those that are missing. Local variables are as they were when the rules
     ran, as text. `fault` says what went wrong; an observation has it where a rule has told a failure.
     `assigned` are the new low-level values that came with the response, as plain data, by the path of the
-    `anyValue` from its state variable.
+    `anyValue` from its state variable. `stopped_by` names the skill whose `stop_when` has stopped this one.
     """
 
     id: ActivationId
@@ -75,6 +75,7 @@ class Outcome(Message, frozen=True):
     fault: Fault | None = None
     assigned: dict[str, Any] = {}
     numbers: dict[str, Any] = {}
+    stopped_by: str = ""
 
 
 class Stray(Message, frozen=True):

@@ -20,6 +20,7 @@ from aos_middleware.motion_gate import GONE_S, MotionGate
 from aos_middleware.no_response import no_response
 from aos_middleware.observed_numbers import observed_numbers
 from aos_middleware.served_paths import ServedPaths, no_adapter
+from aos_middleware.stopping import Stop
 from aos_protocol.documents import AbstractionMapping, LocalSource
 from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
@@ -81,6 +82,7 @@ class _Observation(msgspec.Struct, frozen=True):
     assigned: dict[str, Any] = {}
     numbers: dict[str, Any] = {}
     failure: AosError | None = None
+    stopped_by: str = ""
 
 
 async def run_activation(
@@ -116,6 +118,7 @@ async def run_activation(
         fault=None if cause is None else _fault_of(cause),
         assigned=observation.assigned,
         numbers=observation.numbers,
+        stopped_by=observation.stopped_by,
     )
 
 
@@ -160,6 +163,7 @@ class _Activation:
         self._last_numbers: dict[str, int] = {}
         self._has_received = asyncio.Event()
         self._fault: AosError | None = None
+        self._stop = Stop(around.bus, around.keys, request, self._mapping.activation.path)
         self.was_called = False
         self._has_missed = is_taken_up
 
@@ -171,6 +175,8 @@ class _Activation:
         except MappingFault:
             raise
         except AosError as error:
+            if self._stop.is_cause(error):
+                return await self._observed_stop(error)
             if not self._evaluator.emitted.handles_failures:
                 raise
             return await self._observed_failure(error)
@@ -216,6 +222,21 @@ class _Activation:
             failure=error,
         )
 
+    async def _observed_stop(self, error: AosError) -> _Observation:
+        """Returns what the rules make of a skill that `stop_when` has stopped, which is no failure."""
+        if self._has_missed:
+            raise _missed_topics(self._request)
+        observed = await self._evaluator.finish({}, "stopped", self._stop.reason)
+        if observed.response is None:
+            raise self._stop.unexplained(error)
+        return _Observation(
+            observed.response,
+            observed.local_variables,
+            assigned_variables(observed.assigned, self._request),
+            observed_numbers(self._evaluator.emitted.observed, observed.local_variables),
+            stopped_by=self._stop.by,
+        )
+
     async def _listening_call(self, fields: dict[str, Any]) -> SkillResult:
         """Calls the skill while topic messages are evaluated.
 
@@ -225,12 +246,14 @@ class _Activation:
         streams = [self._bus.listen(key, TopicMessage) for key in sorted(self._topic_of)]
         async with merged(*streams, queue_size=_QUEUE_SIZE) as messages, asyncio.TaskGroup() as tasks:
             tasks.create_task(self._take(messages))
+            stopping = tasks.create_task(self._stop.follow())
             try:
                 result = await self._call(fields)
                 await self._catch_up(result)
             except AosError as error:
                 self._fault = error
             finally:
+                stopping.cancel()
                 messages.close()
         if messages.dropped:
             _log.warning("%s: %d topic messages came too fast", self._request.skill, messages.dropped)
@@ -248,6 +271,7 @@ class _Activation:
             raise fault
         with self._around.gate.passing(path):
             await self._around.gate.confirm()
+            self._stop.let_out()
             return await self._call_path(path, fields)
 
     async def _call_path(self, path: str, fields: dict[str, Any]) -> SkillResult:
@@ -328,17 +352,23 @@ class _Activation:
             batch = [first]
             while messages.has_items and len(batch) < _BATCH:
                 batch.append(await anext(messages))
-            if self._fault is None:
-                try:
-                    await self._evaluator.take(
-                        [(self._topic_of[key], message.fields) for key, message in batch]
-                    )
-                except AosError as error:
-                    self._fault = error
-                    _log.warning("%s goes on, but its mapping failed: %s", self._request.skill, error)
+            await self._evaluate([(self._topic_of[key], message.fields) for key, message in batch])
             for key, message in batch:
                 self._last_numbers[key] = message.number
             self._has_received.set()
+
+    async def _evaluate(self, messages: list[tuple[str, dict[str, Any]]]) -> None:
+        """Hands messages over to mapping code, and has the skill stopped where one of them says so."""
+        while messages and self._fault is None:
+            try:
+                taken = await self._evaluator.take(messages)
+            except AosError as error:
+                self._fault = error
+                _log.warning("%s goes on, but its mapping failed: %s", self._request.skill, error)
+                return
+            if taken.stops:
+                self._stop.ask(self._request.skill)
+            messages = messages[max(taken.messages, 1) :]
 
     async def _catch_up(self, result: SkillResult) -> None:
         """Waits until every message that the adapter had sent when the call ended has been evaluated."""

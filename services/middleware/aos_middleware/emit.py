@@ -82,7 +82,7 @@ def emit_mapping(
     """
     mapping = skill.mapping
     sections = Sections(mapping, low_level, shared)
-    request, functions, observe = sections.request(), sections.variable_functions(), sections.observe()
+    request, functions, observe = sections.request(), sections.functions(), sections.observe()
     start_values = sections.start_values()
     shared_lines = sections.shared_code()
     constant_code = sections.constants()

@@ -29,6 +29,7 @@ from aos_middleware.frames import (
     Question,
     Raised,
     Take,
+    Taken,
     pack,
     read_answer,
 )
@@ -39,7 +40,7 @@ from aos_runtime.children import PIPE, Child, Limits, guarded
 
 __all__ = ["EvaluationLimits", "Evaluator", "MappingFault"]
 
-A = TypeVar("A", Begun, Done, Observed)
+A = TypeVar("A", Begun, Done, Observed, Taken)
 
 _MARGIN_S = 1.0
 """An answer may take this much longer than the worker's own deadlines before the worker is killed."""
@@ -124,11 +125,14 @@ class Evaluator:
         await self.start()
         return (await self._ask(Begin(parameters, low_level or {}), Begun, self._limits.evaluation_s)).fields
 
-    async def take(self, messages: Sequence[tuple[str, dict[str, Any]]]) -> None:
-        """Hands over topic messages, (topic, fields), in the order in which they came."""
-        variables = len(self.emitted.mapping.local_variables)
-        longest_s = self._limits.evaluation_s * len(messages) * variables
-        await self._ask(Take(list(messages)), Done, longest_s)
+    async def take(self, messages: Sequence[tuple[str, dict[str, Any]]]) -> Taken:
+        """Hands over topic messages, (topic, fields), in the order in which they came.
+
+        Where one of them makes `stop_when` true, those behind it were not evaluated yet.
+        """
+        evaluations = 1 + len(self.emitted.mapping.local_variables)
+        longest_s = self._limits.evaluation_s * len(messages) * evaluations
+        return await self._ask(Take(list(messages)), Taken, longest_s)
 
     async def finish(self, result: dict[str, Any], status: str = "succeeded", error: str = "") -> Observed:
         """Ends the activation with the call's result: the response, if a rule holds, and local variables.

@@ -22,6 +22,7 @@ __all__ = [
     "Question",
     "Raised",
     "Take",
+    "Taken",
     "pack",
     "read_answer",
     "read_question",
@@ -53,7 +54,7 @@ class Begin(msgspec.Struct, frozen=True, tag=True):
 
 
 class Take(msgspec.Struct, frozen=True, tag=True):
-    """Topic messages in the order in which they came: (topic, fields). Answered by Done."""
+    """Topic messages in the order in which they came: (topic, fields). Answered by Taken."""
 
     messages: list[tuple[str, dict[str, Any]]]
 
@@ -71,6 +72,13 @@ class Finish(msgspec.Struct, frozen=True, tag=True):
 
 class Done(msgspec.Struct, frozen=True, tag=True):
     """It is done."""
+
+
+class Taken(msgspec.Struct, frozen=True, tag=True):
+    """So many of the messages were evaluated: all of them, or up to the first one that `stops` the skill."""
+
+    messages: int
+    stops: bool = False
 
 
 class Begun(msgspec.Struct, frozen=True, tag=True):
@@ -104,7 +112,7 @@ class Raised(msgspec.Struct, frozen=True, tag=True):
 
 
 Question = Load | Begin | Take | Finish
-Answer = Done | Begun | Observed | Raised
+Answer = Done | Taken | Begun | Observed | Raised
 
 _encoder = msgspec.msgpack.Encoder()
 _questions = msgspec.msgpack.Decoder(Question)

@@ -111,7 +111,12 @@ class Sections:
 
     # --- local variables -----------------------------------------------------------------------------
 
-    def variable_functions(self) -> list[Function]:
+    def functions(self) -> list[Function]:
+        """The functions that are called during an activation, the condition that stops the skill last."""
+        stop_when = self._stop_when()
+        return [*self._variable_functions(), *([stop_when] if stop_when is not None else [])]
+
+    def _variable_functions(self) -> list[Function]:
         """A function for each local variable whose value comes from outside during the activation."""
         functions = []
         for variable in self._variables.values():
@@ -218,6 +223,17 @@ class Sections:
         origin = LineOrigin.of_span(self._mapping.span)
         line = self.marks.line(f"    return None if {name} is None else str({name})", origin)
         return Function("observe", name, summary, (line,))
+
+    def _stop_when(self) -> Function | None:
+        """The function that says whether a skill that runs is to be stopped; None where nothing stops it."""
+        if self._mapping.stop_when is None:
+            return None
+        code = self._expression(self._mapping.stop_when)
+        if code is None:
+            return None
+        lines = self.marks.expression("return ", code, "", 1)
+        summary = "The skill is stopped as soon as this is True; it is asked after each message."
+        return Function("stop_when", self._reads([code]), summary, tuple(lines))
 
     # --- the module's names --------------------------------------------------------------------------
 

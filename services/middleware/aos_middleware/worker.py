@@ -31,6 +31,7 @@ from aos_middleware.frames import (
     Question,
     Raised,
     Take,
+    Taken,
     pack,
     read_question,
 )
@@ -48,6 +49,14 @@ class ImportRefused(Exception):
     """An import that the deployment does not allow; no ImportError, so that nothing stands in for it."""
 
 
+class NoTruthValue(TypeError):
+    """A condition that is neither True nor False; `code` is that of its function."""
+
+    def __init__(self, message: str, code: CodeType) -> None:
+        super().__init__(message)
+        self.code = code
+
+
 class LoadedMapping:
     """A mapping's module, loaded, and the local variables of the activation that runs."""
 
@@ -59,6 +68,8 @@ class LoadedMapping:
         self._last_given: dict[str, Any] = {}
         self._assigned: dict[str, Any] = {}
         self._of_skill: dict[str, Any] = {}
+        self._silent: set[str] = set()
+        self._has_stopped = False
         namespace: dict[str, Any] = {
             "__name__": load.file_name.removesuffix(".py"),
             "__builtins__": _builtins(load.allowed_imports),
@@ -82,9 +93,11 @@ class LoadedMapping:
             case Begin(parameters, low_level):
                 return Begun(self._begin(parameters, low_level))
             case Take(messages):
-                for topic, fields in messages:
+                for number, (topic, fields) in enumerate(messages, start=1):
                     self._take(topic, fields)
-                return Done()
+                    if self._stops():
+                        return Taken(number, stops=True)
+                return Taken(len(messages))
             case Finish(result, status, error):
                 return Observed(self._finish(result, status, error), self._texts(), self._assigned)
             case Load():
@@ -94,6 +107,7 @@ class LoadedMapping:
         self._values = {}
         self._last_given = {}
         self._assigned = {}
+        self._has_stopped = False
         with _watched(self._load.evaluation_s):
             named = self._with_constants(parameters)
             for path, value in low_level.items():
@@ -101,11 +115,32 @@ class LoadedMapping:
             self._values = self._namespace["local_variables"](named)
             fields = self._call(self._namespace["request"])
             plain: dict[str, Any] = plain_from(fields)
+        of_topics = {name for functions in self._namespace.get("TOPICS", {}).values() for name in functions}
+        self._silent = {name for name in of_topics if self._values[name] is None}
         return plain
 
     def _take(self, topic: str, fields: dict[str, Any]) -> None:
         functions = self._namespace.get("TOPICS", {}).get(topic, {})
         self._update(functions, message_from(fields))
+
+    def _stops(self) -> bool:
+        """Returns whether the skill is to be stopped, once: the first time that its condition holds.
+
+        It is not asked before each topic that it reads has said something, or has an initial value.
+        """
+        stop_when = self._namespace.get("stop_when")
+        if stop_when is None or self._has_stopped:
+            return False
+        code: CodeType = stop_when.__code__
+        if not self._silent.isdisjoint(code.co_varnames[: code.co_argcount]):
+            return False
+        with _watched(self._load.evaluation_s):
+            value = self._call(stop_when)
+            # The truth values of numpy have no common class with Python's.
+            if not isinstance(value, bool) and type(value).__name__ not in ("bool", "bool_"):
+                raise NoTruthValue(f"stop_when is {text_of(value)}, which is neither True nor False", code)
+            self._has_stopped = bool(value)
+        return self._has_stopped
 
     def _finish(self, result: dict[str, Any], status: str, error: str) -> str | None:
         self._of_skill = {"__skill_status": status, "__skill_error": error}
@@ -125,6 +160,7 @@ class LoadedMapping:
         for name, function in functions.items():
             with _watched(self._load.evaluation_s):
                 self._values[name] = self._call(function, message)
+            self._silent.discard(name)
 
     def _call(self, function: Function, *message: Any) -> Any:
         """Calls a generated function with the local variables it names."""
@@ -168,8 +204,12 @@ def raised(
 ) -> Raised:
     """Returns what an exception says, and where in the module it was: at the innermost of the module's
     frames."""
-    text = f"{type(error).__name__}: {_said(error)}"[:_MAX_ERROR_CHARACTERS].rstrip(": ")
-    line, column = _place(error.__traceback__, file_name, lines)
+    if isinstance(error, NoTruthValue):
+        text, (line, column) = f"TypeError: {_said(error)}", _start(error.code, lines)
+    else:
+        text = f"{type(error).__name__}: {_said(error)}"
+        line, column = _place(error.__traceback__, file_name, lines)
+    text = text[:_MAX_ERROR_CHARACTERS].rstrip(": ")
     return Raised(text, line, column, unset, local_variables or {})
 
 
@@ -193,6 +233,14 @@ def _place(trace: TracebackType | None, file_name: str, lines: list[str]) -> tup
             place = (line, column)
         trace = trace.tb_next
     return place
+
+
+def _start(code: CodeType, lines: list[str]) -> tuple[int, int]:
+    """The place of the expression that a function returns: behind the word, or on the line below it."""
+    numbers = [number for _, _, number in code.co_lines() if number is not None]
+    line = min(number for number in numbers if number > code.co_firstlineno)
+    text = lines[line - 1]
+    return line, len(text) - len(text.lstrip().removeprefix("return ")) + 1
 
 
 def _builtins(allowed_imports: tuple[str, ...] | None) -> dict[str, Any]:
