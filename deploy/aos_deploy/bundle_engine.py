@@ -9,10 +9,11 @@ from pathlib import Path
 import typer
 
 from aos_deploy.constraints import constrained
+from aos_deploy.mission_values import with_values
 from aos_deploy.program import cache_dir
 from aos_language.load import load_bundle, read_bundle_files, with_excerpts
 from aos_protocol.diagnostics import Severity, render
-from aos_protocol.documents import Constraint
+from aos_protocol.documents import Constraint, MissionValue
 from aos_protocol.errors import DocumentError, ModelError
 from aos_solver.building.build import BuildKind
 from aos_solver.child.engine import Engine
@@ -23,9 +24,14 @@ __all__ = ["engine_of_bundle"]
 
 @asynccontextmanager
 async def engine_of_bundle(
-    bundle: Path, seed: int, *, kind: BuildKind = "quick", constraints: Sequence[Constraint] = ()
+    bundle: Path,
+    seed: int,
+    *,
+    kind: BuildKind = "quick",
+    constraints: Sequence[Constraint] = (),
+    values: Sequence[MissionValue] = (),
 ) -> AsyncIterator[Engine]:
-    """The engine of a bundle, compiled if need be, for missions with these constraints.
+    """The engine of a bundle, compiled if need be, for missions with these constraints and values.
 
     The bundle's mistakes come as one DocumentError; faults of its model show the line of the document.
     """
@@ -39,7 +45,7 @@ async def engine_of_bundle(
         typer.echo(render(diagnostic), err=True)
     try:
         built = await build_project(
-            constrained(loaded.project, constraints),
+            with_values(constrained(loaded.project, constraints), values),
             cache_dir(),
             lambda remark: typer.echo(f"aos: {remark}", err=True),
             kind=kind,

@@ -6,13 +6,14 @@ from pathlib import Path
 
 from aos_deploy.constraints import constrained
 from aos_deploy.deploy_file import Deployment
+from aos_deploy.mission_values import with_values
 from aos_language.load import load_files, read_bundle_files
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.documents import Project
 from aos_protocol.errors import DocumentError
 
-__all__ = ["check_constraints_of", "files_of_bundle", "project_of"]
+__all__ = ["check_mission_of", "files_of_bundle", "project_of"]
 
 
 def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes]:
@@ -26,10 +27,10 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
 
 
 def project_of(deployment: Deployment) -> Project:
-    """Reads the project that all bundles make together, with the mission's constraints.
+    """Reads the project that all bundles make together, with the mission's constraints and values.
 
     DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
-    constraints.
+    constraints and what is set.
     """
     files: dict[str, bytes] = {}
     for bundle in deployment.bundles:
@@ -41,12 +42,14 @@ def project_of(deployment: Deployment) -> Project:
             hint="Mend the places named above",
             diagnostics=loaded.diagnostics,
         )
-    return constrained(loaded.project, deployment.constraints, [deployment.path])
+    project = constrained(loaded.project, deployment.constraints, [deployment.path])
+    return with_values(project, deployment.mission_values, [deployment.path])
 
 
-def check_constraints_of(deployment: Deployment) -> None:
-    """Raises DeployError AOS801 with what is wrong with the constraints; the registry tells of documents."""
-    if not deployment.constraints:
+def check_mission_of(deployment: Deployment) -> None:
+    """Raises DeployError AOS801 with what is wrong with constraints and values; the registry tells of
+    documents."""
+    if not deployment.constraints and not deployment.mission_values:
         return
     try:
         project_of(deployment)

@@ -16,6 +16,7 @@ import msgspec
 from aos_deploy.adapters import TAKEN, AdapterPlan, played_by_model, read_adapters
 from aos_deploy.constraints import snippet_of
 from aos_deploy.deploy_folder import deploy_file_at
+from aos_deploy.mission_values import values_of_node
 from aos_deploy.own_programs import ProgramPart, check_programs
 from aos_deploy.typed import known_names, read_structure
 from aos_deploy.yaml_source import YamlList, YamlMap, YamlNode, YamlScalar, read_yaml
@@ -24,7 +25,7 @@ from aos_language.findings import Findings
 from aos_language.load import read_bundle_files
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import Span
-from aos_protocol.documents import Constraint
+from aos_protocol.documents import Constraint, MissionValue
 from aos_protocol.errors import DeployError
 
 __all__ = [
@@ -73,7 +74,8 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
 
     A skill is set aside for `set_aside_s` after `set_aside_after` failures in a row, and the mission ends
     after `failure_limit` failures of all skills; see docs/when-a-skill-fails.md. It holds for `hold_s` at
-    most, for somebody or for adapters that have left. `constraints` are what it must hardly ever do.
+    most, for somebody or for adapters that have left. `constraints` are what it must hardly ever do. `set`
+    gives values to the mission parameters that the documents declare.
     """
 
     goal_probability: Probability = 0.9
@@ -85,6 +87,7 @@ class MissionPart(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     set_aside_s: Seconds = 300.0
     hold_s: Seconds = 600.0
     constraints: tuple[ConstraintPart, ...] = ()
+    set: dict[str, Any] = {}
 
 
 class SkillPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -166,6 +169,7 @@ class Deployment(msgspec.Struct, frozen=True, kw_only=True):
     adapters: tuple[AdapterPlan, ...]
     policy: Path | None
     constraints: tuple[Constraint, ...]
+    mission_values: tuple[MissionValue, ...] = ()
     watch: Path | None
     runs: Path
 
@@ -242,6 +246,7 @@ def _resolve(path: Path, file: DeployFile, node: YamlMap, findings: Findings) ->
         adapters=adapters,
         policy=policy,
         constraints=_constraints(path, file, node),
+        mission_values=_mission_values(path, node, findings),
         watch=folder / file.watch if file.watch is not None else None,
         runs=(folder / file.runs).resolve(),
     )
@@ -269,6 +274,13 @@ def _constraints(path: Path, file: DeployFile, node: YamlMap) -> tuple[Constrain
         for part, place in zip(file.mission.constraints, places, strict=False)
         if isinstance(place, YamlScalar)
     )
+
+
+def _mission_values(path: Path, node: YamlMap, findings: Findings) -> tuple[MissionValue, ...]:
+    """The values that are set; whether the documents have such parameters is checked with these."""
+    mission = node.entries.get("mission")
+    given = mission.entries.get("set") if isinstance(mission, YamlMap) else None
+    return values_of_node(given, findings, str(path))
 
 
 def _bundles(folder: Path, file: DeployFile, node: YamlMap, findings: Findings) -> tuple[Path, ...]:

@@ -13,7 +13,7 @@ from typing import Protocol
 
 import msgspec
 
-from aos_deploy.bundle_files import check_constraints_of, files_of_bundle
+from aos_deploy.bundle_files import check_mission_of, files_of_bundle
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, ServiceChanged, Told
@@ -130,7 +130,7 @@ class MissionRun:
         programs = programs_of_deployment(deployment)
         for program in programs:
             run.forget_fault(program.name)
-        await asyncio.to_thread(check_constraints_of, deployment)
+        await asyncio.to_thread(check_mission_of, deployment)
         try:
             async with supervised(programs, base, run, self._hear, self._clock) as supervisor:
                 self._supervisor = supervisor

@@ -16,6 +16,7 @@ from typing import Any
 import msgspec
 
 from aos_deploy.played_faults import FAILED_CALL, LOST_RESULT, NO_ANSWER, PlayedFaults
+from aos_protocol.documents import MissionValue
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.adapters import Call, Host, Observed
@@ -58,6 +59,9 @@ class ModelAdapter:
         self._host = host
         self._cache_dir = Path(host.options["cache_dir"])
         self._file = host.run_dir / f"{host.name}.jsonl"
+        self._mission_values = msgspec.convert(
+            host.options.get("mission_values", ()), tuple[MissionValue, ...]
+        )
         self._faults = PlayedFaults(host.options.get("faults", {}))
         self._played: list[str] = []
         self._world: _World | None = None
@@ -121,7 +125,8 @@ class ModelAdapter:
 
     async def _adopt(self, revision: ProjectRevision) -> None:
         """Goes over to new documents: the steps so far are played again by them."""
-        built = await build_project(revision.project, self._cache_dir, lambda remark: _log.info("%s", remark))
+        project = msgspec.structs.replace(revision.project, mission_values=self._mission_values)
+        built = await build_project(project, self._cache_dir, lambda remark: _log.info("%s", remark))
         engine = await Engine.start(built, seed=self._host.seed, keeps_belief=False)
         world = _World(engine, tuple(action.name for action in engine.description.actions), {})
         for index, action in enumerate(engine.description.actions):

@@ -126,7 +126,10 @@ def _adapter(deployment: Deployment, plan: AdapterPlan) -> Program:
     kind, folder = plan.kind, deployment.path.parent
     options = plan.options
     if plan.kind_name == MODEL:
-        options = options | {"cache_dir": str(cache_dir())}
+        options = options | {
+            "cache_dir": str(cache_dir()),
+            "mission_values": msgspec.to_builtins(deployment.mission_values),
+        }
     settings = {
         "adapter": kind.adapter,
         "project": deployment.project,
@@ -165,8 +168,9 @@ def _solver_settings(deployment: Deployment) -> dict[str, Any]:
         "cache_dir": str(cache_dir()),
         **budget,
         "policy": str(deployment.policy or ""),
-        **msgspec.structs.asdict(file.mission),
+        **{name: value for name, value in msgspec.structs.asdict(file.mission).items() if name != "set"},
         "constraints": msgspec.to_builtins(deployment.constraints),
+        "mission_values": msgspec.to_builtins(deployment.mission_values),
         "skills": {name: msgspec.structs.asdict(part) for name, part in file.skills.items()},
     }
 

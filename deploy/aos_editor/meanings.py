@@ -23,6 +23,10 @@ _VARIABLE_PARTS = {
     "ml_max_value": "For AOS's learning planner; has no effect here.",
     "ml_ignore": "For AOS's learning planner; has no effect here.",
 }
+_PARAMETER_PARTS = {
+    "code": "Statements that set the value where nobody sets it; they write `state.name`.",
+    "default_value": "An expression for the value where nobody sets it; instead of `code:`.",
+}
 _IMPORTS = "`from: module import: name, name` or `import: module`: names for the expressions."
 _PROJECT = "The project the document belongs to; the first line of every file."
 _VERSION = "The document's version, one to four numbers: a changed document is taken only with a higher one."
@@ -59,6 +63,11 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             _VARIABLE_PARTS,
         ),
         "action_parameter": ("`type name`: a constant that skills may take as a parameter.", _VARIABLE_PARTS),
+        "mission_parameter": (
+            "`type name`: a constant of the mission, read as `state.name`. "
+            "Whoever starts the mission may set it.",
+            _PARAMETER_PARTS,
+        ),
         "one_state_model": ("`true`: `state`, `state_` and `state__` are one and the same.", {}),
         "initial_belief": (
             "Draws one state of the belief at the start; the last one counts.",

@@ -43,6 +43,7 @@ _KINDS = {
     "state_variable": types.SymbolKind.Variable,
     "local_variable": types.SymbolKind.Variable,
     "action_parameter": types.SymbolKind.Constant,
+    "mission_parameter": types.SymbolKind.Constant,
     "constant": types.SymbolKind.Constant,
     "parameter": types.SymbolKind.Field,
     "variable": types.SymbolKind.Field,

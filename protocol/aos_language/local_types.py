@@ -56,6 +56,6 @@ def reported_variables(mapping: AbstractionMapping, environment: Environment) ->
 
 
 def _type_of(variable: StateVariable) -> LocalType | None:
-    if variable.is_parameter_value or variable.key_types:
+    if variable.is_constant or variable.key_types:
         return None
     return local_type(f"{variable.type}[]" if variable.is_array else variable.type)

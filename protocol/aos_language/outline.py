@@ -69,6 +69,7 @@ def _environment(environment: Environment) -> Iterator[str]:
 
 def _variable(variable: StateVariable) -> Iterator[str]:
     kind = "action parameter value" if variable.is_parameter_value else "variable"
+    kind = "mission parameter" if variable.is_mission_parameter else kind
     keys = f" by ({', '.join(variable.key_types)})" if variable.key_types else ""
     array = f"[{variable.index_enum}]" if variable.is_array else ""
     default = f" = {variable.default_value.code}" if variable.default_value else ""

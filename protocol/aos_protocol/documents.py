@@ -35,6 +35,7 @@ __all__ = [
     "LowLevelConstant",
     "LowLevelDocument",
     "LowLevelType",
+    "MissionValue",
     "Parameter",
     "Project",
     "ResponseRule",
@@ -108,7 +109,8 @@ class CompoundType(msgspec.Struct, frozen=True):
 
 
 class StateVariable(msgspec.Struct, frozen=True):
-    """A state variable, or a value that skills may take as a parameter (`is_parameter_value`).
+    """A state variable, a value that skills may take as a parameter (`is_parameter_value`), or a constant of
+    the mission, whose value whoever starts the mission may set (`is_mission_parameter`).
 
     `default_value` is an expression, `default_code` statements over `state.`; at most one is given.
     An array with an `index_enum` has an element for each of that enum's values.
@@ -127,6 +129,12 @@ class StateVariable(msgspec.Struct, frozen=True):
     type_span: Span | None = None
     index_enum: str = ""
     index_span: Span | None = None
+    is_mission_parameter: bool = False
+
+    @property
+    def is_constant(self) -> bool:
+        """True for what no code of the documents may write."""
+        return self.is_parameter_value or self.is_mission_parameter
 
 
 # --- code blocks ---------------------------------------------------------------------------------------
@@ -405,10 +413,22 @@ class Constraint(msgspec.Struct, frozen=True):
     cost: float = 0.0
 
 
+class MissionValue(msgspec.Struct, frozen=True):
+    """A value for a mission parameter, or for a part of one: `name` is `target`, `place.x` or `wanted[Soda]`.
+
+    `text` is the value as the documents write it, an enum's by its name. `span` is where somebody set it.
+    """
+
+    name: str
+    text: str
+    span: Span
+
+
 class Project(msgspec.Struct, frozen=True):
     """Everything about one robot and task: what the registry publishes and the generators read.
 
-    `constraints` are the mission's and not the documents': the solver adds them.
+    `constraints` and `mission_values` are the mission's and not the documents': the solver adds them. No
+    generated code depends on the values.
 
     Skills are sorted by name, so that grounded actions have the same numbers whatever the file names are.
     """
@@ -418,6 +438,7 @@ class Project(msgspec.Struct, frozen=True):
     skills: tuple[Skill, ...]
     low_level: LowLevelDocument | None = None
     constraints: tuple[Constraint, ...] = ()
+    mission_values: tuple[MissionValue, ...] = ()
 
     def skill(self, name: str) -> Skill:
         """The skill of that name; KeyError if there is none."""

@@ -35,6 +35,12 @@ MISUSES = {
     "compound type": Rule(
         "room.json", '"Name": "room", "Type": "tRoom"', '"Name": "room", "Type": "«tRom"', "AOS110"
     ),
+    "mission parameter": Rule(
+        "room.ef",
+        "horizon: 5",
+        "horizon: 5\nmission_parameter: int count\nextrinsic_code:\n«state_.count = 2;",
+        "AOS128",
+    ),
     "array": Rule("room.ef", "int steps []", "int steps «[2]", "AOS104"),
     "array over an enum": Rule("room.ef", "int steps []", "int steps [«tRom]", "AOS110"),
     "vector<...>": Rule("room.ef", "int steps []", "«vector<Roof> steps", "AOS110"),

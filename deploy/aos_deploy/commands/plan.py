@@ -13,6 +13,7 @@ import typer
 
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.constraints import constraint_of_option
+from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress, waiting
 from aos_deploy.views.lines import risk_text
@@ -89,6 +90,7 @@ def plan(
     threads: Threads = 1,
     policy: PolicyFile = None,
     never: Never = None,
+    set_values: SetValues = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
     as_json: AsJson = False,
 ) -> None:
@@ -110,7 +112,7 @@ def plan(
                 return _decision((await engine.exact(horizon)).values, 0)
             return await _searched_decision(engine, search)
 
-    decision = _with_engine(bundle, seed, decide, never=never)
+    decision = _with_engine(bundle, seed, decide, never=never, set_values=set_values)
     if as_json:
         print_json(decision)
     else:
@@ -172,6 +174,7 @@ def simulate(
     threads: Threads = 1,
     policy: PolicyFile = None,
     never: Never = None,
+    set_values: SetValues = None,
     goal_probability: Annotated[float, typer.Option(help="Ends a mission when passed")] = 0.9,
     step_limit: Annotated[int, typer.Option(min=1, help="Ends a mission when reached")] = 30,
     stop_below_value: Annotated[
@@ -206,7 +209,7 @@ def simulate(
                 bar.update(task, description="missions", completed=len(done))
         return done
 
-    missions = _with_engine(bundle, seed, run_all, never=never)
+    missions = _with_engine(bundle, seed, run_all, never=never, set_values=set_values)
     if as_json:
         print_json(Campaign(missions, _summary(missions)))
     else:
@@ -244,6 +247,7 @@ def rate(
     bundle: Bundle,
     seconds: Annotated[float, typer.Option(min=0.01, help="Length of one repetition")] = 1.0,
     seed: Seed = 1,
+    set_values: SetValues = None,
     as_json: AsJson = False,
 ) -> None:
     """Measure how many samples a second the model gives.
@@ -256,7 +260,7 @@ def rate(
         counts = [await engine.rate(seconds, seed + turn) for turn in range(RATE_REPETITIONS)]
         return [count.samples / count.seconds for count in counts]
 
-    rates = _with_engine(bundle, seed, measure, kind="thorough")
+    rates = _with_engine(bundle, seed, measure, kind="thorough", set_values=set_values)
     result = Rate(statistics.fmean(rates), statistics.stdev(rates), RATE_REPETITIONS, seconds)
     if as_json:
         print_json(result)
@@ -271,11 +275,15 @@ def _with_engine(
     *,
     kind: BuildKind = "quick",
     never: list[str] | None = None,
+    set_values: list[str] | None = None,
 ) -> T:
     constraints = [constraint_of_option(text) for text in never or ()]
+    values = values_of_options(set_values)
 
     async def run() -> T:
-        async with engine_of_bundle(bundle, seed, kind=kind, constraints=constraints) as engine:
+        async with engine_of_bundle(
+            bundle, seed, kind=kind, constraints=constraints, values=values
+        ) as engine:
             return await ask(engine)
 
     return asyncio.run(run())

@@ -11,6 +11,7 @@ import typer
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
+from aos_deploy.mission_values import SetValues
 from aos_deploy.options import HELP_NAMES, Version
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def up(
     seed: Seed = None,
     listen: Listen = None,
     runs: Runs = None,
+    set_values: SetValues = None,
     model: PlayedByModel = False,
     serve: Serve = None,
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
@@ -92,13 +94,15 @@ def up(
     from aos_runtime.clock import SystemClock
 
     if resume:
-        _refuse_beside_resume(seed=seed, listen=listen, runs=runs, model=model or None, serve=serve)
+        _refuse_beside_resume(
+            seed=seed, listen=listen, runs=runs, set=set_values or None, model=model or None, serve=serve
+        )
         deployment, taken_up = take_up(deploy or RUNS / LATEST)
     elif deploy is None:
         raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
     else:
         deployment, taken_up = read_deploy_file(deploy), None
-    deployment = _with_options(deployment, seed, listen, runs)
+    deployment = _with_options(deployment, seed, listen, runs, set_values)
     if model:
         deployment = without_a_robot(deployment)
     check_needed_here(deployment)
@@ -125,10 +129,15 @@ def _refuse_beside_resume(**options: object) -> None:
 
 
 def _with_options(
-    deployment: Deployment, seed: int | None, listen: str | None, runs: Path | None
+    deployment: Deployment,
+    seed: int | None,
+    listen: str | None,
+    runs: Path | None,
+    set_values: list[str] | None,
 ) -> Deployment:
-    """The deployment with what the command says otherwise."""
+    """The deployment with what the command says otherwise; of two values for a parameter the last counts."""
     from aos_deploy.deploy_file import check_endpoint
+    from aos_deploy.mission_values import values_of_options
 
     file = deployment.file
     if seed is not None:
@@ -137,5 +146,8 @@ def _with_options(
         check_endpoint(listen)
         file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=listen))
     return msgspec.structs.replace(
-        deployment, file=file, runs=runs.resolve() if runs is not None else deployment.runs
+        deployment,
+        file=file,
+        mission_values=(*deployment.mission_values, *values_of_options(set_values)),
+        runs=runs.resolve() if runs is not None else deployment.runs,
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import msgspec
 import typer
 
+from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
 from aos_protocol.errors import DeployError
@@ -23,7 +24,7 @@ __all__ = ["register"]
 _SNIPPET = """\
 from aos_lab.gym import AosVectorEnv
 
-worlds = AosVectorEnv({bundle!r}, num_envs=64, max_episode_steps=100)
+worlds = AosVectorEnv({bundle!r}, num_envs=64, max_episode_steps=100{more})
 observations, _ = worlds.reset(seed=1)
 for _ in range(1000):
     actions = worlds.action_space.sample()
@@ -54,6 +55,7 @@ def gym(
     steps: Annotated[int, typer.Option(min=0, help="Measure with so many random steps")] = 0,
     worlds: Annotated[int, typer.Option(min=1, help="Worlds side by side")] = 1024,
     seed: Annotated[int, typer.Option(min=0, help="Of the worlds and the actions")] = 1,
+    set_values: SetValues = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
     """Describe a bundle as a Gymnasium environment.
@@ -64,7 +66,8 @@ def gym(
         raise DeployError("gymnasium is not installed", code="AOS805", hint=f"Run {pip_install('gym')}")
     from aos_lab.gym import AosVectorEnv
 
-    environment = AosVectorEnv(bundle, worlds)
+    values = {value.name: value.text for value in values_of_options(set_values)}
+    environment = AosVectorEnv(bundle, worlds, mission_values=values)
     try:
         rate = _rate(environment, steps, seed) if steps else None
         spaces = Spaces(
@@ -81,7 +84,7 @@ def gym(
     if as_json:
         print_json(spaces)
     else:
-        _print(spaces, bundle)
+        _print(spaces, bundle, values)
 
 
 def _rate(environment: AosVectorEnv, steps: int, seed: int) -> float:
@@ -97,10 +100,11 @@ def _rate(environment: AosVectorEnv, steps: int, seed: int) -> float:
     return rounds * environment.num_envs / (time.monotonic() - start_s)
 
 
-def _print(spaces: Spaces, bundle: Path) -> None:
+def _print(spaces: Spaces, bundle: Path, values: dict[str, str]) -> None:
     typer.echo(f"actions       {spaces.action_space}: {', '.join(spaces.actions)}")
     typer.echo(f"observations  {spaces.observation_space}: {', '.join(spaces.responses)}")
     typer.echo(f"discount      {spaces.discount:g}")
     if spaces.steps_per_second is not None:
         typer.echo(f"rate          {spaces.steps_per_second:,.0f} steps/s in {spaces.worlds:,} worlds")
-    typer.echo(f"\n{_SNIPPET.format(bundle=str(bundle))}", nl=False)
+    more = f", mission_values={values!r}" if values else ""
+    typer.echo(f"\n{_SNIPPET.format(bundle=str(bundle), more=more)}", nl=False)

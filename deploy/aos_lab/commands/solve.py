@@ -18,6 +18,7 @@ import typer
 from rich.progress import BarColumn, TextColumn
 
 from aos_deploy.bundle_engine import engine_of_bundle
+from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.printing import count, print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress, waiting
@@ -25,6 +26,7 @@ from aos_lab.formats.graph_writers import c_header, graphviz, write_text
 from aos_lab.formats.policy_graph import PolicyGraph, policy_graph
 from aos_lab.formats.problem_files import PROBLEM_ENDINGS, read_problem
 from aos_lab.formats.problem_writers import WRITERS, write_problem
+from aos_protocol.documents import MissionValue
 from aos_protocol.errors import DeployError, PlanningError
 from aos_solver.child.answers import Listed
 from aos_solver.offline.enumeration import MAX_STATES, enumerate_model
@@ -54,12 +56,13 @@ def register(app: typer.Typer) -> None:
 
 class _Target(msgspec.Struct, frozen=True):
     """The problem to solve: `digest` is of the compiled model or the file, `states` are the texts of its
-    states, which are not told apart by what is `left_out`."""
+    states, which are not told apart by what is `left_out`. `mission_parameters` are the values of all."""
 
     model: ExplicitModel
     digest: str
     states: tuple[str, ...]
     left_out: tuple[str, ...] = ()
+    mission_parameters: dict[str, str] = {}
 
 
 class Report(msgspec.Struct):
@@ -105,6 +108,7 @@ def solve(
         Path | None, typer.Option("--c-header", help="Write the policy as C that needs nothing else")
     ] = None,
     nodes: Annotated[int, typer.Option(min=1, max=50_000, help="Size of the drawing and of the C")] = 200,
+    set_values: SetValues = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
 ) -> None:
     """Work out a policy before the mission, with proven bounds of what it gives.
@@ -114,9 +118,11 @@ def solve(
     """
     _check_names(export or [], graph)
     if target.suffix in PROBLEM_ENDINGS and not target.is_dir():
+        if set_values:
+            raise typer.BadParameter("a problem file has no mission parameters", param_hint="--set")
         found = _problem(target, states, discount)
     else:
-        found = asyncio.run(_enumerated(target, states, discount))
+        found = asyncio.run(_enumerated(target, states, discount, values_of_options(set_values)))
     if stop_value is not None:
         found = msgspec.structs.replace(found, model=with_stopping(found.model, stop_value))
     limits = SolvingLimits(precision=precision, cpu_s=time_s)
@@ -165,13 +171,16 @@ def _problem(path: Path, max_states: int, discount: float | None) -> _Target:
     return _Target(model, hashlib.sha256(path.read_bytes()).hexdigest(), model.states)
 
 
-async def _enumerated(bundle: Path, max_states: int, discount: float | None) -> _Target:
-    async with engine_of_bundle(bundle, seed=1) as engine:
+async def _enumerated(
+    bundle: Path, max_states: int, discount: float | None, values: tuple[MissionValue, ...]
+) -> _Target:
+    async with engine_of_bundle(bundle, seed=1, values=values) as engine:
         with _progress("states") as on_progress:
             found = await enumerate_model(
                 engine, max_states=max_states, discount=discount, on_progress=on_progress
             )
-        return _Target(found.model, engine.model_digest, found.state_texts, found.left_out)
+        parameters = engine.description.mission_parameters
+        return _Target(found.model, engine.model_digest, found.state_texts, found.left_out, parameters)
 
 
 async def _solve(
@@ -204,6 +213,7 @@ def _policy(target: _Target, solution: Solution, stop_value: float | None) -> Po
         stop_value=stop_value,
         actions=target.model.actions,
         states=target.states,
+        mission_parameters=target.mission_parameters,
     )
     return Policy(header, solution.vectors)
 

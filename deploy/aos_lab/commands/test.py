@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.mission_values import SetValues, values_of_options
 from aos_deploy.options import AsJson
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
@@ -45,6 +46,7 @@ def run_tests(
         Path | None,
         typer.Option(metavar="DIR", help="Keep records and runs here, and use those that are there"),
     ] = None,
+    set_values: SetValues = None,
     as_json: AsJson = False,
 ) -> None:
     """Run missions and check what is claimed of them.
@@ -71,6 +73,7 @@ def run_tests(
                 out=out / name,
                 on_trial=partial(bar.advance, task),
                 place=Place(jobs=jobs),
+                mission_values=values_of_options(set_values),
             )
             tested[name] = Tested.of(test, asyncio.run(missions).trials)
     if junit is not None:

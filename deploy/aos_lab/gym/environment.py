@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -24,15 +25,21 @@ class AosEnv(gymnasium.Env[Observation, np.int64]):
     An episode terminates when the mission does, and is truncated after `max_episode_steps` if given. `info`
     has the `action`, the `response` and the `ending` in words. In a bundle with text observations these are
     bytes, and with numbers beside responses dicts: see `aos_lab.gym.spaces`. `number_names` has the names
-    of these numbers; of an array there are the first `array_room`.
+    of these numbers; of an array there are the first `array_room`. `mission_values` are those of mission
+    parameters, as `{"target": "alice"}`.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
 
     def __init__(
-        self, bundle: str | Path, *, max_episode_steps: int | None = None, array_room: int = 16
+        self,
+        bundle: str | Path,
+        *,
+        max_episode_steps: int | None = None,
+        array_room: int = 16,
+        mission_values: Mapping[str, Any] | None = None,
     ) -> None:
-        self._worlds = HiddenWorlds(Path(bundle), array_room)
+        self._worlds = HiddenWorlds(Path(bundle), array_room, mission_values)
         self._max_steps = max_episode_steps
         self._steps = 0
         self.action_names = self._worlds.actions

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -35,8 +36,9 @@ class AosVectorEnv(gymnasium.vector.VectorEnv[Any, Numbers, Numbers]):
         *,
         max_episode_steps: int | None = None,
         array_room: int = 16,
+        mission_values: Mapping[str, Any] | None = None,
     ) -> None:
-        self._worlds = HiddenWorlds(Path(bundle), array_room)
+        self._worlds = HiddenWorlds(Path(bundle), array_room, mission_values)
         self._max_steps = max_episode_steps
         self.num_envs = num_envs
         self.action_names = self._worlds.actions

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine, Sequence
+from collections.abc import Coroutine, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from aos_deploy.mission_values import values_of_mapping, with_values
 from aos_deploy.program import cache_dir
 from aos_lab.gym.number_columns import NumberColumns, Numbers
 from aos_language.load import load_bundle
+from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DocumentError
 from aos_solver.child.engine import Engine
 from aos_solver.mission.hot_plug import build_project
@@ -45,10 +47,12 @@ class HiddenWorlds:
     `number_names` are those of the numbers that are reported beside responses, of an array `array_room`.
     """
 
-    def __init__(self, bundle: Path, array_room: int) -> None:
+    def __init__(
+        self, bundle: Path, array_room: int, mission_values: Mapping[str, Any] | None = None
+    ) -> None:
         self._loop = asyncio.new_event_loop()
         try:
-            self._engine = self._run(_start(bundle))
+            self._engine = self._run(_start(bundle, mission_values or {}))
             reset = self._run(self._engine.reset_worlds([0]))
         except BaseException:
             self._loop.close()
@@ -93,13 +97,15 @@ class HiddenWorlds:
         return self._loop.run_until_complete(work)
 
 
-async def _start(bundle: Path) -> Engine:
+async def _start(bundle: Path, mission_values: Mapping[str, Any]) -> Engine:
     loaded = load_bundle(bundle)
     if loaded.project is None:
         raise DocumentError(
             f"{bundle} has errors", hint=f"See aos lint {bundle}", diagnostics=loaded.diagnostics
         )
-    built = await build_project(loaded.project, cache_dir(), lambda remark: None)
+    values = values_of_mapping(mission_values, Span("mission_values"))
+    project = with_values(loaded.project, values)
+    built = await build_project(project, cache_dir(), lambda remark: None)
     return await Engine.start(built, seed=1)
 
 

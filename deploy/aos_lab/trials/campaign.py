@@ -19,6 +19,7 @@ from aos_lab.trials.setting import Setting, deployment_of, world_deployment_of
 from aos_lab.trials.system_player import SystemPlayer
 from aos_lab.trials.trial import Trial
 from aos_protocol import __version__
+from aos_protocol.documents import MissionValue
 from aos_runtime.lifecycle import root_cause
 
 __all__ = ["HERE", "Place", "Played", "play_campaign"]
@@ -67,12 +68,17 @@ async def play_campaign(
     out: Path,
     on_trial: Callable[[], None],
     place: Place | None = None,
+    mission_values: tuple[MissionValue, ...] = (),
 ) -> Played:
     """Plays a mission of each seed. Records in `out` are used where they were made of the same.
+
+    `mission_values` count before what the setting and the deploy file set.
 
     Missions that broke are run again. `folder` is where the setting's paths begin.
     """
     deployment = deployment_of(setting, folder, out)
+    values = (*deployment.mission_values, *mission_values)
+    deployment = msgspec.structs.replace(deployment, mission_values=values)
     world = world_deployment_of(setting, deployment, folder) if setting.by == "model" else None
     digest = _digest(setting, deployment, world)
     records = out / "missions.jsonl"
@@ -149,6 +155,8 @@ def _digest(setting: Setting, deployment: Deployment, world: Deployment | None) 
     whole.update(msgspec.json.encode((deployment.file.mission, deployment.file.solver, deployment.file.bind)))
     if setting.by != "model" and (setting.faults or deployment.file.skills):
         whole.update(msgspec.json.encode((setting.faults, deployment.file.skills)))
+    if deployment.mission_values:
+        whole.update(msgspec.json.encode([(value.name, value.text) for value in deployment.mission_values]))
     for bundle in (*deployment.bundles, *(world.bundles if world is not None else ())):
         for name, data in sorted(files_of_bundle(bundle, deployment.file.leave_out).items()):
             whole.update(f"{len(name)}:{name}:{len(data)}:".encode() + data)

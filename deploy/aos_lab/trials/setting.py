@@ -10,7 +10,9 @@ from ruamel.yaml import YAML
 
 from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file, without_a_robot
+from aos_deploy.mission_values import values_of_mapping
 from aos_deploy.played_faults import PlayedFaults
+from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
 
 __all__ = ["Player", "Setting", "deployment_of", "world_deployment_of"]
@@ -29,6 +31,7 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     `unconstrained` leaves out the deploy file's constraints. `faults` are values for the world file's
     `faults` in a simulated world, and those of `PlayedFaults` where the model plays in a whole system. With a
     `script` its actions are carried out in the simulated world, one after the other, and nothing is planned.
+    `set` gives values to mission parameters, where the deploy file gives none or others.
     """
 
     deploy: str
@@ -40,6 +43,7 @@ class Setting(msgspec.Struct, frozen=True, kw_only=True):
     unconstrained: bool = False
     faults: dict[str, float] = {}
     script: tuple[str, ...] = ()
+    set: dict[str, Any] = {}
 
 
 def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
@@ -58,6 +62,8 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
     if setting.unconstrained:
         file = msgspec.structs.replace(file, mission=msgspec.structs.replace(file.mission, constraints=()))
         deployment = msgspec.structs.replace(deployment, constraints=())
+    values = values_of_mapping(setting.set, Span("set"))
+    deployment = msgspec.structs.replace(deployment, mission_values=(*deployment.mission_values, *values))
     if setting.bundles:
         deployment = msgspec.structs.replace(deployment, bundles=_named(setting.bundles, folder))
     deployment = msgspec.structs.replace(deployment, file=file)

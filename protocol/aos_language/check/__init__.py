@@ -1,10 +1,11 @@
 """The rules across documents.
 
-`declarations` looks at names and types, `defaults` at what variables start with, `model_code` at the C++ of
-environment and skills, `responses` at what the two halves of a skill say to each other, `mapping_code` at the
-Python of the mappings, `stop_when` at what stops a skill and `python_names` at the names in it, `endings`
-at what ends a mission, `observed_numbers` at numbers beside responses, `shared_code` at what all model code
-shares and `shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
+`declarations` looks at names and types, `defaults` at what variables start with, `mission_parameters` at what
+a mission may set, `model_code` at the C++ of environment and skills, `responses` at what the two halves of a
+skill say to each other, `mapping_code` at the Python of the mappings, `stop_when` at what stops a skill and
+`python_names` at the names in it, `endings` at what ends a mission, `observed_numbers` at numbers beside
+responses, `shared_code` at what all model code shares and `shared_mapping_code` at what all mappings share,
+`unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from aos_language.check.given_observation import (
     names_in_given_observation,
 )
 from aos_language.check.mapping_code import check_low_level, check_mapping
+from aos_language.check.mission_parameters import check_mission_parameters
 from aos_language.check.model_code import check_environment_code, check_skill_code
 from aos_language.check.observed_numbers import (
     check_environment_reports,
@@ -48,6 +50,7 @@ def check(assembly: Assembly, findings: Findings) -> None:
         check_shared_code(assembly.environment, scope, findings)
         check_environment_code(assembly.environment, scope, findings)
         check_defaults(assembly.environment, findings)
+        check_mission_parameters(assembly.environment, scope, findings)
         check_endings(assembly.environment, findings)
         check_environment_reports(assembly.environment, findings)
     for name, model in assembly.models.items():

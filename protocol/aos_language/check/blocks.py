@@ -32,7 +32,7 @@ class Block(msgspec.Struct, frozen=True):
     """One snippet in its role: statements, an expression, or declarations.
 
     `names` are the typed names around it: `constants`, items, temporaries. `constants` are the skill's
-    parameters, which no code may write.
+    parameters, which no code may write. `sets` is the variable whose default it is.
     """
 
     role: Role
@@ -41,6 +41,7 @@ class Block(msgspec.Struct, frozen=True):
     is_declarations: bool = False
     names: Mapping[str, str] = {}
     constants: Mapping[str, str] = {}
+    sets: str = ""
 
 
 STATES = ("state", "state_", "state__", "state___")
@@ -69,9 +70,9 @@ def environment_blocks(environment: Environment) -> Iterator[Block]:
                 yield Block(DEFAULT, field.default, is_expression=True)
     for variable in environment.variables:
         if variable.default_value is not None:
-            yield Block(DEFAULT, variable.default_value, is_expression=True)
+            yield Block(DEFAULT, variable.default_value, is_expression=True, sets=variable.name)
         if variable.default_code is not None:
-            yield Block(DEFAULT, variable.default_code)
+            yield Block(DEFAULT, variable.default_code, sets=variable.name)
     yield from assignment_blocks(INITIAL, environment.initial_belief)
     for special in environment.special_states:
         if special.condition is not None:

@@ -313,8 +313,12 @@ class _BlockCheck:
         self._check_fields(mention, found, start=2)
         variable = self._scope.variables.get(name)
         is_write = mention.access in (Access.WRITE, Access.UPDATE)
-        is_constant = variable is not None and variable.is_parameter_value
-        if is_constant and is_write and not self._block.role.may_set_parameter_values:
+        if variable is None or not variable.is_constant or not is_write:
+            return
+        if variable.is_mission_parameter and name != self._block.sets:
+            hint = "A mission parameter is a constant of the mission: only its own default sets it"
+            self._constant_written(mention, name, hint)
+        elif not self._block.role.may_set_parameter_values:
             hint = "Values of action parameters are constants; set them where they are declared"
             self._constant_written(mention, name, hint)
 

@@ -36,7 +36,8 @@ def check_unused_variables(
         is_used = any(word in words or defaults_with[word] > (word in own) for word in used)
         if variable.is_parameter_value or variable.type in looped or is_used:
             continue
-        message = f"no code uses the state variable {variable.name}"
+        kind = "mission parameter" if variable.is_mission_parameter else "state variable"
+        message = f"no code uses the {kind} {variable.name}"
         findings.warning("AOS133", message, variable.span, "Leave it out, or use it")
 
 

@@ -146,6 +146,7 @@ def _variable(record: Record) -> StateVariable | None:
     value, code = record.expression("Default"), record.code("DefaultCode")
     is_array = record.boolean("IsArray")
     is_parameter_value = record.boolean("IsActionParameterValue")
+    is_mission_parameter = record.boolean("IsMissionParameter")
     index = record.text("IndexedBy")
     keys = record.texts("Parameters")
     code = _where_included(record, code)
@@ -156,6 +157,9 @@ def _variable(record: Record) -> StateVariable | None:
     if value is not None and code is not None:
         message = 'a variable has "Default" or "DefaultCode", not both'
         record.findings.error("AOS106", message, record.key_span("DefaultCode"))
+    if is_parameter_value and is_mission_parameter:
+        message = "a variable is a value for action parameters or a mission parameter, not both"
+        record.findings.error("AOS106", message, record.key_span("IsMissionParameter"))
     if name is None or kind is None:
         return None
     check_name(name, "a variable", record.findings)
@@ -179,6 +183,7 @@ def _variable(record: Record) -> StateVariable | None:
         type_span=kind.span,
         index_enum=index_enum,
         index_span=index.span if index is not None else kind.span if index_enum else None,
+        is_mission_parameter=is_mission_parameter,
     )
 
 

@@ -41,7 +41,8 @@ def read_environment(sections: Sections, project: str, span: Span, findings: Fin
     """The environment; what cannot be read of it is reported and left out."""
     types = [_type(section, findings) for section in sections.all("define_type")]
     variables = [
-        _variable(section, findings) for section in sections.of("state_variable", "action_parameter")
+        _variable(section, findings)
+        for section in sections.of("state_variable", "action_parameter", "mission_parameter")
     ]
     return Environment(
         project=project,
@@ -175,7 +176,6 @@ def _without_learning_scale(rest: Text) -> Text:
 
 
 def _variable(section: Section, findings: Findings) -> StateVariable | None:
-    is_parameter_value = section.word == "action_parameter"
     declaration = read_declaration(section, "a variable", findings)
     if declaration is None:
         return None
@@ -198,7 +198,7 @@ def _variable(section: Section, findings: Findings) -> StateVariable | None:
         type=kind,
         span=declaration.name.span,
         is_array=is_array or mark is not None or _ARRAY_WORDS.get(rest.text.lower(), False),
-        is_parameter_value=is_parameter_value,
+        is_parameter_value=section.word == "action_parameter",
         default_value=expression(default_value, drop_semicolon=True) if default_value else None,
         default_code=code.code() if code is not None else None,
         key_types=_key_types(keys.value, findings) if keys is not None else (),
@@ -206,6 +206,7 @@ def _variable(section: Section, findings: Findings) -> StateVariable | None:
         type_span=declaration.type_text.span,
         index_enum=index_enum,
         index_span=index_span if index_enum else None,
+        is_mission_parameter=section.word == "mission_parameter",
     )
 
 

@@ -46,6 +46,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         "define_type": Word(parts={"variable": _LINE, "enum_members": Word(is_list=True)}),
         "state_variable": Word(parts=_VARIABLE_PARTS),
         "action_parameter": Word(parts=_VARIABLE_PARTS),
+        "mission_parameter": Word(parts={"code": _CPP, "default_value": _CPP}),
         "one_state_model": _LINE,
         "shared_code": _CPP,
         "shared_mapping_code": _PYTHON,

@@ -153,6 +153,9 @@ def _variable() -> Schema:
             TEXT, "Ours: makes the variable an array with an element for each value of this enum."
         ),
         IsActionParameterValue=said(TRUTH, "A constant that skills may take as a parameter."),
+        IsMissionParameter=said(
+            TRUTH, "Ours: a constant of the mission, whose value whoever starts the mission may set."
+        ),
         Parameters=said(list_of(TEXT), "Makes the variable a map: enum names, and ranges (start,stop,step)."),
         IncludeParametersCode=said(
             expression(), "For which keys `DefaultCode` runs: a condition over `par1`, `par2`, and so on."

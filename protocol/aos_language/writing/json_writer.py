@@ -104,6 +104,7 @@ def _variable(variable: StateVariable) -> dict[str, Any]:
             IsArray=variable.is_array,
             IndexedBy=variable.index_enum,
             IsActionParameterValue=variable.is_parameter_value,
+            IsMissionParameter=variable.is_mission_parameter,
             Parameters=list(variable.key_types),
             UnderlineLocalVariableType=variable.low_level_type,
             Default=_code(variable.default_value),

@@ -82,6 +82,7 @@ def _field(field: Field) -> str:
 
 def _variable(variable: StateVariable) -> Iterator[str]:
     word = "action_parameter:" if variable.is_parameter_value else "state_variable:"
+    word = "mission_parameter:" if variable.is_mission_parameter else word
     array = f"[{variable.index_enum}]" if variable.is_array else ""
     low_level_type = f"of {variable.low_level_type}" if variable.low_level_type else ""
     yield " ".join(part for part in (word, variable.type, variable.name, array, low_level_type) if part)

@@ -51,6 +51,8 @@ class MissionBegun(Message, frozen=True):
     """The journal's row with which a solver begins a mission, or takes it up: `epoch` counts these rows.
 
     `revision` and `model_digest` are of the documents at this moment, `seed` is the mission's.
+    `mission_parameters` are its values of all parts of mission parameters, which newer documents do not
+    change.
     """
 
     mission: str
@@ -58,6 +60,7 @@ class MissionBegun(Message, frozen=True):
     seed: int
     revision: int
     model_digest: str
+    mission_parameters: dict[str, str] = {}
 
 
 TakeoverWay = Literal["import", "replay", "projection"]

@@ -100,8 +100,10 @@ class _Solver:
             self._start_engine,
             lambda revision: revision in self._mapped,
             settings.constraints,
+            settings.mission_values,
         )
         self._shelf.on_ready = lambda: self._changed.set()
+        self._shelf.kept = self._memory.mission_parameters
         self._name = Path(settings.run_dir).name
         self._mapped: tuple[int, ...] = ()
         self._search = self._settings_as(Search)
@@ -146,7 +148,7 @@ class _Solver:
         async with self._starting:
             running = self._shelf.running or await self._shelf.first()
             policy = Path(self._settings.policy) if self._settings.policy else None
-            self._search = following(self._settings_as(Search), policy, model_digest=running.digest)
+            self._search = following(self._settings_as(Search), policy, engine=running.engine)
         self._started.set()
         return self._state()
 
@@ -249,6 +251,7 @@ class _Solver:
             self._settings.seed,
             running.revision,
             running.digest,
+            running.engine.description.mission_parameters,
         )
         self.journal(BEGUN, begun)
         terms = Terms(

@@ -6,7 +6,7 @@ from typing import Literal
 
 import msgspec
 
-from aos_protocol.documents import Constraint
+from aos_protocol.documents import Constraint, MissionValue
 from aos_runtime.lifecycle import ServiceSettings
 from aos_solver.child.mission_questions import DEFAULT_PLANNER, Planner
 from aos_solver.mission.failures import SkillRule
@@ -33,6 +33,7 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     step_limit: int = 30
     stop_below_value: float | None = None
     constraints: tuple[Constraint, ...] = ()
+    mission_values: tuple[MissionValue, ...] = ()
     activation_timeout_s: float = 120.0
     failure_limit: int = 30
     set_aside_after: int = 3

@@ -79,12 +79,17 @@ _STATE_BYTES_MARK = re.compile(rb"aos-state-bytes:(\d+);")
 
 
 class BuiltModel(msgspec.Struct, frozen=True):
-    """An executable with the emitted text, which stands beside it as `model.cpp`."""
+    """An executable with the emitted text, which stands beside it as `model.cpp`.
+
+    Engines are started with the `mission_values`, in their canonical spelling by the names of parameters'
+    parts; the others have their defaults. The executable is the same for all values.
+    """
 
     emitted: EmittedModel
     executable: Path
     is_from_cache: bool
     compile_s: float = 0.0
+    mission_values: dict[str, str] = {}
 
     @property
     def cache_dir(self) -> Path:

@@ -50,13 +50,17 @@ class GroundedAction(msgspec.Struct, frozen=True):
 
 
 class EngineDescription(msgspec.Struct, frozen=True):
-    """The model as the engine knows it; responses are listed for each skill."""
+    """The model as the engine knows it; responses are listed for each skill.
+
+    `mission_parameters` are the values that it runs with, by the names of their parts.
+    """
 
     project: str
     horizon: int
     discount: float
     actions: tuple[GroundedAction, ...]
     responses: dict[str, tuple[str, ...]]
+    mission_parameters: dict[str, str] = {}
 
 
 class Plan(msgspec.Struct, frozen=True):

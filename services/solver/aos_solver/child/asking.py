@@ -14,6 +14,7 @@ from typing import Self, TypeVar
 
 import msgspec
 
+from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EngineDescription, EngineFault, Progress
@@ -25,6 +26,7 @@ from aos_solver.child.engine_child import (
     KilledError,
     OverdueError,
 )
+from aos_solver.child.parameter_arguments import parameter_arguments
 from aos_solver.child.replay import at_its_statement
 from aos_solver.child.shared_memory import SharedMemory
 from aos_solver.emission.emit import Bound
@@ -85,6 +87,21 @@ class Asking:
             raise
         return engine
 
+    async def start_with(self, mission_values: Mapping[str, str]) -> None:
+        """Has these values of mission parameters, and the defaults of all others, from now on.
+
+        The values are in their canonical spelling. Where they are other ones the child is started anew, on
+        the initial belief: all that was computed with the old ones is gone. Nothing is compiled.
+        """
+        if dict(mission_values) == self._built.mission_values:
+            return
+        async with self._asking:
+            self._built = msgspec.structs.replace(self._built, mission_values=dict(mission_values))
+            self._changes = 0
+            self._world = []
+            await self._drop_child()
+            await self._start_child()
+
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
         await self._drop_child()
@@ -111,6 +128,11 @@ class Asking:
     def bounds(self) -> tuple[Bound, ...]:
         """The mission's constraints."""
         return self._built.emitted.bounds
+
+    @property
+    def parameters(self) -> Mapping[str, ParameterLeaf]:
+        """The parts of mission parameters, by name; their values are in the description."""
+        return self._built.emitted.parameters
 
     @property
     def pid(self) -> int | None:
@@ -171,7 +193,9 @@ class Asking:
 
     @property
     def _start(self) -> EngineStart:
-        return EngineStart(self._seed, self._policy, "" if self._beliefs is None else self._beliefs.path)
+        beliefs = "" if self._beliefs is None else self._beliefs.path
+        values = parameter_arguments(self._built.emitted.parameters, self._built.mission_values)
+        return EngineStart(self._seed, self._policy, beliefs, values)
 
     async def _restart_child(self) -> None:
         await self._drop_child()

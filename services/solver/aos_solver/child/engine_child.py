@@ -70,11 +70,15 @@ _PROGRESS_LINE = b'{"progress":'
 
 
 class EngineStart(msgspec.Struct, frozen=True):
-    """The start of a child. It keeps its beliefs in the file of that path, or nowhere."""
+    """The start of a child. It keeps its beliefs in the file of that path, or nowhere.
+
+    `mission_values` are those of mission parameters, as `parameter_arguments` writes them.
+    """
 
     seed: int
     policy: ImpossiblePolicy
     beliefs: str = ""
+    mission_values: tuple[str, ...] = ()
 
 
 class KilledError(ModelError):
@@ -112,6 +116,7 @@ class EngineChild:
         """A child of which nobody knows yet whether it can `begin`."""
         blame = new_blame_page()
         arguments = [blame.path, start.beliefs, str(start.seed), start.policy, str(periods)]
+        arguments += start.mission_values
         try:
             child = await Child.start(
                 guarded([str(built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)),

@@ -16,6 +16,7 @@ import jinja2
 import msgspec
 
 from aos_language.cpp.snippets import read_cpp
+from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Span
 from aos_solver.emission.layout import Layout, layout_of, saved_variables
@@ -62,7 +63,8 @@ class EmittedModel(msgspec.Struct, frozen=True):
     observations correct the belief; `observed` are the numbers that a skill reports. `choosing_skills` are
     those whose parameters stand for state variables. `bounds` are the mission's constraints, in the order of
     the model's. `names` are those of shared code and enum values, which every section sees. `layout` is that
-    of the state. The responses of `texting_skills` may be any text.
+    of the state. The responses of `texting_skills` may be any text. `parameters` are the parts of mission
+    parameters, by name: what may be set when the engine is started.
     """
 
     project: str
@@ -79,6 +81,7 @@ class EmittedModel(msgspec.Struct, frozen=True):
     names: frozenset[str] = frozenset()
     layout: Layout = Layout()
     texting_skills: frozenset[str] = frozenset()
+    parameters: dict[str, ParameterLeaf] = {}
 
     def locate(self, line: int, byte_column: int = 1) -> Span | None:
         """The document place of a place in the file; None for code that no document gave."""
@@ -113,6 +116,7 @@ def emit(program: Program) -> EmittedModel:
         layout=layout_of(program),
         texting_skills=frozenset(skill.name for skill in program.skills if skill.has_text_response),
         names=program.shared_names | {value for enum in program.enums for value in enum.values},
+        parameters={leaf.name: leaf for leaf in program.leaves},
         bounds=tuple(
             Bound(constraint.never.snippet.code, constraint.probability) for constraint in program.constraints
         ),

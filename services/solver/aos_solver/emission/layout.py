@@ -77,7 +77,11 @@ def layout_of(program: Program) -> Layout:
 
 def saved_variables(program: Program) -> tuple[Variable, ...]:
     """Returns the variables of a saved state, whatever the particle of this very model holds."""
-    return tuple(v for v in program.variables if not (v.is_constant and v.is_parameter_value))
+    return tuple(
+        v
+        for v in program.variables
+        if not v.is_mission_parameter and not (v.is_constant and v.is_parameter_value)
+    )
 
 
 def _parts(program: Program) -> dict[str, str]:

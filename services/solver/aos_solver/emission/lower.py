@@ -15,6 +15,7 @@ from aos_language.cpp.snippets import read_cpp_expression
 from aos_language.document_code import absent_skills, shared_code_of, snippets_of
 from aos_language.findings import Findings
 from aos_language.local_types import LocalType, local_type, reported_variables
+from aos_language.mission_parameters import parameter_leaves
 from aos_language.observed import reported_numbers
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import AbstractionMapping, Assignment, Environment, Project, Skill, Snippet
@@ -155,6 +156,7 @@ class _Lowering:
             shared_constants=constants,
             shared_functions=functions,
             shared_names=self._shared.all_names,
+            leaves=tuple(parameter_leaves(environment).values()),
         )
 
     def _shared_piece(self, *, late: bool) -> Piece | None:

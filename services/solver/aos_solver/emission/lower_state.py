@@ -84,12 +84,15 @@ def lower_variables(
     irrelevant: frozenset[str],
     findings: Findings,
 ) -> tuple[Variable, ...]:
-    """The state variables in their order; AOS124 for a parameter value that is drawn at random."""
+    """The state variables in their order, behind the mission parameters, which are there before them.
+
+    AOS124 for a parameter value that is drawn at random.
+    """
     environment = project.environment
     drawn = frozenset(drawing_defaults(environment))
     later = changes_of(project, after_start=True)
     lowered = []
-    for variable in environment.variables:
+    for variable in sorted(environment.variables, key=lambda variable: not variable.is_mission_parameter):
         if variable.is_parameter_value and variable.name in drawn:
             message = f"{variable.name} is a value of an action parameter and drawn at random"
             hint = "Actions are the same in all states; let an initial belief draw another variable"
@@ -100,18 +103,20 @@ def lower_variables(
         if axes:
             stored = f"aos::Table<{stored}, {', '.join(axis.type for axis in axes)}>"
         value, code = variable.default_value, variable.default_code
-        is_walked = variable.type in changes.object_types and not variable.is_parameter_value
+        is_walked = variable.type in changes.object_types and not variable.is_constant
+        is_changed = is_walked or variable.name in changes.variables
         lowered.append(
             Variable(
                 name=variable.name,
                 type=stored,
-                is_constant=not is_walked and variable.name not in changes.variables,
+                is_constant=variable.is_mission_parameter or not is_changed,
                 is_parameter_value=variable.is_parameter_value,
                 default_value=pieces.expression(value, outside) if value is not None else None,
                 default_code=pieces.code(code, outside) if code is not None else None,
                 axes=axes,
                 is_relevant=variable.name not in irrelevant,
                 is_fixed=variable.name not in later.variables and variable.type not in later.object_types,
+                is_mission_parameter=variable.is_mission_parameter,
             )
         )
     return tuple(lowered)
@@ -125,7 +130,7 @@ def object_lists(environment: Environment, changes: Changes) -> tuple[ObjectList
             tuple(
                 variable.name
                 for variable in environment.variables
-                if variable.type == name and _is_plain(variable) and not variable.is_parameter_value
+                if variable.type == name and _is_plain(variable) and not variable.is_constant
             ),
         )
         for name in sorted(changes.object_types)

@@ -59,6 +59,8 @@ def _variable(variable: Variable) -> str:
         parts.append(f"{{ {_one_line(code)} }}  [{code.snippet.span}]")
     if variable.is_parameter_value:
         parts.append("(a value for parameters)")
+    if variable.is_mission_parameter:
+        parts.append("(a mission parameter)")
     return " ".join(parts)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import msgspec
 
 from aos_language.local_types import LocalType
+from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import Snippet
 
@@ -111,8 +112,9 @@ class Variable(msgspec.Struct, frozen=True):
 
     `is_relevant`: what is earned or observed may depend on it (see `lower_relevance`).
     `is_fixed`: nothing but its default and the initial belief sets it.
-    `is_parameter_value`: actions may take it as a parameter. The default is an expression for the value, or
-    statements over `state.`.
+    `is_parameter_value`: actions may take it as a parameter. `is_mission_parameter`: a constant whose value
+    the engine gets when it is started. The default is an expression for the value, or statements over
+    `state.`.
     """
 
     name: str
@@ -124,6 +126,7 @@ class Variable(msgspec.Struct, frozen=True):
     axes: tuple[Axis, ...] = ()
     is_relevant: bool = True
     is_fixed: bool = False
+    is_mission_parameter: bool = False
 
     @property
     def is_over_enum(self) -> bool:
@@ -300,6 +303,7 @@ class Program(msgspec.Struct, frozen=True):
     """A whole model. `pieces[n - 1]` is the piece of number n; `digest` is that of the documents.
 
     `shared_constants` is the shared code before the compound types, `shared_functions` that behind the state.
+    `leaves` are the parts of mission parameters.
     """
 
     project: str
@@ -328,6 +332,7 @@ class Program(msgspec.Struct, frozen=True):
     shared_constants: Piece | None = None
     shared_functions: Piece | None = None
     shared_names: frozenset[str] = frozenset()
+    leaves: tuple[ParameterLeaf, ...] = ()
 
     @property
     def particle(self) -> tuple[Variable, ...]:
@@ -338,6 +343,11 @@ class Program(msgspec.Struct, frozen=True):
     def irrelevant(self) -> tuple[Variable, ...]:
         """The variables that a particle holds for people and rollout policies only."""
         return tuple(variable for variable in self.particle if not variable.is_relevant)
+
+    @property
+    def mission_parameters(self) -> tuple[Variable, ...]:
+        """The constants that the engine gets when it is started."""
+        return tuple(variable for variable in self.variables if variable.is_mission_parameter)
 
     @property
     def constants(self) -> tuple[Variable, ...]:

@@ -12,14 +12,15 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
 import msgspec
 
-from aos_protocol.diagnostics import Diagnostic, Severity, has_errors
-from aos_protocol.documents import Constraint, Project
+from aos_language.mission_parameters import ParameterLeaf, usable_values
+from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
+from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.clock import Clock, SystemClock
@@ -42,6 +43,8 @@ _LAST = 19
 
 _UNHURRIED_DEADLINE_S = 1800.0
 
+_NOWHERE = Span("the documents")
+
 
 async def build_project(
     project: Project,
@@ -50,8 +53,15 @@ async def build_project(
     *,
     kind: BuildKind = "quick",
 ) -> BuiltModel:
-    """Lower, emit and compile; ModelError with all diagnostics if the documents have mistakes."""
-    return await build(emitted_model(project), cache_dir=cache_dir, on_progress=on_progress, kind=kind)
+    """Lower, emit and compile; ModelError with all diagnostics if the documents have mistakes.
+
+    Engines get the project's mission values when they are started: another value compiles nothing.
+    DocumentError AOS146 for a value that no parameter can have.
+    """
+    emitted = emitted_model(msgspec.structs.replace(project, mission_values=()))
+    values = usable_values(project.mission_values, emitted.parameters)
+    built = await build(emitted, cache_dir=cache_dir, on_progress=on_progress, kind=kind)
+    return msgspec.structs.replace(built, mission_values=values)
 
 
 @lru_cache(maxsize=8)
@@ -90,10 +100,11 @@ class ModelShelf:
         start_engine: Callable[[BuiltModel], Awaitable[Engine]],
         is_mapped: Callable[[int], bool],
         constraints: tuple[Constraint, ...] = (),
+        mission_values: tuple[MissionValue, ...] = (),
         *,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        """The models are those of the documents with the mission's `constraints`.
+        """The models are those of the documents with the mission's `constraints`, and run with its values.
 
         `is_mapped` says whether the middleware runs a revision too.
         """
@@ -102,6 +113,9 @@ class ModelShelf:
         self._start_engine = start_engine
         self._is_mapped = is_mapped
         self._constraints = constraints
+        self._mission_values = mission_values
+        self.kept: Mapping[str, str] = {}
+        """The values with which the mission began: whatever newer documents give by default, they stay."""
         self._clock = clock
         self._running: RunningModel | None = None
         self._past = Past()
@@ -135,14 +149,13 @@ class ModelShelf:
             built = await self._built(revision.project)
             model = RunningModel(revision.revision, await self._start_engine(built))
         except AosError as error:
-            log.warning("revision %d is not used: %s", revision.revision, error)
-            async with self._shelf:
-                self._fault = error
-                self._shelf.notify_all()
-            return
+            return await self._refuse(revision, error)
         successor = Successor(model, self._clock)
         try:
             await self._put(successor)
+        except AosError as error:
+            await successor.close()
+            return await self._refuse(revision, error)
         except BaseException:
             await successor.close()
             raise
@@ -150,15 +163,39 @@ class ModelShelf:
         if not self._is_closed:
             self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
 
+    async def _refuse(self, revision: ProjectRevision, error: AosError) -> None:
+        log.warning("revision %d is not used: %s", revision.revision, error)
+        async with self._shelf:
+            self._fault = error
+            self._shelf.notify_all()
+
     async def _built(self, project: Project) -> BuiltModel:
-        constrained = msgspec.structs.replace(project, constraints=self._constraints)
-        return await build_project(constrained, self._cache_dir, self._on_progress)
+        span = project.environment.span
+        for_mission = msgspec.structs.replace(
+            project,
+            constraints=self._constraints,
+            mission_values=tuple(msgspec.structs.replace(v, span=span) for v in self._mission_values),
+        )
+        built = await build_project(for_mission, self._cache_dir, self._on_progress)
+        values = self._values_in(built.emitted.parameters, span)
+        return msgspec.structs.replace(built, mission_values=values)
+
+    def _values_in(self, leaves: Mapping[str, ParameterLeaf], span: Span) -> dict[str, str]:
+        """The mission's values for a model; DocumentError AOS146 at `span` where it cannot have one.
+
+        A parameter that nobody has set may be gone from newer documents.
+        """
+        kept = (MissionValue(name, text, span) for name, text in self.kept.items() if name in leaves)
+        return usable_values((*kept, *self._mission_values), leaves)
 
     async def _put(self, successor: Successor) -> None:
         """Puts a model on the shelf, in place of one that nobody has taken; its replay goes on there."""
+        engine = successor.model.engine
         async with self._shelf:
             if self._is_closed:
                 return self._end(successor)
+            # The mission may have begun while the model was made.
+            await engine.start_with(self._values_in(engine.parameters, _NOWHERE))
             outdated, self._ready, self._fault = self._ready, successor, None
             if outdated is not None:
                 self._end(outdated)
@@ -202,6 +239,7 @@ class ModelShelf:
                 assert self._fault is not None
                 raise self._fault
             self._running, self._ready = self._ready.model, None
+            self.kept = self._running.engine.description.mission_parameters
             return self._running
 
     async def newest(self, running: RunningModel, past: Past) -> Takeover | None:

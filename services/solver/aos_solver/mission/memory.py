@@ -62,6 +62,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     """The epoch of the newest solver, the steps in order, the step that is not over, the newest state.
 
     `sequence` is the number of the next record, and `goal_probability` that of the last one's belief.
+    `mission_parameters` are the values that the mission began with.
     """
 
     epoch: int = 0
@@ -70,6 +71,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     state: MissionState | None = None
     sequence: int = 0
     goal_probability: float = 0.0
+    mission_parameters: dict[str, str] = {}
 
     @property
     def has_ended(self) -> bool:
@@ -85,13 +87,14 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     """The memory that a mission's journal holds; StorageError AOS702 for a row that is damaged."""
     epoch, pending, state, sequence, goal_probability = 0, None, None, 0, 0.0
     steps: list[PastStep] = []
+    parameters: dict[str, str] = {}
     for row in rows:
         if row.kind not in _KINDS:
             continue
         said = _decoded(row)
         match said:
             case MissionBegun():
-                epoch = said.epoch
+                epoch, parameters = said.epoch, said.mission_parameters
             case MissionState():
                 state = said
             case DecisionRecord(outcome=None):
@@ -107,7 +110,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
                 pending = _of(pending, row)._replace(outcome=said)
         if isinstance(said, DecisionRecord):
             sequence, goal_probability = said.sequence + 1, said.belief.goal_probability
-    return MissionMemory(epoch, tuple(steps), pending, state, sequence, goal_probability)
+    return MissionMemory(epoch, tuple(steps), pending, state, sequence, goal_probability, parameters)
 
 
 def _without_search(decision: DecisionRecord) -> DecisionRecord:

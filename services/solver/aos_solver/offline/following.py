@@ -6,15 +6,16 @@ from pathlib import Path
 
 import msgspec
 
+from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 
 __all__ = ["following"]
 
 
-def following(search: Search, policy: Path | None, *, model_digest: str = "") -> Search:
+def following(search: Search, policy: Path | None, *, engine: Engine | None = None) -> Search:
     """The search itself, or one that follows the policy file where there is one.
 
-    PlanningError where the file cannot be read, and where the policy is not for the model of this digest.
+    PlanningError where the file cannot be read, and where the policy is not for the model of this engine.
     """
     if policy is None:
         return search
@@ -22,6 +23,6 @@ def following(search: Search, policy: Path | None, *, model_digest: str = "") ->
     from aos_solver.offline.policy import Policy, PolicySearch
 
     loaded = Policy.load(policy)
-    if model_digest:
-        loaded.check_model(model_digest)
+    if engine is not None:
+        loaded.check_model(engine.model_digest, engine.description.mission_parameters)
     return PolicySearch(policy=loaded, **msgspec.structs.asdict(search))

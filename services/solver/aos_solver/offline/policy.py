@@ -6,6 +6,7 @@ A `.policy` file is a line of JSON (`PolicyHeader`), and after it the alpha vect
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
 
@@ -31,7 +32,8 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     `model_digest` is the compiled model's, or the problem file's. `states` are the engine's texts of states,
     without what does not matter, or the problem file's names. From the start the policy gives at least
     `lower`, and no policy gives more than `upper`; both are discounted. With a `stop_value` the last action
-    ends the mission, which is worth so much.
+    ends the mission, which is worth so much. `mission_parameters` are the values of all parts of mission
+    parameters that it was solved with.
     """
 
     format: str = FORMAT
@@ -44,6 +46,7 @@ class PolicyHeader(msgspec.Struct, frozen=True, kw_only=True):
     actions: tuple[str, ...]
     states: tuple[str, ...]
     regions: tuple[RegionSize, ...] = ()
+    mission_parameters: dict[str, str] = {}
 
 
 class Policy(msgspec.Struct, frozen=True, dict=True):
@@ -80,13 +83,23 @@ class Policy(msgspec.Struct, frozen=True, dict=True):
     def _numbers(self) -> dict[str, int]:
         return {text: number for number, text in enumerate(self.header.states)}
 
-    def check_model(self, digest: str) -> None:
-        """Raises PlanningError AOS322 unless it was solved for the model with this digest."""
+    def check_model(self, digest: str, mission_parameters: Mapping[str, str]) -> None:
+        """Raises PlanningError AOS322 unless it was solved for the model with this digest and these
+        values."""
         if digest != self.header.model_digest:
             raise PlanningError(
                 f"the policy was solved for other documents of {self.header.model}",
                 code="AOS322",
                 hint="Solve it again with aos solve",
+            )
+        solved = self.header.mission_parameters
+        if solved != mission_parameters:
+            names = [name for name in mission_parameters if solved.get(name) != mission_parameters[name]]
+            raise PlanningError(
+                f"the policy was solved for {_listed(solved, names)}, and this mission has "
+                f"{_listed(mission_parameters, names)}",
+                code="AOS322",
+                hint=f"Solve it with aos solve {_options(mission_parameters, names)}",
             )
 
     def choose(self, belief: ExportedBelief) -> Choice:
@@ -122,7 +135,7 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         stopping: whether the mission ends is for the mission's limits to say.
         """
         begun_s = time.perf_counter()
-        self.policy.check_model(engine.model_digest)
+        self.policy.check_model(engine.model_digest, engine.description.mission_parameters)
         choice = self.policy.choose(await engine.export_belief(is_whole=False, cautious=within.cautious))
         names = [action.name for action in engine.description.actions]
         left_out = [
@@ -140,3 +153,11 @@ class PolicySearch(Search, frozen=True, kw_only=True):
         horizon = engine.description.horizon
         why = "a policy file was asked for"
         return Plan(best, 0, horizon, actions, prediction.predicted, spent_s, planner="policy", why=why)
+
+
+def _listed(values: Mapping[str, str], names: Iterable[str]) -> str:
+    return ", ".join(f"{name} = {values.get(name, 'nothing')}" for name in names)
+
+
+def _options(values: Mapping[str, str], names: Iterable[str]) -> str:
+    return " ".join(f"--set {name}={values[name]}" for name in names)

@@ -24,6 +24,7 @@
 #include "aos/child/faults.hpp"
 #include "aos/child/watchdog.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/model/mission_parameters.hpp"
 
 namespace aos {
 
@@ -51,6 +52,11 @@ inline void say_progress(const char* what, std::uint64_t done, std::uint64_t all
   std::fflush(told);
 }
 
+inline void take_mission_value_of(std::string_view argument) {
+  const auto equals = argument.find('=');
+  if (equals != std::string_view::npos) mission_values.add(argument.substr(0, equals), argument.substr(equals + 1));
+}
+
 inline void say(std::FILE* out, const JsonWriter& json) {
   std::fwrite(json.text().data(), 1, json.text().size(), out);
   std::fputc('\n', out);
@@ -59,13 +65,15 @@ inline void say(std::FILE* out, const JsonWriter& json) {
 
 }  // namespace detail
 
-// The main function of an engine child. BELIEF_FILE is for KeptBeliefs, MAX_PERIODS for the watchdog.
+// The main function of an engine child. BELIEF_FILE is for KeptBeliefs, MAX_PERIODS for the watchdog. The values are those
+// of mission parameters, as StateReader reads them.
 template <class Model>
 int run_child(int argc, char** argv) {
-  if (argc != 6) {
-    std::fprintf(stderr, "usage: %s BLAME_FILE BELIEF_FILE SEED hold|widen|reset MAX_PERIODS\n", argv[0]);
+  if (argc < 6) {
+    std::fprintf(stderr, "usage: %s BLAME_FILE BELIEF_FILE SEED hold|widen|reset MAX_PERIODS [NAME=VALUE]...\n", argv[0]);
     return 2;
   }
+  for (int place = 6; place < argc; ++place) detail::take_mission_value_of(argv[place]);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   detail::share_blame(argv[1]);
   watchdog::start(std::atoi(argv[5]));

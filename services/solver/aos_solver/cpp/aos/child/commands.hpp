@@ -17,6 +17,7 @@
 #include "aos/child/risk_commands.hpp"
 #include "aos/child/watchdog.hpp"
 #include "aos/child/world_commands.hpp"
+#include "aos/model/values.hpp"
 #include "aos/planning/planner.hpp"
 
 namespace aos {
@@ -45,6 +46,14 @@ class Commands {
         json.value(Model::response_name(skill, response));
       }
       json.end_array();
+    }
+    json.end_object().key("mission_parameters").begin_object();
+    NamedLeaves leaves{[&](const std::string& name, const Leaf& leaf) { json.member(name.c_str(), leaf_text(leaf)); }};
+    for (const Member& parameter : Model::mission_parameters()) {
+      leaves.begin_compound();
+      leaves.member(parameter.name);
+      parameter.visit(parameter.constant, leaves);
+      leaves.end();
     }
     json.end_object().end_object();
   }

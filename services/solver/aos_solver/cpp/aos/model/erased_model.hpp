@@ -31,6 +31,8 @@ struct ErasedModel {
   inline static const bool has_state_heuristic = compiled_model.has_state_heuristic;
 
   static void prepare() { compiled_model.prepare(); }
+  // The constants that the mission sets; they have their values when all is prepared.
+  static std::span<const Member> mission_parameters() { return compiled_model.mission_parameters; }
   static int action_count() { return static_cast<int>(compiled_model.actions->size()); }
   static const char* action_name(int action) { return grounded(action).words->name.c_str(); }
   // The parameters of an action with the texts of their values.

@@ -74,6 +74,8 @@ struct ProjectDefaults {
   static constexpr int constraint_count = 0;
   static constexpr bool constraints_look_ahead = false;
   static constexpr bool has_costs = false;
+  // The constants that the mission sets.
+  static constexpr std::span<const Member> mission_parameters{};
   // Keeps the variables that no state holds.
   static void set_constants(const auto&) {}
 };
@@ -96,6 +98,7 @@ class ModelOf {
   static constexpr bool has_corrections = Project::has_corrections;
   static constexpr int constraint_count = Project::constraint_count;
   static constexpr bool constraints_look_ahead = Project::constraints_look_ahead;
+  static constexpr std::span<const Member> mission_parameters{Project::mission_parameters};
 
   // Sets the constants and grounds the actions. It is called once, before anything else.
   static void prepare() {

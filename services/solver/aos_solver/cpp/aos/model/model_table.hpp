@@ -55,6 +55,7 @@ struct ModelTable {
   std::span<const Member> variables;      // that a saved state holds
   int constraint_count;
   bool constraints_look_ahead;
+  std::span<const Member> mission_parameters;
 
   void (*prepare)();
   bool (*equal)(const void* left, const void* right);
@@ -120,6 +121,7 @@ constexpr ModelTable table_of() {
       .variables = Model::variables,
       .constraint_count = Model::constraint_count,
       .constraints_look_ahead = Model::constraints_look_ahead,
+      .mission_parameters = Model::mission_parameters,
       .prepare = Model::prepare,
       .equal =
           [](const void* left, const void* right) {

@@ -1,0 +1,253 @@
+"""Mission parameters at work: one compiled model, whose engines are started with values."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import msgspec
+import pytest
+from models import built_bundle, built_text, engine_of
+from processes import HANG_S
+from typer.testing import CliRunner
+
+from aos_deploy.cli import aos_app
+from aos_language.load import load_files
+from aos_language.mission_parameters import mission_value_of_option
+from aos_protocol.documents import Project
+from aos_protocol.errors import DocumentError, PlanningError
+from aos_protocol.messages import MissionBegun, ProjectRevision
+from aos_runtime.journal import Journal
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.engine import Engine
+from aos_solver.mission.hot_plug import ModelShelf, build_project
+from aos_solver.mission.past import Past
+
+BIN = Path(sys.executable).parent
+
+
+async def exact_values(engine: Engine) -> dict[str, float]:
+    return {value.action: value.q for value in (await engine.exact()).actions}
+
+
+def with_constant(bundle: Path, person: str) -> dict[str, str]:
+    """The bundle with the value written into its documents, in place of the parameter."""
+    files = {}
+    for path in sorted(bundle.iterdir()):
+        text = path.read_text().replace("mission_parameter: Person target\ndefault_value: alice\n", "")
+        for copy in ("state", "state_"):
+            text = text.replace(f"{copy}.target", person)
+        assert "target" not in text.replace("--set target", "")
+        files[path.name] = text
+    return files
+
+
+async def test_one_compiled_model_has_the_exact_values_of_each_value(bundles: Path, cache_dir: Path) -> None:
+    built = await built_bundle(bundles / "errand", cache_dir)
+    async with engine_of(built) as engine:
+        pids = set()
+        for person in ("alice", "bob", "alice"):
+            await engine.start_with({"target": person})
+            pids.add(engine.pid)
+            assert engine.description.mission_parameters == {"target": person}
+            constant = await built_text(with_constant(bundles / "errand", person), cache_dir)
+            async with engine_of(constant) as written:
+                truth = await exact_values(written)
+                assert [a.name for a in engine.description.actions] == list(truth)
+                assert await exact_values(engine) == pytest.approx(truth, abs=1e-12)
+                for other in (written, engine):
+                    await other.update("look", "nobody", refuted_below=0.0)
+                assert await exact_values(engine) == pytest.approx(await exact_values(written), abs=1e-12)
+        assert len(pids) == 3
+
+
+async def test_an_engine_that_is_killed_comes_back_with_its_values_and_its_belief(
+    bundles: Path, cache_dir: Path
+) -> None:
+    built = await built_bundle(bundles / "errand", cache_dir)
+    async with engine_of(msgspec.structs.replace(built, mission_values={"target": "bob"})) as engine:
+        await engine.update("look", "nobody")
+        before = await engine.export_belief()
+        assert engine.pid is not None
+        os.kill(engine.pid, signal.SIGKILL)
+        assert (await engine.export_belief()).particles == before.particles
+        assert engine.description.mission_parameters == {"target": "bob"}
+
+
+PARTS = {
+    "parts.ef": """project: test
+horizon: 1
+
+define_type: Item
+enum_members: soda, chips
+
+define_type: Spot
+variable: float x_m 1.5
+variable: Item near chips
+variable: int log []
+
+mission_parameter: Spot dock
+
+mission_parameter: double far_m
+code:
+state.far_m = state.dock.x_m + 1;
+
+mission_parameter: bool wanted [Item]
+default_value: true
+
+mission_parameter: string word
+default_value: "so"
+
+state_variable: int count
+default_value: state.wanted[soda] ? 10 : 20
+
+state_variable: bool is_lucky
+code:
+state.is_lucky = AOS.Bernoulli(0.5);
+""",
+    "act.sd": """project: test
+
+dynamic_model:
+__reward = state.count + state.far_m + (state.word == "so" ? 100 : 200);
+if (state.dock.near == soda) __reward += 1000;
+""",
+}
+
+
+@pytest.mark.parametrize(
+    ("options", "value"),
+    [
+        ([], 10 + 2.5 + 100),
+        (["dock.x_m=0.25", "wanted.soda=false"], 20 + 1.25 + 100),
+        (["far_m=7", "word=ßo", "dock.near=soda"], 10 + 7 + 200 + 1000),
+    ],
+)
+async def test_defaults_and_initial_values_follow_from_what_is_set(
+    cache_dir: Path, options: list[str], value: float
+) -> None:
+    loaded = load_files({name: text.encode() for name, text in PARTS.items()})
+    assert loaded.project is not None, loaded.diagnostics
+    project = msgspec.structs.replace(
+        loaded.project, mission_values=tuple(map(mission_value_of_option, options))
+    )
+    built = await build_project(project, cache_dir, lambda remark: None)
+    async with engine_of(built) as engine:
+        assert await exact_values(engine) == {"act": value}
+
+
+class Shelf(ModelShelf):
+    """A shelf for a mission with these values, on a middleware that runs every revision."""
+
+    def __init__(self, cache_dir: Path, *options: str) -> None:
+        async def start(built: BuiltModel) -> Engine:
+            return await Engine.start(built, seed=1)
+
+        values = tuple(map(mission_value_of_option, options))
+        super().__init__(cache_dir, lambda remark: None, start, lambda revision: True, (), values)
+
+
+def errand(bundles: Path, **replaced: str) -> Project:
+    files = {
+        path.name: path.read_text().replace(replaced.get("before", "\0"), replaced.get("after", "")).encode()
+        for path in sorted((bundles / "errand").iterdir())
+    }
+    loaded = load_files(files)
+    assert loaded.project is not None, loaded.diagnostics
+    return loaded.project
+
+
+async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values(
+    bundles: Path, cache_dir: Path
+) -> None:
+    shelf = Shelf(cache_dir)
+    await shelf.make(ProjectRevision(1, "", errand(bundles)))
+    running = await shelf.first()
+    # Nobody has set the parameter: the mission has the default that the documents had at its start.
+    await shelf.make(
+        ProjectRevision(2, "", errand(bundles, before="default_value: alice", after="default_value: bob"))
+    )
+    newest = await shelf.newest(running, Past())
+    try:
+        assert newest is not None
+        assert newest.model.revision == 2
+        assert newest.model.engine.description.mission_parameters == {"target": "alice"}
+        assert "give(to=alice)" in [action.name for action in newest.model.engine.description.actions]
+    finally:
+        await shelf.close()
+
+
+async def test_documents_without_the_value_that_was_set_are_refused(bundles: Path, cache_dir: Path) -> None:
+    shelf = Shelf(cache_dir, "target=bob")
+    await shelf.make(ProjectRevision(1, "", errand(bundles)))
+    running = await shelf.first()
+    (found,) = await shelf.check(errand(bundles, before="target", after="whom"), running)
+    assert (found.code, found.span.file) == ("AOS146", "errand.ef")
+    assert found.message == "unknown mission parameter `target`"
+    await shelf.close()
+
+
+def test_commands_take_values_and_a_policy_is_for_its_own(
+    bundles: Path, cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    bundle, policy = str(bundles / "errand"), str(tmp_path / "bob.policy")
+
+    def run(*arguments: str) -> object:
+        done = CliRunner().invoke(aos_app(), [*arguments, "--json"])
+        if done.exception is not None:
+            raise done.exception
+        return json.loads(done.stdout)
+
+    solved = run("solve", bundle, "--set", "target=bob", "--out", policy, "--time", "5", "--precision", "0.1")
+    planned = run("plan", bundle, "--set", "target=bob", "--policy", policy)
+    assert isinstance(solved, dict)
+    assert isinstance(planned, dict)
+    assert planned["action"] == "give(to=bob)"
+    assert solved["lower"] <= planned["value"] + 0.2
+    with pytest.raises(PlanningError, match="solved for target = bob, and this mission has target = alice"):
+        run("plan", bundle, "--policy", policy)
+    with pytest.raises(DocumentError, match="sets no mission parameter"):
+        run("simulate", bundle, "--set", "target")
+    simulated = run("simulate", bundle, "--set", "target=bob", "--runs", "2", "--simulations", "500")
+    assert isinstance(simulated, dict)
+    assert all("give(to=bob)" in mission["actions"] for mission in simulated["runs"])
+
+
+SLOW_GIVE = """
+import time
+from pathlib import Path
+
+def give(call, to):
+    while not Path(__file__).with_name("may_give").exists():
+        time.sleep(0.02)
+    return {"response": "given"}
+"""
+
+
+def test_a_mission_has_the_values_of_its_command_also_after_its_aos_up_was_killed(
+    root: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    (tmp_path / "robot.py").write_text(SLOW_GIVE)
+    text = (root / "deploy" / "errand.yaml").read_text()
+    text = text.replace("[bundles/errand]", f"[{root}/deploy/bundles/errand]")
+    text = text.replace("bind: {", "bus: {listen: tcp/127.0.0.1:0}\nbind: {/give: {python: robot.py:give}, ")
+    deploy_file = tmp_path / "errand.yaml"
+    deploy_file.write_text(text)
+    command = [BIN / "aos-up", deploy_file, "--json", "--set", "target=bob", "--runs", tmp_path / "runs"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as up:
+        assert up.stdout is not None
+        skills = (json.loads(line).get("skill") for line in up.stdout)
+        assert "give" in skills  # It runs, and does not end before it may.
+        up.kill()
+    (tmp_path / "may_give").touch()
+    run = (tmp_path / "runs" / "latest").resolve()
+    resumed = subprocess.run([BIN / "aos-up", "--resume", run], check=False, timeout=HANG_S)
+    assert resumed.returncode == 0
+    with Journal.read(run / "journal.db") as journal:
+        begun = [msgspec.json.decode(row.payload, type=MissionBegun) for row in journal.rows("begun")]
+    assert [row.mission_parameters for row in begun] == [{"target": "bob"}] * 2

@@ -1,0 +1,293 @@
+"""Mission parameters in the documents of all dialects, and the values that somebody sets."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from aos_deploy.bundle_files import check_mission_of, project_of
+from aos_deploy.deploy_file import read_deploy_file
+from aos_language.load import load_files
+from aos_language.mission_parameters import (
+    mission_value_of_option,
+    parameter_leaves,
+    usable_values,
+)
+from aos_language.outline import outline
+from aos_protocol.documents import Project, StateVariable
+from aos_protocol.errors import DeployError, DocumentError, PlanningError
+from aos_solver.child.parameter_arguments import parameter_arguments
+from aos_solver.offline.alpha_vectors import AlphaVectors
+from aos_solver.offline.policy import Policy, PolicyHeader
+
+SDL = """project: home
+horizon: 4
+
+define_type: Person
+enum_members: alice, bob, carol
+
+define_type: Spot
+variable: double x_m 1.5
+variable: Person near bob
+variable: int log []
+
+state_variable: Person holder
+
+mission_parameter: Person target
+default_value: bob
+
+mission_parameter: Spot dock
+
+mission_parameter: bool wanted [Person]
+default_value: true
+
+mission_parameter: int count
+code:
+state.count = 3;
+
+mission_parameter: string word
+
+reward_code:
+if (state.holder == state.target && state.wanted[alice] && state.count > 0) __reward = state.dock.x_m;
+if (state.word == "so") __isGoalState = true;
+"""
+SKILL = "project: home\n\ndynamic_model:\n__reward = -1;\n__moduleResponse = done;\n"
+JSON_TYPES = [
+    {"TypeName": "Person", "Type": "enum", "EnumValues": ["alice", "bob", "carol"]},
+    {
+        "TypeName": "Spot",
+        "Type": "compound",
+        "Variables": [
+            {"Name": "x_m", "Type": "double", "Default": "1.5"},
+            {"Name": "near", "Type": "Person", "Default": "bob"},
+            {"Name": "log", "Type": "int[]"},
+        ],
+    },
+]
+JSON_VARIABLES = [
+    {"Name": "holder", "Type": "Person"},
+    {"Name": "target", "Type": "Person", "IsMissionParameter": True, "Default": "bob"},
+    {"Name": "dock", "Type": "Spot", "IsMissionParameter": True},
+    {"Name": "wanted", "Type": "bool", "IndexedBy": "Person", "IsMissionParameter": True, "Default": "true"},
+    {"Name": "count", "Type": "int", "IsMissionParameter": True, "DefaultCode": "state.count = 3;"},
+    {"Name": "word", "Type": "string", "IsMissionParameter": True},
+]
+CONDITION = "state.holder == state.target && state.wanted[alice] && state.count > 0 && state.dock.x_m > 0"
+
+
+def json_environment(main: str) -> str:
+    return json.dumps({
+        main: {"Project": "home", "Name": "environment", "Type": "Environment"},
+        "EnvironmentGeneral": {"Horizon": 4, "Discount": 0.9},
+        "GlobalVariableTypes": JSON_TYPES,
+        "GlobalVariablesDeclaration": JSON_VARIABLES,
+        "InitialBeliefStateAssignments": [],
+        "SpecialStates": [{"StateConditionCode": CONDITION + ' && state.word == "so"', "Reward": 1}],
+        "ExtrinsicChangesDynamicModel": [],
+    })  # fmt: skip
+
+
+DIALECTS = {
+    "SDL": {"home.ef": SDL},
+    "v1.x JSON": {"home.json": json_environment("PlpMain")},
+    "paper JSON": {"home.json": json_environment("GsdlMain")},
+}
+
+
+def project(files: dict[str, str]) -> Project:
+    loaded = load_files({name: text.encode() for name, text in {"act.sd": SKILL, **files}.items()})
+    assert loaded.project is not None, loaded.diagnostics
+    return loaded.project
+
+
+def said(variable: StateVariable) -> tuple[object, ...]:
+    value, code = variable.default_value, variable.default_code
+    texts = (value.code if value else None, code.code if code else None)
+    return variable.name, variable.type, variable.index_enum, variable.is_mission_parameter, *texts
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_every_dialect_declares_the_same_parameters(dialect: str) -> None:
+    variables = project(DIALECTS[dialect]).environment.variables
+    assert [said(variable) for variable in variables] == [
+        ("holder", "Person", "", False, None, None),
+        ("target", "Person", "", True, "bob", None),
+        ("dock", "Spot", "", True, None, None),
+        ("wanted", "bool", "Person", True, "true", None),
+        ("count", "int", "", True, None, "state.count = 3;"),
+        ("word", "string", "", True, None, None),
+    ]
+
+
+def test_what_is_read_of_a_bundle_shows_parameters_with_type_and_default() -> None:
+    shown = outline(project(DIALECTS["SDL"]))
+    assert "mission parameter Person target = bob " in shown
+    assert "mission parameter bool[Person] wanted = true " in shown
+
+
+MISTAKES = {
+    "mission_parameter: int log []": ("AOS106", "nobody could set a value for the mission parameter log"),
+    "mission_parameter: vector<int> log": ("AOS106", "nobody could set a value"),
+    "mission_parameter: anyValue pose": ("AOS106", "nobody could set a value"),
+    "mission_parameter: Persn other": ("AOS110", "unknown type `Persn`"),
+    "mission_parameter: int holder": ("AOS126", "`holder` is already the name of a variable"),
+    "mission_parameter: bool lucky\ndefault_value: AOS.Bernoulli(0.5)": ("AOS124", "is drawn at random"),
+    "mission_parameter: Person other\ndefault_value: state.holder": ("AOS124", "depends on `state.holder`"),
+    "state_variable: int n\ncode:\nstate.n = 1;\nstate.count = 2;": ("AOS128", "count is written"),
+    "initial_belief:\nstate.target = alice;": ("AOS128", "target is written in the initial belief"),
+    "extrinsic_code:\nstate_.wanted[alice] = false;": ("AOS128", "wanted is written"),
+    "extrinsic_code:\nstate_.dock.x_m += 1;": ("AOS128", "dock is written"),
+    "shared_code:\nvoid f(auto& state_) { state_.count = 1; }\nextrinsic_code:\nf(state_);": (
+        "AOS128",
+        "count is written in shared code",
+    ),
+}
+
+
+@pytest.mark.parametrize("declared", MISTAKES)
+def test_a_mistake_with_a_parameter_is_told_in_its_line(declared: str) -> None:
+    code, message = MISTAKES[declared]
+    files = {"home.ef": f"{SDL}\n{declared}\n", "act.sd": SKILL}
+    loaded = load_files({name: text.encode() for name, text in files.items()})
+    (found,) = [diagnostic for diagnostic in loaded.diagnostics if diagnostic.is_error]
+    assert found.code == code
+    assert message in found.message
+    assert found.span.line > SDL.count("\n")
+
+
+def test_a_variable_is_no_parameter_of_actions_and_of_missions_at_once() -> None:
+    both = json_environment("PlpMain").replace(
+        '"IsMissionParameter": true', '"IsMissionParameter": true, "IsActionParameterValue": true', 1
+    )
+    loaded = load_files({"home.json": both.encode(), "act.sd": SKILL.encode()})
+    assert [(d.code, d.is_error) for d in loaded.diagnostics] == [("AOS106", True)]
+
+
+def test_a_local_variable_of_a_mapping_with_its_name_does_not_tell_it() -> None:
+    mapping = (
+        "project: home\n\nresponse: done\nresponse_rule: count > 0\n\nmodule_activation: skill\n"
+        "path: /act\n\nlocal_variable: count\ntype: int\nfrom_ros_service_response: true\ncode:\n"
+        "count = __input.count\n"
+    )
+    loaded = load_files(
+        {name: t.encode() for name, t in {"home.ef": SDL, "act.sd": SKILL, "act.am": mapping}.items()}
+    )
+    assert [d.code for d in loaded.diagnostics if d.code in ("AOS128", "AOS134")] == []
+
+
+def values(*options: str) -> dict[str, str]:
+    leaves = parameter_leaves(project(DIALECTS["SDL"]).environment)
+    return usable_values([mission_value_of_option(option) for option in options], leaves)
+
+
+def test_values_have_one_spelling_and_the_last_counts() -> None:
+    found = values(
+        "target=alice", "dock.x_m=.5", "dock.near=carol", "wanted[bob]=false", "wanted.carol=true",
+        "count=+07", "word= so ", "target=carol",
+    )  # fmt: skip
+    assert found == {
+        "target": "carol",
+        "dock.x_m": "0.5",
+        "dock.near": "carol",
+        "wanted[bob]": "false",
+        "wanted[carol]": "true",
+        "count": "7",
+        "word": " so ",
+    }
+
+
+def test_an_engine_gets_them_as_the_numbers_of_a_saved_state() -> None:
+    leaves = parameter_leaves(project(DIALECTS["SDL"]).environment)
+    found = parameter_arguments(leaves, values("target=carol", "wanted.bob=true", "count=-2", "word=ab"))
+    assert found == ("target=2", "wanted[bob]=1", "count=-2", "word=2 97 98")
+
+
+@pytest.mark.parametrize(
+    ("option", "says"),
+    [
+        ("targt=alice", "unknown mission parameter `targt`. Did you mean `target`?"),
+        ("holder=alice", "unknown mission parameter `holder`. The mission parameters are `target`, "),
+        ("target=caro", "target cannot be 'caro': it is one of alice, bob, carol. Did you mean `carol`?"),
+        ("dock=2", "dock has parts, which are set one by one. They are `dock.x_m`, `dock.near`"),
+        ("wanted[dave]=true", "unknown mission parameter `wanted[dave]`. Did you mean `wanted["),
+        ("dock.log=2", "unknown mission parameter `dock.log`"),
+        ("count=2.5", "count cannot be '2.5': it is a whole number of 32 bits"),
+        ("count=2147483648", "count cannot be '2147483648'"),
+        ("dock.x_m=nan", "dock.x_m cannot be 'nan': it is a number"),
+        ("wanted.bob=yes", "wanted[bob] cannot be 'yes': it is true or false"),
+        (f"word={'x' * 63}", "word cannot be"),
+        ("target", "'target' sets no mission parameter. Write it as --set target=alice"),
+    ],
+)
+def test_what_cannot_be_set_is_told_with_the_nearest_name(option: str, says: str) -> None:
+    with pytest.raises(DocumentError) as caught:
+        values(option)
+    assert caught.value.code == "AOS146"
+    assert f"{caught.value.message}. {caught.value.hint}".startswith(says)
+
+
+DEPLOY = """aos: 1
+robot: home
+bundles: [home]
+mission:
+  set:
+    target: carol
+    dock: {x_m: 2, near: alice}
+    wanted: {bob: false}
+bind: {"*": model}
+"""
+
+
+@pytest.fixture
+def deploy_file(tmp_path: Path) -> Path:
+    (tmp_path / "home").mkdir()
+    for name, text in {"home.ef": SDL, "act.sd": SKILL}.items():
+        (tmp_path / "home" / name).write_text(text)
+    path = tmp_path / "home.yaml"
+    path.write_text(DEPLOY)
+    return path
+
+
+def test_a_deploy_file_sets_parts_by_mappings(deploy_file: Path) -> None:
+    given = project_of(read_deploy_file(deploy_file)).mission_values
+    assert {value.name: value.text for value in given} == {
+        "target": "carol",
+        "dock.x_m": "2",
+        "dock.near": "alice",
+        "wanted.bob": "false",
+    }
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "code", "place"),
+    [
+        ("target: carol", "target: carl", "AOS146", "6:13"),
+        ("near: alice", "naer: alice", "AOS146", "7:26"),
+        ("target: carol", "target: [carol]", "AOS106", "6:13"),
+    ],
+)
+def test_a_wrong_value_of_a_deploy_file_is_told_where_it_stands(
+    deploy_file: Path, before: str, after: str, code: str, place: str
+) -> None:
+    deploy_file.write_text(DEPLOY.replace(before, after))
+    with pytest.raises(DeployError) as caught:
+        check_mission_of(read_deploy_file(deploy_file))
+    (found,) = caught.value.diagnostics
+    assert found.code == code
+    assert str(found.span).endswith(f"home.yaml:{place}")
+
+
+def test_a_policy_is_for_the_values_that_it_was_solved_with() -> None:
+    header = PolicyHeader(
+        model="home", model_digest="d", discount=0.9, lower=0, upper=1, actions=("act",), states=("s",),
+        mission_parameters={"target": "bob", "count": "3"},
+    )  # fmt: skip
+    policy = Policy(header, AlphaVectors.of_bytes(1, (), b""))
+    policy.check_model("d", {"target": "bob", "count": "3"})
+    with pytest.raises(
+        PlanningError, match="solved for target = bob, and this mission has target = carol"
+    ) as it:
+        policy.check_model("d", {"target": "carol", "count": "3"})
+    assert (it.value.code, it.value.hint) == ("AOS322", "Solve it with aos solve --set target=carol")
