@@ -8,12 +8,24 @@ import pytest
 from kept_cache import link_engines
 
 from aos_deploy.program import cache_dir as user_cache_dir
+from aos_runtime.sandbox.support import sandbox_support, sandbox_text, trust_documents
 
 ROOT = Path(__file__).resolve().parents[1]
 CACHE = ROOT / ".compiled"
 TESTS = ROOT / "tests"
 LONGEST = TESTS / "longest_first.txt"
 """Files of tests, by the processor time that docs/lab/checks.md tells of."""
+
+
+def pytest_configure() -> None:
+    """The documents of tests are ours. Where the kernel can confine them, nothing takes it back."""
+    if not sandbox_support().is_whole:
+        trust_documents()
+
+
+def pytest_report_header() -> str:
+    """Says at the head of a run what the tests' documents run in."""
+    return f"sandbox: {sandbox_text()}"
 
 
 @pytest.fixture(scope="session")

@@ -137,7 +137,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     skill fails. `adapters` gives adapters a name and options. `bind` says which adapter serves which
     activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `serve`
     says how `aos-up --serve` shows them to others. `programs` run beside the adapters. `runs` is where run
-    directories go.
+    directories go. With `trust: documents` their code runs also where the kernel cannot confine it.
     """
 
     aos: Literal[1]
@@ -156,6 +156,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     serve: dict[str, Any] = {}
     programs: dict[str, ProgramPart] = {}
     runs: str = "runs"
+    trust: Literal["nobody", "documents"] = "nobody"
 
 
 class Deployment(msgspec.Struct, frozen=True, kw_only=True):

@@ -40,6 +40,7 @@ from aos_runtime.asking import ask_until_answered
 from aos_runtime.client import AosClient
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
+from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 
 __all__ = ["MissionRun", "run_until_interrupted"]
 
@@ -90,6 +91,8 @@ class MissionRun:
     async def _run_at(self, endpoint: str) -> Summary:
         run = self._run_directory()
         self._report(Told(f"run directory {from_here(run.path)}"))
+        if not sandbox_support().is_whole:
+            self._report(Told(sandbox_text()))
         was_interrupted = False
         try:
             with noted(run):
@@ -241,6 +244,7 @@ class MissionRun:
                 pid=os.getpid(),
                 pids=supervisor.pids,
                 is_played=self._is_played,
+                sandbox=sandbox_text(),
             )
         )
 

@@ -10,8 +10,19 @@ from aos_deploy.deploy_file import Deployment
 from aos_deploy.process_start import check_command
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.remote import check_ssh
+from aos_runtime.sandbox.support import require_sandbox, trust_documents
 
-__all__ = ["check_needed_here", "needs_of"]
+__all__ = ["check_needed_here", "check_sandbox", "needs_of"]
+
+
+def check_sandbox(deployment: Deployment) -> None:
+    """Raises DeployError AOS805 where the kernel cannot confine documents and nobody says to trust them.
+
+    Where the deploy file does, all that this process starts is told so.
+    """
+    if deployment.file.trust == "documents":
+        trust_documents()
+    require_sandbox()
 
 
 def check_needed_here(deployment: Deployment) -> None:

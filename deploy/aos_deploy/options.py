@@ -8,8 +8,9 @@ from typing import Annotated, Any
 import typer
 
 from aos_protocol import __version__
+from aos_runtime.sandbox.support import trust_documents
 
-__all__ = ["HELP_NAMES", "AsJson", "Connect", "Robot", "Run", "Runs", "Version"]
+__all__ = ["HELP_NAMES", "AsJson", "Connect", "Robot", "Run", "Runs", "TrustDocuments", "Version"]
 
 HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
 """The context settings of a program."""
@@ -23,6 +24,23 @@ def _print_version(is_asked: bool) -> None:
 
 Version = Annotated[
     bool, typer.Option("--version", help="Print the version and end", callback=_print_version, is_eager=True)
+]
+
+
+def _trust(is_trusted: bool) -> bool:
+    if is_trusted:
+        trust_documents()
+    return is_trusted
+
+
+TrustDocuments = Annotated[
+    bool,
+    typer.Option(
+        "--trust-documents",
+        help="Run the documents' code also where the kernel cannot confine it",
+        callback=_trust,
+        is_eager=True,
+    ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
 

@@ -32,7 +32,8 @@ LATEST = "latest"
 
 
 class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """`run.json`. `pid` is that of aos-up. `is_played` says that skills are played by their documents."""
+    """`run.json`. `pid` is that of aos-up. `is_played` says that skills are played by their documents, and
+    `sandbox` what confines the documents' code."""
 
     robot: str
     endpoint: str
@@ -42,6 +43,7 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     pid: int
     pids: dict[str, int] = {}
     is_played: bool = False
+    sandbox: str = ""
 
 
 class ProcessEnd(msgspec.Struct, frozen=True):
@@ -97,7 +99,7 @@ class RunDirectory:
         try:
             path = _made(runs, f"{stamp}-{robot}")
             for folder in ("settings", "logs", "faults"):
-                (path / folder).mkdir()
+                (path / folder).mkdir(mode=0o700)
             created = cls(path)
             created._lock = _locked(path, fcntl.LOCK_EX)
         except OSError as error:
@@ -139,7 +141,7 @@ class RunDirectory:
         if self.keeps_settings and path.exists():
             return path
         with _kept(path):
-            path.write_bytes(_pretty(settings))
+            _write_privately(path, _pretty(settings))
         return path
 
     def log(self, service: str) -> Path:
@@ -220,6 +222,12 @@ class RunDirectory:
         return False
 
 
+def _write_privately(path: Path, content: bytes) -> None:
+    """Writes a file that nobody else may read."""
+    with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
+        file.write(content)
+
+
 def _write_whole(path: Path, content: bytes) -> None:
     """Writes beside the file and renames, so that nobody ever reads a part of it."""
     beside = path.with_name(f".{path.name}-{os.getpid()}")
@@ -260,7 +268,7 @@ def _made(runs: Path, name: str) -> Path:
     for number in range(1, 1000):
         path = runs / (name if number == 1 else f"{name}-{number}")
         try:
-            path.mkdir()
+            path.mkdir(mode=0o700)
         except FileExistsError:
             continue
         return path

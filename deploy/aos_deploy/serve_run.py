@@ -21,6 +21,7 @@ from aos_deploy.supervisor import Supervisor, supervised
 from aos_protocol.errors import AosError
 from aos_runtime.clock import Clock
 from aos_runtime.lifecycle import ServiceSettings, root_cause
+from aos_runtime.sandbox.support import sandbox_support, sandbox_text
 
 __all__ = ["ServeEnd", "ServeRun"]
 
@@ -49,6 +50,8 @@ class ServeRun:
                 self._deployment.runs, self._deployment.file.robot, self._clock.now_ns()
             )
             self._report(Told(f"run directory {from_here(run.path)}"))
+            if not sandbox_support().is_whole:
+                self._report(Told(sandbox_text()))
             code = ExitCode.GOAL_REACHED
             try:
                 with noted(run):
@@ -96,4 +99,5 @@ class ServeRun:
             started=started,
             pid=os.getpid(),
             pids=supervisor.pids,
+            sandbox=sandbox_text(),
         )

@@ -12,14 +12,15 @@ import signal
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import IO, Any, Self, TypedDict, Unpack
+from typing import IO, Any, Literal, Self, TypedDict, Unpack
 
 import msgspec
 
 from aos_protocol.errors import DeployError
 from aos_runtime.parent import PARENT_VARIABLE
+from aos_runtime.sandbox.support import require_sandbox, sandbox_support
 
-__all__ = ["PIPE", "Child", "Limits", "guarded"]
+__all__ = ["PIPE", "Child", "Confinement", "Limits", "guarded"]
 
 PIPE = asyncio.subprocess.PIPE
 
@@ -51,14 +52,45 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True):
     grace_s: float = 0.5
 
 
-def guarded(command: list[str], limits: Limits | None = None) -> list[str]:
-    """The command line that runs `command` under `aos_runtime.guard`, so that nothing of it stays behind."""
+class Confinement(msgspec.Struct, frozen=True, kw_only=True):
+    """The sandbox of a command: its profile, and the files and folders that it may read, execute as well, or
+    write as well. What does not exist is left out.
+
+    A command that `is_ours` has nothing of documents in it, and runs also where it cannot be confined.
+    """
+
+    profile: Literal["compiler", "engine", "worker"]
+    read: tuple[str, ...] = ()
+    execute: tuple[str, ...] = ()
+    write: tuple[str, ...] = ()
+    is_ours: bool = False
+
+
+def guarded(
+    command: list[str], limits: Limits | None = None, confinement: Confinement | None = None
+) -> list[str]:
+    """The command line that runs `command` under `aos_runtime.guard`, so that nothing of it stays behind.
+
+    DeployError AOS805 if it is to be confined, and cannot be, unless documents are trusted.
+    """
     options: list[str] = []
+    if confinement is not None:
+        options += _options_of(confinement)
     for name, value in msgspec.structs.asdict(limits or Limits()).items():
         if value is not None:
             options += [f"--{name.replace('_', '-')}", str(value)]
     packages = str(Path(__file__).parent.parent)
     return [sys.executable, "-I", "-S", "-c", _LAUNCH_GUARD, packages, *options, "--", *command]
+
+
+def _options_of(confinement: Confinement) -> list[str]:
+    if not confinement.is_ours:
+        require_sandbox()
+    options = ["--profile", confinement.profile]
+    for kind in ("read", "execute", "write"):
+        for path in getattr(confinement, kind):
+            options += [f"--{kind}", path]
+    return options if sandbox_support().is_whole else [*options, "--trust", "yes"]
 
 
 class Child:

@@ -1,13 +1,17 @@
 r"""A small process around a command that must leave nothing behind: compilers, engines, mapping workers.
 
     python -m aos_runtime.guard [--address-space-bytes N] [--cpu-s N] [--file-bytes N] [--niceness N] \
-        [--grace-s S] -- command...
+        [--grace-s S] [--profile NAME [--read PATH]... [--execute PATH]... [--write PATH]... [--trust YES]] \
+        -- command...
 
 The command runs in a process group of its own, under the limits, on the guard's own stdin, stdout and
 stderr. When it ends, when the guard is told to stop (SIGTERM, SIGINT, SIGHUP), or when the guard's parent
 ends, every descendant of the guard is ended, those that left the group too: SIGTERM, and after the grace
 SIGKILL; after SIGQUIT, SIGKILL at once. The guard then ends the way the command did, by the same signal or
 with the same status; with 127 if the command cannot be started.
+
+With a profile the command runs in a sandbox, and may use the files below the paths named and no others; see
+`sandbox.confine`. Where the kernel cannot do that, it does not run, unless its documents are trusted.
 
 If the guard itself is killed with SIGKILL, the command dies with it, but not what the command has started.
 Write command lines with `children.guarded`. The module imports little and no site packages: it starts in
@@ -22,6 +26,7 @@ import sys
 import time
 
 from aos_runtime.parent import adopt_orphans, die_with_parent, request_death_signal
+from aos_runtime.sandbox.confine import ACCESS, Sandbox, become_confined
 
 TYPE_CHECKING = False  # typing itself takes as long to import as everything else here.
 if TYPE_CHECKING:
@@ -48,21 +53,21 @@ _LIMITS = {
 
 def main(arguments: list[str]) -> NoReturn:
     """Runs the command named in the arguments and ends as it ends."""
-    grace_s, niceness, limits, command = _parse(arguments)
+    grace_s, niceness, limits, sandbox, command = _parse(arguments)
     signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
     die_with_parent(signal.SIGTERM)
     adopt_orphans()
     guard_pid = os.getpid()
     pid = os.fork()
     if pid == 0:
-        _become(command, niceness, limits, guard_pid)
+        _become(command, niceness, limits, sandbox, guard_pid)
     status = _wait(pid, grace_s)
     _end_descendants(grace_s)
     _end_like(status)
 
 
-def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], list[str]]:
-    """The grace, the niceness, the limits by kind, and the command."""
+def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], Sandbox, list[str]]:
+    """The grace, the niceness, the limits by kind, the sandbox, and the command."""
     split = arguments.index("--") if "--" in arguments else len(arguments)
     options, command = arguments[:split], arguments[split + 1 :]
     if len(options) % 2 or not command:
@@ -70,6 +75,7 @@ def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], list[str]]
     grace_s = _GRACE_S
     niceness = 0
     limits: dict[int, int] = {}
+    sandbox = Sandbox()
     for name, text in zip(options[::2], options[1::2], strict=True):
         if name == "--grace-s":
             grace_s = float(text)
@@ -77,14 +83,22 @@ def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], list[str]]
             niceness = int(text)
         elif name in _LIMITS:
             limits[_LIMITS[name]] = int(text)
+        elif name == "--profile":
+            sandbox.profile = text
+        elif name == "--trust":
+            sandbox.is_trusted = True
+        elif name in ACCESS:
+            sandbox.files.append((text, ACCESS[name]))
         else:
             _fail(f"unknown option {name}")
-    return grace_s, niceness, limits, command
+    return grace_s, niceness, limits, sandbox, command
 
 
-def _become(command: list[str], niceness: int, limits: dict[int, int], guard_pid: int) -> NoReturn:
-    """Turns the child into the command: own process group, niceness, limits, then the command in place of
-    this program."""
+def _become(
+    command: list[str], niceness: int, limits: dict[int, int], sandbox: Sandbox, guard_pid: int
+) -> NoReturn:
+    """Turns the child into the command: own process group, niceness, limits, sandbox, then the command in
+    place of this program."""
     try:
         os.setpgid(0, 0)
         _give_way(niceness)
@@ -95,6 +109,8 @@ def _become(command: list[str], niceness: int, limits: dict[int, int], guard_pid
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
         signal.pthread_sigmask(signal.SIG_SETMASK, ())
+        if sandbox.profile:
+            become_confined(command, sandbox)
         os.execvp(command[0], command)
     except OSError as error:
         _fail(f"cannot start {command[0]}: {error.strerror}")

@@ -50,7 +50,7 @@ async def commands_of(cache_dir: Path, executable: list[Path]) -> list[str]:
         await engine.reach(0.1, 5)
         await engine.may_reach_goal()
         await engine.list_states(100)
-        await engine.write_listing(cache_dir / "model.flat", cache_dir / "states")
+        await engine.write_listing()
         await engine.predict(0)
         await engine.update("press", "clicked")
         await engine.update_without_observation("press", ran_probability=0.5)
@@ -80,7 +80,7 @@ async def test_the_engine_names_each_field_that_a_command_lacks(cache_dir: Path,
         for field in (name for name in fields if not name.startswith("max_seconds=")):
             lines.append("\t".join(part for part in (name, *rest) if part != field))
             lacking.append((name, field.partition("=")[0]))
-    command = [str(executable[0]), str(tmp_path / "blame"), "", "1", "widen", "12"]
+    command = [str(executable[0]), "-1", "-1", "1", "widen", "12"]
     asked = "\n".join([command_line("list", max_states=100), *lines]) + "\n"
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
     printed, _ = await asyncio.wait_for(engine.communicate(asked.encode()), timeout=HANG_S)

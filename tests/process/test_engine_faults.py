@@ -67,7 +67,7 @@ async def test_documents_that_give_a_running_mission_no_belief_are_refused(cache
 
 async def test_an_engine_that_does_not_understand_says_so(cache_dir: Path, tmp_path: Path) -> None:
     built = await built_text(LAMP, cache_dir)
-    command = [str(built.executable), str(tmp_path / "blame"), "", "1", "widen", "12"]
+    command = [str(built.executable), "-1", "-1", "1", "widen", "12"]
     engine = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
     answers, _ = await asyncio.wait_for(engine.communicate(b"sing\n"), timeout=HANG_S)
     assert json.loads(answers.splitlines()[-1])["fault"]["code"] == "AOS217"

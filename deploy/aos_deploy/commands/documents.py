@@ -12,6 +12,7 @@ import msgspec
 import typer
 
 from aos_deploy.exit_codes import ExitCode
+from aos_deploy.options import TrustDocuments
 from aos_deploy.printing import count, print_diagnostics, print_json
 from aos_deploy.sarif import sarif_log
 from aos_language.load import load_bundle, load_files, read_bundle_files, with_excerpts
@@ -19,7 +20,7 @@ from aos_language.outline import outline
 from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Project
-from aos_protocol.errors import AosError, DocumentError
+from aos_protocol.errors import AosError, DeployError, DocumentError
 
 __all__ = ["Folder", "refusal", "register"]
 
@@ -61,6 +62,7 @@ def lint(
         list[Path] | None,
         typer.Option(metavar="BUNDLE", exists=True, help="A bundle that this one adds to; repeatable"),
     ] = None,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Check a bundle and print everything that is wrong.
 
@@ -125,6 +127,8 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
     try:
         reached = asyncio.run(findings())
     except AosError as error:
+        if isinstance(error, DeployError):
+            raise  # The machine lacks something; the documents may be right.
         if not error.diagnostics:
             return (Diagnostic(Severity.ERROR, error.code, error.message, Span(path.name), error.hint),)
         return with_excerpts(error.diagnostics, files)

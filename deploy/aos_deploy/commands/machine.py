@@ -21,6 +21,8 @@ from aos_deploy.program import cache_dir
 from aos_protocol import __version__
 from aos_protocol.errors import AosError
 from aos_runtime.distribution import DISTRIBUTION, pip_install
+from aos_runtime.sandbox.support import sandbox_support
+from aos_runtime.sandbox.trial import what_a_confined_program_can
 
 __all__ = ["Finding", "examine_machine", "examine_needs", "register"]
 
@@ -202,8 +204,11 @@ def _cache() -> Finding:
 
 
 def _sandbox() -> Finding:
-    path = shutil.which("bwrap")
-    line = _first_line([path, "--version"]) if path else ""
-    if not line:
-        return Finding("bubblewrap", "absent", "not installed", "Not used yet; apt-get install bubblewrap")
-    return Finding("bubblewrap", "ok", f"{line} at {path}")
+    """The confinement of documents' code, tried with a program that looks for a file of this user."""
+    support = sandbox_support()
+    if not support.is_whole:
+        advice = "Documents run only with trust: documents in the deploy file, or --trust-documents"
+        return Finding("sandbox", "absent", "; ".join(support.missing), advice)
+    if reason := what_a_confined_program_can():
+        return Finding("sandbox", "missing", reason, "Please report this with the kernel's version")
+    return Finding("sandbox", "ok", f"Landlock {support.landlock} and seccomp")

@@ -14,6 +14,7 @@ import typer
 from aos_deploy.bundle_engine import engine_of_bundle
 from aos_deploy.constraints import constraint_of_option
 from aos_deploy.mission_values import SetValues, values_of_options
+from aos_deploy.options import TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress, waiting
 from aos_deploy.views.lines import risk_text
@@ -93,6 +94,7 @@ def plan(
     set_values: SetValues = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
     as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Decide at the initial belief.
 
@@ -184,6 +186,7 @@ def simulate(
         bool, typer.Option("--states", help="Also tell the world's state at each step")
     ] = False,
     as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Run whole missions against the documents' own model.
 
@@ -249,6 +252,7 @@ def rate(
     seed: Seed = 1,
     set_values: SetValues = None,
     as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Measure how many samples a second the model gives.
 

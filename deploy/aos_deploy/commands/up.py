@@ -12,7 +12,7 @@ import typer
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.faults import print_fault
 from aos_deploy.mission_values import SetValues
-from aos_deploy.options import HELP_NAMES, Version
+from aos_deploy.options import HELP_NAMES, TrustDocuments, Version
 
 if TYPE_CHECKING:
     from aos_deploy.deploy_file import Deployment
@@ -73,6 +73,7 @@ def up(
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
     version: Version = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Bring a robot's system up and run its mission.
 
@@ -86,7 +87,7 @@ def up(
     from aos_deploy.deploy_file import read_deploy_file, without_a_robot
     from aos_deploy.living_runs import RUNS
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
-    from aos_deploy.needed_here import check_needed_here
+    from aos_deploy.needed_here import check_needed_here, check_sandbox
     from aos_deploy.run_directory import LATEST
     from aos_deploy.serve_run import ServeRun
     from aos_deploy.taking_up import take_up
@@ -105,6 +106,7 @@ def up(
     deployment = _with_options(deployment, seed, listen, runs, set_values)
     if model:
         deployment = without_a_robot(deployment)
+    check_sandbox(deployment)
     check_needed_here(deployment)
     title = f"{deployment.file.robot} · {deployment.path.name}"
     view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())

@@ -8,6 +8,7 @@ from typing import Annotated, get_args
 
 import typer
 
+from aos_deploy.options import TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.program import cache_dir
 from aos_deploy.terminal import progress
@@ -53,6 +54,7 @@ def bench(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON")] = False,
     as_markdown: Annotated[bool, typer.Option("--markdown", help="Print a table for a page")] = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Measure sampling, search and returns.
 

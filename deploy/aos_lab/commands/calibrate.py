@@ -11,7 +11,7 @@ import typer
 from rich import box
 from rich.table import Table
 
-from aos_deploy.options import AsJson
+from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import count, print_json
 from aos_deploy.terminal import console, progress
 
@@ -47,6 +47,7 @@ def calibrate(
         Path | None, typer.Option(metavar="PATCH", help="Write the proposed changes here", dir_okay=False)
     ] = None,
     as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Estimate the probabilities in documents from recorded missions.
 

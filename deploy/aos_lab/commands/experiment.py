@@ -12,7 +12,7 @@ import msgspec
 import typer
 from rich.progress import Progress
 
-from aos_deploy.options import HELP_NAMES, AsJson
+from aos_deploy.options import HELP_NAMES, AsJson, TrustDocuments
 from aos_deploy.printing import from_here, print_json
 from aos_deploy.shipped import shipped
 from aos_deploy.terminal import progress
@@ -61,6 +61,7 @@ def run(
         Path | None, typer.Option(metavar="DIR", help="Records and report; else experiments/NAME")
     ] = None,
     as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Run missions of all parts and write a report.
 

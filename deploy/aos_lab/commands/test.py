@@ -13,7 +13,7 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.mission_values import SetValues, values_of_options
-from aos_deploy.options import AsJson
+from aos_deploy.options import AsJson, TrustDocuments
 from aos_deploy.printing import print_json
 from aos_deploy.terminal import progress
 
@@ -48,6 +48,7 @@ def run_tests(
     ] = None,
     set_values: SetValues = None,
     as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
 ) -> None:
     """Run missions and check what is claimed of them.
 

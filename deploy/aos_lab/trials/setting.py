@@ -11,6 +11,7 @@ from ruamel.yaml import YAML
 from aos_deploy.bundle_files import project_of
 from aos_deploy.deploy_file import BusPart, Deployment, read_deploy_file, without_a_robot
 from aos_deploy.mission_values import values_of_mapping
+from aos_deploy.needed_here import check_sandbox
 from aos_deploy.played_faults import PlayedFaults
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DeployError
@@ -52,6 +53,7 @@ def deployment_of(setting: Setting, folder: Path, out: Path) -> Deployment:
     `out` takes a copy of the world file where faults are other ones. DeployError where they do not fit.
     """
     deployment = read_deploy_file(folder / setting.deploy)
+    check_sandbox(deployment)
     file = msgspec.structs.replace(deployment.file, bus=BusPart(listen="tcp/127.0.0.1:0"))
     if setting.simulations is not None:
         solver = msgspec.structs.replace(file.solver, simulations=setting.simulations, time_s=None)

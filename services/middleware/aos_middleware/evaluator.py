@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import re
 import signal
 import sys
@@ -36,7 +37,8 @@ from aos_middleware.frames import (
 from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import MappingError, StorageError
-from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
+from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
 
 __all__ = ["EvaluationLimits", "Evaluator", "MappingFault"]
 
@@ -50,6 +52,16 @@ _TRACEBACK_BYTES = 16 * 1024
 _FRAME = re.compile(r'^  File "(.*)", line (\d+) in ', re.MULTILINE)
 
 _log = logging.getLogger("aos.middleware")
+
+
+def _confinement() -> Confinement:
+    """The sandbox of a worker: it reads Python, with all that is installed there, and AOS."""
+    loader = loader_of(os.path.realpath(sys.executable))
+    return Confinement(
+        profile="worker",
+        read=(*library_folders(), *python_folders()),
+        execute=(sys.executable, *([loader] if loader else [])),
+    )
 
 
 class EvaluationLimits(msgspec.Struct, frozen=True, kw_only=True):
@@ -155,6 +167,7 @@ class Evaluator:
         command = guarded(
             [sys.executable, "-I", "-m", "aos_middleware.worker"],
             Limits(address_space_bytes=limits.address_space_bytes, file_bytes=limits.file_bytes),
+            _confinement(),
         )
         self._log_path.parent.mkdir(parents=True, exist_ok=True)
         with self._log_path.open("ab") as log:

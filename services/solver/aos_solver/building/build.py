@@ -24,7 +24,7 @@ from aos_protocol.errors import ModelError
 from aos_solver.building.build_cache import BuildCache, digest_of
 from aos_solver.building.compiler import Compiler, find_compiler
 from aos_solver.building.compiler_messages import read_messages, without_line_directives
-from aos_solver.building.compiler_run import LIMIT_HINT, internal_error, ran_out, run_compiler
+from aos_solver.building.compiler_run import LIMIT_HINT, Given, internal_error, ran_out, run_compiler
 from aos_solver.emission.emit import MODEL_FILE, EmittedModel
 
 __all__ = ["ANY_SIZE", "SOURCES", "SUPPORT", "BuildKind", "BuiltModel", "build", "build_engine"]
@@ -172,7 +172,10 @@ async def build_engine(
                 commands.append(compiler.precompilation(SUPPORT, str(SOURCES), kind, *_OPTIONS[kind]))
         deadline_s = _ENGINE_DEADLINES * compiler.deadline_s
         started_s = time.monotonic()
-        runs = [run_compiler(compiler, command, staging, deadline_s, "the engine") for command in commands]
+        ours: Given = {"reads": [SOURCES], "is_ours": True}
+        runs = [
+            run_compiler(compiler, command, staging, deadline_s, "the engine", **ours) for command in commands
+        ]
         for output, status in await _together(*runs):
             if status != 0:
                 raise internal_error("the engine", output, status, SOURCES / "engine.cpp")
@@ -244,7 +247,9 @@ class _Build(msgspec.Struct, frozen=True):
         (staging / _SOURCE).write_text(without_line_directives(self.emitted.cpp))
         options = [*_OPTIONS[self.kind], *self._precompiled, *_LIMITS]
         compilation = self.compiler.compilation(_SOURCE, _OBJECT, str(SOURCES), *options)
-        output, status = await self._run(compilation, staging, cpu_s=self._cpu_s)
+        output, status = await self._run(
+            compilation, staging, [SOURCES, *self._ready_entry], cpu_s=self._cpu_s
+        )
         if status != 0:
             raise self._failure(output, status)
         (staging / _SOURCE).unlink()
@@ -252,10 +257,18 @@ class _Build(msgspec.Struct, frozen=True):
     @property
     def _precompiled(self) -> list[str]:
         """The options for what hurried builds include, if that is compiled already."""
-        entry = self._ready_engine(STATE_BYTES[0])
-        if entry is None or self.kind not in _HURRIED:
+        if self.kind not in _HURRIED:
             return []
-        return self.compiler.precompiled(SUPPORT, str(entry / self.kind))
+        return [
+            option
+            for entry in self._ready_entry
+            for option in self.compiler.precompiled(SUPPORT, str(entry / self.kind))
+        ]
+
+    @property
+    def _ready_entry(self) -> list[Path]:
+        entry = self._ready_engine(STATE_BYTES[0])
+        return [] if entry is None else [entry]
 
     def _state_bytes(self, model: Path) -> int:
         """The size of the quickest engine that takes the model's states."""
@@ -276,12 +289,15 @@ class _Build(msgspec.Struct, frozen=True):
     async def _link(self, staging: Path, engine: list[Path]) -> None:
         model = staging / _OBJECT
         linking = self.compiler.linking([str(part) for part in (model, *engine)], _EXECUTABLE)
-        output, status = await self._run(linking, staging)
+        output, status = await self._run(linking, staging, engine)
         if status != 0:
             raise internal_error(self.emitted.project, output, status, self._kept_source())
+        (staging / _EXECUTABLE).chmod(0o755)  # A linker that may not change modes leaves that to us.
         model.unlink()
 
-    async def _run(self, command: list[str], staging: Path, *, cpu_s: int | None = None) -> tuple[str, int]:
+    async def _run(
+        self, command: list[str], staging: Path, reads: list[Path], *, cpu_s: int | None = None
+    ) -> tuple[str, int]:
         return await run_compiler(
             self.compiler,
             command,
@@ -291,6 +307,7 @@ class _Build(msgspec.Struct, frozen=True):
             hint=LIMIT_HINT,
             niceness=self.niceness,
             cpu_s=cpu_s,
+            reads=reads,
         )
 
     def _failure(self, output: str, status: int) -> ModelError:

@@ -13,13 +13,14 @@ from aos_solver.emission.emit import EmittedModel
 __all__ = ["CompilerReport", "read_messages", "without_line_directives"]
 
 _PLACE = re.compile(
-    r"(?P<file>[^\s:][^:]*):(?P<line>\d+):(?P<column>\d+):\s+"
-    r"(?P<kind>fatal error|error|warning|note|required)\b:?\s*(?P<text>.*)"
+    r"(?P<file>[^\s:][^:]*):(?P<line>\d+):(?:(?P<column>\d+):)?\s+"
+    r"(?P<kind>fatal error|error|Error|warning|note|required)\b:?\s*(?P<text>.*)"
 )
+"""The places of g++, clang and the assembler behind g++, which tells no column and writes `Error`."""
 _ANOTHER_ENUM = re.compile(r"deleted .*(?:Named<.*operator\[\]|operator `\[\]`)")
 """g++ and clang say this of the one deleted operator that documents can meet, see named_array.hpp."""
 _NOT_DECLARED = re.compile(r"`([A-Za-z_]\w*)` was not declared|use of undeclared identifier `([A-Za-z_]\w*)`")
-_FAULTS = ("error", "fatal error")
+_FAULTS = ("error", "fatal error", "Error")
 
 
 class CompilerReport(msgspec.Struct, frozen=True):
@@ -81,7 +82,7 @@ def _messages(output: str) -> list[_Message]:
         match = _PLACE.match(line)
         if match is None:
             continue
-        place = (match["file"], int(match["line"]), int(match["column"]))
+        place = (match["file"], int(match["line"]), int(match["column"] or 1))
         if match["kind"] == "required":
             led_by.append(place)
         elif match["kind"] in _FAULTS:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TypedDict, Unpack
 
 from aos_protocol.errors import ModelError
-from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
+from aos_runtime.sandbox.places import SYSTEM, folders_of_tool, python_folders
 from aos_solver.building.compiler import Compiler
 
 __all__ = ["LIMIT_HINT", "internal_error", "ran_out", "run_compiler"]
@@ -31,11 +34,14 @@ _OUTPUT_LIMIT_BYTES = 4 << 20
 
 
 class Given(TypedDict, total=False):
-    """The advice where the compiler is too slow, its niceness, and each process's limit of processor time."""
+    """The advice where the compiler is too slow, its niceness, each process's limit of processor time, what
+    it may read besides its own files, and whether it compiles nothing of documents."""
 
     hint: str
     niceness: int
     cpu_s: int | None
+    reads: Sequence[Path]
+    is_ours: bool
 
 
 async def run_compiler(
@@ -46,7 +52,8 @@ async def run_compiler(
     what: str,
     **given: Unpack[Given],
 ) -> tuple[str, int]:
-    """Runs the command in `directory`; returns what it says, and its status.
+    """Runs the command in `directory`, the only folder that it may write in; returns what it says, and its
+    status.
 
     ModelError AOS202, which names `what` is compiled, if it takes longer than `deadline_s`; see `ran_out`.
     """
@@ -58,10 +65,22 @@ async def run_compiler(
         file_bytes=_FILE_BYTES,
         niceness=given.get("niceness", 0),
     )
+    cache = _zig_cache() if compiler.family == "zig" else None
+    confinement = _confinement(compiler, directory, cache, given)
+    environment = {
+        "LC_ALL": "C",
+        "TMPDIR": str(directory),
+    }  # What a compiler that is killed leaves goes with it.
+    environment["CCACHE_DISABLE"] = "1"  # Its cache is one of the folders that a compiler may not write in.
+    if cache is not None:
+        environment |= {
+            "ZIG_GLOBAL_CACHE_DIR": str(cache),
+            "ZIG_LOCAL_CACHE_DIR": str(directory / ".zig-cache"),
+        }
     child = await Child.start(
-        guarded(command, limits),
+        guarded(command, limits, confinement),
         cwd=directory,
-        env={"LC_ALL": "C", "TMPDIR": str(directory)},  # What a compiler that is killed leaves goes with it.
+        env=environment,
         stdout=PIPE,
         stderr=asyncio.subprocess.STDOUT,
     )
@@ -74,6 +93,27 @@ async def run_compiler(
         raise ModelError(message, code="AOS202", hint=given.get("hint", _OUR_LIMIT_HINT)) from error
     finally:
         await child.stop()
+
+
+def _confinement(compiler: Compiler, directory: Path, cache: Path | None, given: Given) -> Confinement:
+    """The sandbox of a compiler: it reads the system's folders, its own, and what it compiles."""
+    own = folders_of_tool(compiler.command)
+    python = python_folders() if compiler.family == "zig" else ()
+    return Confinement(
+        profile="compiler",
+        read=tuple(str(path) for path in given.get("reads", ())),
+        execute=(*SYSTEM, *own, *python),
+        write=(str(directory), *([str(cache)] if cache is not None else [])),
+        is_ours=given.get("is_ours", False),
+    )
+
+
+def _zig_cache() -> Path:
+    """The folder in which zig keeps its C++ library, as zig itself chooses it."""
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    folder = Path(os.environ.get("ZIG_GLOBAL_CACHE_DIR") or Path(home) / "zig")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def ran_out(output: str, status: int) -> bool:

@@ -216,8 +216,10 @@ class Listed(msgspec.Struct, frozen=True):
 
 
 class WrittenListing(msgspec.Struct, frozen=True):
-    """The texts of observations, and the names of variables that states are not told apart by."""
+    """The size of the written model, the texts of observations, and the names of variables by which states
+    are not told apart."""
 
+    model_bytes: int
     observations: tuple[str, ...]
     left_out: tuple[str, ...]
 

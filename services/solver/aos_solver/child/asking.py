@@ -54,6 +54,7 @@ class Asking:
         self._policy = impossible_observation
         self._child: EngineChild | None = None
         self._beliefs: SharedMemory | None = None
+        self._listing: SharedMemory | None = None
         self._changes = 0
         self._correction_faults: dict[EngineFault, AosError] = {}
         self._world: list[str] = []
@@ -80,6 +81,7 @@ class Asking:
         engine = cls(built, seed, impossible_observation)
         if keeps_belief:
             engine._beliefs = SharedMemory.create("aos-beliefs")
+        engine._listing = SharedMemory.create("aos-listing")
         try:
             await engine._start_child()
         except BaseException:
@@ -105,9 +107,10 @@ class Asking:
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
         await self._drop_child()
-        if self._beliefs is not None:
-            self._beliefs.close()
-            self._beliefs = None
+        for memory in (self._beliefs, self._listing):
+            if memory is not None:
+                memory.close()
+        self._beliefs = self._listing = None
 
     @property
     def model_digest(self) -> str:
@@ -193,9 +196,8 @@ class Asking:
 
     @property
     def _start(self) -> EngineStart:
-        beliefs = "" if self._beliefs is None else self._beliefs.path
         values = parameter_arguments(self._built.emitted.parameters, self._built.mission_values)
-        return EngineStart(self._seed, self._policy, beliefs, values)
+        return EngineStart(self._seed, self._policy, self._beliefs, self._listing, values)
 
     async def _restart_child(self) -> None:
         await self._drop_child()

@@ -27,6 +27,7 @@ from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EngineDescription, EngineFault, Progress
 from aos_solver.child.blame_page import new_blame_page, running_piece
+from aos_solver.child.confinement import confinement_of
 from aos_solver.child.printed import pass_on
 from aos_solver.child.shared_memory import SharedMemory
 
@@ -44,6 +45,11 @@ HANG_PERIODS = 12
 """A call of document code may take this many tenths of a second of processor time."""
 
 ADDRESS_SPACE_BYTES = 8 * 1024**3
+SHARED_BYTES = 8 * 1024**3
+"""The most that a child writes to one memory that it shares; kept_beliefs.hpp knows it."""
+
+_LIMITS = Limits(address_space_bytes=ADDRESS_SPACE_BYTES, file_bytes=SHARED_BYTES)
+
 ANSWER_LIMIT_BYTES = 32 * 1024**2
 """The most that one answer has. What may be longer comes in pieces."""
 
@@ -70,14 +76,15 @@ _PROGRESS_LINE = b'{"progress":'
 
 
 class EngineStart(msgspec.Struct, frozen=True):
-    """The start of a child. It keeps its beliefs in the file of that path, or nowhere.
+    """The start of a child. It keeps its beliefs in the one memory, and writes listings to the other.
 
     `mission_values` are those of mission parameters, as `parameter_arguments` writes them.
     """
 
     seed: int
     policy: ImpossiblePolicy
-    beliefs: str = ""
+    beliefs: SharedMemory | None = None
+    listing: SharedMemory | None = None
     mission_values: tuple[str, ...] = ()
 
 
@@ -115,12 +122,15 @@ class EngineChild:
     async def launch(cls, built: BuiltModel, start: EngineStart, periods: int = HANG_PERIODS) -> Self:
         """A child of which nobody knows yet whether it can `begin`."""
         blame = new_blame_page()
-        arguments = [blame.path, start.beliefs, str(start.seed), start.policy, str(periods)]
+        shared = [memory.descriptor for memory in (blame, start.beliefs, start.listing) if memory is not None]
+        kept = -1 if start.beliefs is None else start.beliefs.descriptor
+        arguments = [str(blame.descriptor), str(kept), str(start.seed), start.policy, str(periods)]
         arguments += start.mission_values
         try:
             child = await Child.start(
-                guarded([str(built.executable), *arguments], Limits(address_space_bytes=ADDRESS_SPACE_BYTES)),
+                guarded([str(built.executable), *arguments], _LIMITS, confinement_of(built.executable)),
                 name="engine",
+                pass_fds=shared,
                 stdin=PIPE,
                 stdout=PIPE,
                 stderr=PIPE,
@@ -180,8 +190,10 @@ class EngineChild:
 
     async def close(self) -> None:
         """Ends the child; closing twice does nothing."""
-        self._child.kill()
-        await self._child.wait()
+        self._child.end_at_once()
+        if not await self._child.wait_for(EXIT_DEADLINE_S):
+            self._child.kill()
+            await self._child.wait()
         await asyncio.wait({self._printed}, timeout=EXIT_DEADLINE_S)
         self._printed.cancel()
         if self._blame is not None:
@@ -239,6 +251,8 @@ class EngineChild:
 
 
 def _status_text(returncode: int) -> str:
+    if returncode == -signal.SIGSYS:
+        return "it asked the system for what models may not: files, connections, processes"
     if -returncode in (signal.SIGFPE, signal.SIGILL, signal.SIGTRAP):
         return f"signal {-returncode}, as for an integer that is divided by zero"
     return f"signal {-returncode}" if returncode < 0 else f"exit status {returncode}"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from aos_solver.child.answers import Listed, Reach, WrittenListing
 from aos_solver.child.asking import Asking
 from aos_solver.child.command_line import command_line
@@ -31,7 +29,11 @@ class ListingQuestions(Asking):
             command_line("list", max_states=max_states), Listed, deadline_s=LISTING_DEADLINE_S
         )
 
-    async def write_listing(self, model: Path, states: Path) -> WrittenListing:
-        """Writes what is listed (`cpp/point_based/flat_file.hpp`), and the texts of states, one a line."""
-        command = command_line("write_listing", model=model, states=states)
-        return await self._ask(command, WrittenListing, deadline_s=LISTING_DEADLINE_S)
+    async def write_listing(self) -> tuple[WrittenListing, bytes, str]:
+        """Returns what is listed, as `cpp/point_based/flat_file.hpp` has it, and the texts of states, one a
+        line."""
+        assert self._listing is not None
+        command = command_line("write_listing", descriptor=self._listing.descriptor)
+        written = await self._ask(command, WrittenListing, deadline_s=LISTING_DEADLINE_S)
+        model, states = self._listing.take(written.model_bytes)
+        return written, model, states.decode()

@@ -22,13 +22,21 @@ class SharedMemory:
         return cls(file)
 
     @property
-    def path(self) -> str:
-        """The path at which a child can open it, through us."""
-        return f"/proc/{os.getpid()}/fd/{self._file}"
+    def descriptor(self) -> int:
+        """The number of the descriptor, for a child to which it is passed."""
+        return self._file
 
-    def read(self, size_bytes: int) -> bytes:
-        """Returns what is in it from its beginning."""
-        return os.pread(self._file, size_bytes, 0)
+    def read(self, size_bytes: int, place: int = 0) -> bytes:
+        """Returns what is in it from a place on, by default from its beginning."""
+        return os.pread(self._file, size_bytes, place)
+
+    def take(self, size_bytes: int) -> tuple[bytes, bytes]:
+        """Returns so much of what is in it, and the rest; then it is empty."""
+        with os.fdopen(os.dup(self._file), "rb") as file:
+            file.seek(0)
+            taken = file.read(size_bytes), file.read()
+        os.truncate(self._file, 0)
+        return taken
 
     def close(self) -> None:
         """Gives the memory back once no child has it."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -59,10 +57,8 @@ async def enumerate_model(
             hint="Use draws with a finite number of outcomes and counters with a limit, for no more than "
             f"{max_states} states (--states), or plan online (aos plan, aos-up)",
         ) from error
-    with tempfile.TemporaryDirectory(prefix="aos-listing-") as folder:
-        flat, texts = Path(folder) / "model.flat", Path(folder) / "states"
-        written = await engine.write_listing(flat, texts)
-        numbers, states = read_flat(flat), tuple(texts.read_text().splitlines())
+    written, flat, texts = await engine.write_listing()
+    numbers, states = read_flat(flat), tuple(texts.splitlines())
     if discount is not None:
         numbers = msgspec.structs.replace(numbers, discount=discount)
     actions = tuple(action.name for action in description.actions)

@@ -163,9 +163,8 @@ def with_more_outcomes(
     return Ragged(first, numbers[order], probabilities[order]), sensings[order]
 
 
-def read_flat(path: Path) -> FlatModel:
-    """A file that an engine has written."""
-    data = path.read_bytes()
+def read_flat(data: bytes) -> FlatModel:
+    """The model that an engine has written."""
     place = len(_MARK)
 
     def take(kind: Any, count: int) -> NDArray[Any]:

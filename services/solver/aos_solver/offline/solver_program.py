@@ -30,8 +30,17 @@ async def build_solver(cache_dir: Path, compiler: Compiler | None = None) -> Pat
 
     async def make(staging: Path) -> None:
         for command in (compilation, compiler.linking([_OBJECT], _EXECUTABLE)):
-            output, status = await run_compiler(compiler, command, staging, compiler.deadline_s, "the solver")
+            output, status = await run_compiler(
+                compiler,
+                command,
+                staging,
+                compiler.deadline_s,
+                "the solver",
+                reads=[SOURCES, _SOURCE.parent],
+                is_ours=True,
+            )
             if status != 0:
                 raise internal_error("the solver", output, status, _SOURCE)
+        (staging / _EXECUTABLE).chmod(0o755)
 
     return await BuildCache(cache_dir).fill(name, make) / _EXECUTABLE

@@ -12,6 +12,7 @@ import msgspec
 
 from aos_protocol.errors import ModelError, PlanningError
 from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_solver.child.confinement import confinement_of
 from aos_solver.offline.alpha_vectors import AlphaVectors, RegionSize
 from aos_solver.offline.explicit_model import ExplicitModel
 from aos_solver.offline.solver_program import build_solver
@@ -80,8 +81,10 @@ async def solve(
         flat, found = Path(folder) / "model.flat", Path(folder) / "vectors"
         await asyncio.to_thread(model.write_flat, flat)
         numbers = [repr(limits.precision), repr(limits.cpu_s), str(limits.memory_bytes)]
-        command = [str(executable), str(flat), str(found), *numbers]
-        history = await _run(command, on_progress, stop or asyncio.Event())
+        with found.open("wb") as vectors_file:
+            written = vectors_file.fileno()
+            command = [str(executable), str(flat), str(written), *numbers]
+            history = await _run(command, on_progress, stop or asyncio.Event(), reads=flat, writes=written)
         line, _, data = found.read_bytes().partition(b"\n")
         sizes = msgspec.json.decode(line, type=_Regions).regions
         vectors = AlphaVectors.of_bytes(len(model.actions), sizes, data)
@@ -100,12 +103,20 @@ def _check(model: ExplicitModel) -> None:
 
 
 async def _run(
-    command: list[str], on_progress: Callable[[Bounds], None], stop: asyncio.Event
+    command: list[str],
+    on_progress: Callable[[Bounds], None],
+    stop: asyncio.Event,
+    *,
+    reads: Path,
+    writes: int,
 ) -> list[Bounds]:
     """All lines of the solver; it ends in order when its input is closed."""
     child = await Child.start(
-        guarded(command, Limits(address_space_bytes=_ADDRESS_SPACE_BYTES)),
+        guarded(
+            command, Limits(address_space_bytes=_ADDRESS_SPACE_BYTES), confinement_of(Path(command[0]), reads)
+        ),
         name="sarsop",
+        pass_fds=[writes],
         stdin=PIPE,
         stdout=PIPE,
         stderr=PIPE,

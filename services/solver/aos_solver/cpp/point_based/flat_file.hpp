@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "aos/base/descriptor_file.hpp"
 #include "point_based/flat_model.hpp"
 
 namespace aos::point_based {
@@ -78,11 +79,9 @@ inline FlatModel read_flat_model(const std::string& path) {
   return model;
 }
 
-// Throws std::runtime_error if the file cannot be written.
-inline void write_flat_model(const std::string& path, const FlatModel& model) {
-  std::ofstream file{path, std::ios::binary};
+inline void write_flat_model(DescriptorFile& file, const FlatModel& model) {
   const auto put = [&]<class Number>(const std::vector<Number>& numbers) {
-    file.write(reinterpret_cast<const char*>(numbers.data()), static_cast<std::streamsize>(numbers.size() * sizeof(Number)));
+    file.write(numbers.data(), numbers.size() * sizeof(Number));
   };
   std::vector<double> weights;
   std::vector<std::uint64_t> first_entry{0};
@@ -92,7 +91,7 @@ inline void write_flat_model(const std::string& path, const FlatModel& model) {
     for (const auto& [state, probability] : belief) entries.push_back({state, 0, probability});
     first_entry.push_back(entries.size());
   }
-  file.write("AOSFLAT1", 8);
+  file.write("AOSFLAT1");
   put(std::vector<std::uint64_t>{model.states, model.actions, model.observations, model.outcomes.elements.size(),
                                  model.likelihoods.first.size() - 1, model.likelihoods.elements.size(), weights.size(),
                                  entries.size()});
@@ -105,7 +104,6 @@ inline void write_flat_model(const std::string& path, const FlatModel& model) {
   put(weights);
   put(first_entry);
   put(entries);
-  if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
 }  // namespace aos::point_based

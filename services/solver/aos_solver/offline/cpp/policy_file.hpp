@@ -3,11 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
+#include "aos/base/descriptor_file.hpp"
 #include "aos/base/json.hpp"
 #include "point_based/bounds.hpp"
 #include "point_based/regions.hpp"
@@ -20,10 +19,10 @@ using point_based::Region;
 using point_based::Regions;
 using point_based::Sarsop;
 
-inline void write_policy(const std::string& path, const Regions& regions, const Sarsop& solver) {
-  std::ofstream file{path, std::ios::binary};
+inline void write_policy(int descriptor, const Regions& regions, const Sarsop& solver) {
+  DescriptorFile file{descriptor};
   const auto put = [&]<class Number>(const std::vector<Number>& numbers) {
-    file.write(reinterpret_cast<const char*>(numbers.data()), static_cast<std::streamsize>(numbers.size() * sizeof(Number)));
+    file.write(numbers.data(), numbers.size() * sizeof(Number));
   };
   JsonWriter sizes;
   sizes.begin_object().key("regions").begin_array();
@@ -31,7 +30,8 @@ inline void write_policy(const std::string& path, const Regions& regions, const 
     sizes.begin_object().member("states", regions.all[number].states.size());
     sizes.member("vectors", solver.graph().lower(number).kept()).end_object();
   }
-  file << sizes.end_array().end_object().text() << '\n';
+  file.write(sizes.end_array().end_object().text());
+  file.write("\n");
   for (std::uint32_t number = 0; number < regions.all.size(); ++number) {
     const LowerBound& bound = solver.graph().lower(number);
     std::vector<std::uint32_t> actions;
@@ -42,7 +42,7 @@ inline void write_policy(const std::string& path, const Regions& regions, const 
     put(actions);
     for (std::uint32_t i = 0; i < bound.size(); ++i) put(bound[i].values);
   }
-  if (!file.flush()) throw std::runtime_error("cannot write " + path);
+  if (!file.flush()) throw std::runtime_error("the policy cannot be written");
 }
 
 }  // namespace aos::offline

@@ -65,7 +65,7 @@ const char* improve(Sarsop& solver, double precision, double seconds, std::size_
 
 int main(int argc, char** argv) {
   if (argc != 6) {
-    std::fprintf(stderr, "usage: %s MODEL POLICY PRECISION CPU_SECONDS MEMORY_BYTES\n", argv[0]);
+    std::fprintf(stderr, "usage: %s MODEL POLICY_DESCRIPTOR PRECISION CPU_SECONDS MEMORY_BYTES\n", argv[0]);
     return 2;
   }
   try {
@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
     Sarsop solver{model, regions};
     const char* ending = improve(solver, std::atof(argv[3]), std::atof(argv[4]), std::strtoull(argv[5], nullptr, 10));
     solver.prune();
-    write_policy(argv[2], regions, solver);
+    write_policy(std::atoi(argv[2]), regions, solver);
     report(solver, ending);
   } catch (const CrossedBounds& crossed) {
     std::fprintf(stderr, "%s\n", crossed.what());

@@ -5,11 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "aos/base/descriptor_file.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/belief/hypotheses.hpp"
 #include "aos/belief/saved_history.hpp"
@@ -19,8 +19,8 @@ namespace aos {
 template <class Model>
 class KeptBeliefs {
  public:
-  // An empty path keeps nothing.
-  explicit KeptBeliefs(const char* path) : file_(path, std::ios::in | std::ios::out | std::ios::binary) {}
+  // A negative descriptor keeps nothing.
+  explicit KeptBeliefs(int descriptor) : file_(descriptor) {}
 
   // Keeps what is believed after one more change. A file without room for it keeps nothing.
   void keep(const Hypotheses<Model>& hypotheses) {
@@ -28,7 +28,6 @@ class KeptBeliefs {
     if (!file_.is_open()) return;
     const auto beliefs = hypotheses.beliefs();
     const Words words = hypotheses.words();
-    file_.clear();
     put_head({});
     put(words.data(), words.size() * sizeof(Words::value_type));
     for (const Belief<Model>* belief : beliefs) put_belief(*belief);
@@ -40,15 +39,14 @@ class KeptBeliefs {
   std::optional<Hypotheses<Model>> restore(std::uint64_t change) {
     changes_ = change;
     Head head{};
-    file_.clear();
-    file_.seekg(begin());
+    file_.seek(begin());
     get(&head, sizeof head);
-    if (!file_ || head.change != change || head.beliefs == 0) return std::nullopt;
+    if (!file_.is_good() || head.change != change || head.beliefs == 0) return std::nullopt;
     Words words(head.words);
     get(words.data(), words.size() * sizeof(Words::value_type));
     std::vector<Belief<Model>> beliefs;
-    while (file_ && beliefs.size() < head.beliefs) beliefs.push_back(next_belief());
-    if (!file_) return std::nullopt;
+    while (file_.is_good() && beliefs.size() < head.beliefs) beliefs.push_back(next_belief());
+    if (!file_.is_good()) return std::nullopt;
     return Hypotheses<Model>::of(std::move(beliefs), words);
   }
 
@@ -67,12 +65,13 @@ class KeptBeliefs {
     bool is_drawn;
   };
 
-  // The two places are far apart; the file takes memory only for what is written.
-  std::streamoff begin() const { return static_cast<std::streamoff>(changes_ % 2) << 36; }
+  // The two places are far apart; the file takes memory only for what is written. It is limited to twice this, as
+  // engine_child.py knows.
+  off_t begin() const { return static_cast<off_t>(changes_ % 2) << 32; }
 
   // The seek writes what was put before, so that the file has the same order.
   void put_head(const Head& head) {
-    file_.seekp(begin());
+    file_.seek(begin());
     put(&head, sizeof head);
   }
   void put_belief(const Belief<Model>& belief) {
@@ -89,8 +88,8 @@ class KeptBeliefs {
   Belief<Model> next_belief() {
     BeliefHead head{};
     get(&head, sizeof head);
-    std::vector<Particle> particles(file_ ? head.particles : 0);
-    Words history(file_ ? head.history_words : 0);
+    std::vector<Particle> particles(file_.is_good() ? head.particles : 0);
+    Words history(file_.is_good() ? head.history_words : 0);
     for (Particle& particle : particles) {
       get(&particle.weight, sizeof particle.weight);
       get(Model::bytes_of(particle.state), Model::state_bytes());
@@ -98,12 +97,10 @@ class KeptBeliefs {
     get(history.data(), history.size() * sizeof(Words::value_type));
     return Belief<Model>::of(with_history<Model>(std::move(particles), history), head.error_bound, head.is_drawn);
   }
-  void put(const void* from, std::size_t count) {
-    file_.write(static_cast<const char*>(from), static_cast<std::streamsize>(count));
-  }
-  void get(void* to, std::size_t count) { file_.read(static_cast<char*>(to), static_cast<std::streamsize>(count)); }
+  void put(const void* from, std::size_t count) { file_.write(from, count); }
+  void get(void* to, std::size_t count) { file_.read(to, count); }
 
-  std::fstream file_;
+  DescriptorFile file_;
   std::uint64_t changes_ = 0;
 };
 

@@ -32,8 +32,8 @@ class BeliefCommands {
  public:
   using State = typename Model::State;
 
-  // `kept_beliefs` is the path of the file of KeptBeliefs. `search` follows the changes of the belief.
-  BeliefCommands(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs, Planner<Model>& search)
+  // `kept_beliefs` is the descriptor of KeptBeliefs. `search` follows the changes of the belief.
+  BeliefCommands(std::uint64_t seed, ImpossiblePolicy policy, int kept_beliefs, Planner<Model>& search)
       : random_(seed), policy_(policy), believed_(Belief<Model>::initial(random_)), kept_(kept_beliefs), search_(search) {}
 
   const Belief<Model>& belief() const { return believed_.belief(); }

@@ -1,15 +1,13 @@
 // The engine as a child process. It reads commands as lines of text (command.hpp) and answers each by a line of JSON.
 // Lines of progress may come before the answer.
 //
-// The answers go to a descriptor of their own; what model code prints goes to standard error. The process dies with its
-// parent. A fault of model code is an answer. After a crash, the blame page tells which document code ran.
+// The answers go to a descriptor of their own; what model code prints goes to standard error. Its guard has it die
+// with its parent. A fault of model code is an answer. After a crash, the blame page tells which document code ran.
 #pragma once
 
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -30,8 +28,7 @@ namespace aos {
 
 namespace detail {
 
-inline void share_blame(const char* path) {
-  const int file = ::open(path, O_RDWR);
+inline void share_blame(int file) {
   if (file < 0) return;
   auto* const place = const_cast<std::uint32_t*>(blame::page);
   ::mmap(place, blame::page_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file, 0);
@@ -65,17 +62,16 @@ inline void say(std::FILE* out, const JsonWriter& json) {
 
 }  // namespace detail
 
-// The main function of an engine child. BELIEF_FILE is for KeptBeliefs, MAX_PERIODS for the watchdog. The values are those
-// of mission parameters, as StateReader reads them.
+// The main function of an engine child. BLAME and BELIEFS are descriptors, negative ones for none; BELIEFS is for
+// KeptBeliefs, MAX_PERIODS for the watchdog. The values are those of mission parameters, as StateReader reads them.
 template <class Model>
 int run_child(int argc, char** argv) {
   if (argc < 6) {
-    std::fprintf(stderr, "usage: %s BLAME_FILE BELIEF_FILE SEED hold|widen|reset MAX_PERIODS [NAME=VALUE]...\n", argv[0]);
+    std::fprintf(stderr, "usage: %s BLAME BELIEFS SEED hold|widen|reset MAX_PERIODS [NAME=VALUE]...\n", argv[0]);
     return 2;
   }
   for (int place = 6; place < argc; ++place) detail::take_mission_value_of(argv[place]);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  detail::share_blame(argv[1]);
+  detail::share_blame(std::atoi(argv[1]));
   watchdog::start(std::atoi(argv[5]));
   std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
   detail::told = out;
@@ -89,7 +85,7 @@ int run_child(int argc, char** argv) {
   JsonWriter json;
   guarded(json, [&] {
     Model::prepare();
-    commands = std::make_unique<Commands<Model>>(std::strtoull(argv[3], nullptr, 10), policy, argv[2]);
+    commands = std::make_unique<Commands<Model>>(std::strtoull(argv[3], nullptr, 10), policy, std::atoi(argv[2]));
     commands->describe(json);
   });
   detail::say(out, json);

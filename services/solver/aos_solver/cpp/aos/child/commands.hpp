@@ -25,7 +25,7 @@ namespace aos {
 template <class Model>
 class Commands {
  public:
-  Commands(std::uint64_t seed, ImpossiblePolicy policy, const char* kept_beliefs)
+  Commands(std::uint64_t seed, ImpossiblePolicy policy, int kept_beliefs)
       : beliefs_(seed, policy, kept_beliefs, search_), planning_(beliefs_, search_) {}
 
   void describe(JsonWriter& json) const {

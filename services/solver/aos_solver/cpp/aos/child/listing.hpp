@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstddef>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "aos/base/descriptor_file.hpp"
 #include "aos/base/json.hpp"
 #include "aos/belief/belief.hpp"
 #include "aos/child/left_out.hpp"
@@ -33,19 +33,22 @@ class Listing {
     json.begin_object().member("listed", space_.rows().states).member("known", space_.size()).end_object();
   }
 
-  // Writes the model, with the belief as its start, to one file, and the states' texts to another, one a
-  // line. Ended states have no number: the probability that a row lacks is that of an end.
-  void write(JsonWriter& json, const std::string& model_path, const std::string& states_path) const {
+  // Writes the model, with the belief as its start, to a descriptor, and behind it the states' texts, one a line.
+  // Ended states have no number: the probability that a row lacks is that of an end.
+  void write(JsonWriter& json, int descriptor) const {
     point_based::FlatModel model = space_.rows();
     if (auto start = space_.weights_of(belief_); !start.empty()) model.starts.push_back({1, std::move(start)});
-    point_based::write_flat_model(model_path, model);
+    DescriptorFile file{descriptor};
+    point_based::write_flat_model(file, model);
+    const auto model_bytes = file.place();
     const LeftOut<Model> left_out;
-    std::ofstream states{states_path};
     for (std::uint32_t number = 0; number < space_.size(); ++number) {
-      states << Model::save_state(left_out.rest_of(space_[number])) << '\n';
+      file.write(Model::save_state(left_out.rest_of(space_[number])));
+      file.write("\n");
     }
-    if (!states.flush()) throw std::runtime_error("cannot write " + states_path);
-    space_.observations().write(json.begin_object().key("observations"));
+    if (!file.flush()) throw std::runtime_error("the listing cannot be written");
+    json.begin_object().member("model_bytes", static_cast<std::uint64_t>(model_bytes));
+    space_.observations().write(json.key("observations"));
     left_out.write_names(json.key("left_out"));
     json.end_object();
   }

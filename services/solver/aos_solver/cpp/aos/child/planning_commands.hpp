@@ -124,7 +124,7 @@ class PlanningCommands {
   }
   void write_listing(JsonWriter& json, const Command& command) {
     if (!listing_) throw BadCommand{"nothing is listed"};
-    listing_->write(json, std::string{command.text("model")}, std::string{command.text("states")});
+    listing_->write(json, command.number<int>("descriptor"));
     listing_.reset();
   }
 

@@ -1,0 +1,100 @@
+"""The sandbox with real commands: documents' code that reaches out, and a kernel without Landlock."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from hostile.system_call import system_call
+from models import built_text, engine_of
+from processes import HANG_S
+
+from aos_protocol.errors import CodeFaultError, ModelError
+from aos_runtime.sandbox.support import sandbox_support
+from aos_runtime.sandbox.trial import what_a_confined_program_can
+
+needs_sandbox = pytest.mark.skipif(not sandbox_support().is_whole, reason="needs a kernel with a sandbox")
+
+ENVIRONMENT = """project: lamp
+horizon: 3
+discount: 0.9
+
+state_variable: int pressed
+
+initial_belief:
+state.pressed = 0;
+
+reward_code:
+if (state.pressed > 2) __isGoalState = true;
+"""
+SKILL = """project: lamp
+
+dynamic_model:
+state__.pressed = state.pressed + 1;
+CODE
+__moduleResponse = clicked;
+"""
+MAPPING = """project: lamp
+response: clicked
+response_rule: True
+
+module_activation: skill
+path: /press
+"""
+
+
+def lamp(code: str) -> dict[str, str]:
+    """The documents of a lamp whose skill runs the code; it begins in line 5 of press.sd."""
+    return {"lamp.ef": ENVIRONMENT, "press.sd": SKILL.replace("CODE", code), "press.am": MAPPING}
+
+
+@needs_sandbox
+@pytest.mark.parametrize(
+    "code",
+    [
+        'auto f = &std::system; f("id");',
+        system_call("socket", 1, 1),
+        f"{system_call('getppid', result='parent')} {system_call('kill', 'parent', 9)}",
+    ],
+    ids=["a program", "a connection", "a signal"],
+)
+async def test_a_model_that_reaches_out_ends_and_its_line_is_told(code: str, cache_dir: Path) -> None:
+    built = await built_text(lamp(code), cache_dir)
+    with pytest.raises(CodeFaultError, match="may not") as caught:
+        async with engine_of(built) as engine:
+            await engine.plan(seed=1, simulations=50)
+    place = caught.value.diagnostics[0].span
+    assert (place.file, place.line) == ("press.sd", 5)
+
+
+@needs_sandbox
+async def test_a_secret_does_not_come_into_a_program(cache_dir: Path, tmp_path: Path) -> None:
+    secret = tmp_path / "secret"
+    secret.write_text("canary")
+    with pytest.raises(ModelError) as caught:
+        await built_text(lamp(f'asm(".incbin \\"{secret}\\"");'), cache_dir)
+    place = caught.value.diagnostics[0].span
+    assert (place.file, place.line) == ("press.sd", 5)
+
+
+@needs_sandbox
+def test_the_trial_of_the_sandbox_finds_nothing_that_a_confined_program_can_do() -> None:
+    assert what_a_confined_program_can() == ""
+
+
+def test_without_landlock_documents_run_only_where_they_are_trusted(tmp_path: Path) -> None:
+    for name, text in lamp("").items():
+        (tmp_path / name).write_text(text)
+    script = Path(__file__).parents[1] / "without_landlock.py"
+    aos = str(Path(sys.executable).with_name("aos"))
+    command = [sys.executable, str(script), aos, "lint", str(tmp_path)]
+    refused = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert refused.returncode == 3
+    assert "AOS805" in refused.stderr
+    assert "no Landlock" in refused.stderr
+    command.append("--trust-documents")
+    trusted = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, check=False)
+    assert trusted.returncode == 0, trusted.stderr
+    assert "no Landlock" in trusted.stderr
