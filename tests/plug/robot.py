@@ -1,0 +1,20 @@
+"""A robot that always hears the tiger on the left."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+MOVES_S = 0.05
+
+
+async def listen(call: Any) -> dict[str, str]:
+    """Hears the tiger after a while."""
+    await asyncio.sleep(MOVES_S)
+    return {"answer": "left"}
+
+
+async def wait(call: Any) -> dict[str, str]:
+    """Waits for a while."""
+    await asyncio.sleep(MOVES_S)
+    return {"answer": "waited"}
