@@ -19,6 +19,7 @@ __all__ = ["aos_app", "main", "up_main"]
 
 _COMMANDS = {
     "aos_deploy.commands.up": ("up",),
+    "aos_deploy.commands.mission": ("mission",),
     "aos_deploy.commands.decisions": ("decisions",),
     "aos_deploy.commands.runs": ("runs",),
     "aos_deploy.commands.check": ("check",),

@@ -137,7 +137,8 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     skill fails. `adapters` gives adapters a name and options. `bind` says which adapter serves which
     activation path of the abstraction mappings, `"*"` stands for all others; see docs/deploy-file.md. `serve`
     says how `aos-up --serve` shows them to others. `programs` run beside the adapters. `runs` is where run
-    directories go. With `trust: documents` their code runs also where the kernel cannot confine it.
+    directories go. With `trust: documents` their code runs also where the kernel cannot confine it. A system
+    with `stay` goes on after its mission, and waits for the next.
     """
 
     aos: Literal[1]
@@ -157,6 +158,7 @@ class DeployFile(msgspec.Struct, frozen=True, kw_only=True):
     programs: dict[str, ProgramPart] = {}
     runs: str = "runs"
     trust: Literal["nobody", "documents"] = "nobody"
+    stay: bool = False
 
 
 class Deployment(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,7 +7,7 @@ from enum import IntEnum
 from aos_protocol.errors import AosError
 from aos_protocol.messages import MissionState
 
-__all__ = ["EXIT_CODES_TEXT", "ExitCode", "exit_code_of_error", "exit_code_of_mission"]
+__all__ = ["EXIT_CODES_TEXT", "ExitCode", "exit_code_of_ending", "exit_code_of_error", "exit_code_of_mission"]
 
 
 class ExitCode(IntEnum):
@@ -62,6 +62,11 @@ def exit_code_of_mission(state: MissionState) -> ExitCode:
     return _BY_ENDING.get(state.ending, ExitCode.FAULT)
 
 
+def exit_code_of_ending(ending: str) -> ExitCode:
+    """The exit code of a mission of a system that stays, by its ending."""
+    return _BY_ENDING.get(ending, ExitCode.FAULT)
+
+
 def exit_code_of_error(error: AosError) -> ExitCode:
     """The exit code of a command that ended by this fault, and of a mission that it kept from starting."""
     return _before_the_mission(error.code)
@@ -70,6 +75,12 @@ def exit_code_of_error(error: AosError) -> ExitCode:
 def _before_the_mission(code: str) -> ExitCode:
     if code.startswith(("AOS1", "AOS32")) or code in ("AOS201", "AOS801", "AOS808", "AOS810"):
         return ExitCode.DOCUMENTS_WRONG
-    if code.startswith(("AOS6", "AOS8")) or code in ("AOS202", "AOS203", "AOS701"):
+    if code.startswith(("AOS6", "AOS8")) or code in (
+        "AOS202",
+        "AOS203",
+        "AOS515",
+        "AOS516",
+        "AOS701",
+    ):
         return ExitCode.NOT_STARTED
     return ExitCode.FAULT

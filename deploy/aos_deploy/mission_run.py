@@ -53,6 +53,9 @@ _BUILD_TIMEOUT_S = 600.0
 class MissionRun:
     """Runs a deployment once, or goes on with a run that is `taken_up`. `report` is told what happens."""
 
+    stays = False
+    """True where the system goes on after a mission."""
+
     def __init__(
         self,
         deployment: Deployment,
@@ -62,7 +65,8 @@ class MissionRun:
         taken_up: TakenUp | None = None,
         is_played: bool = False,
     ) -> None:
-        self._deployment = deployment
+        file = msgspec.structs.replace(deployment.file, stay=self.stays)
+        self._deployment = msgspec.structs.replace(deployment, file=file)
         self._report = report
         self._clock = clock
         self._taken_up = taken_up
@@ -101,19 +105,23 @@ class MissionRun:
             was_interrupted = True
         except AosError as error:
             self.error = error
-        verdict, lacking = settled(
-            run.path, self._heard, stopped_by=self.error, was_interrupted=was_interrupted
-        )
-        self.error = self.error or lacking
-        summary = self._summary(verdict)
+        summary = self._settled(run, was_interrupted=was_interrupted)
         try:
             run.write_summary(summary)
         except StorageError as error:
             self.error = self.error or error
         run.close()
-        took = f"{verdict.steps} steps in {summary.duration_s:.1f} s"
-        self._report(Told(f"{verdict.ending} after {took}; everything is kept in {from_here(run.path)}"))
+        took = f"{summary.steps} steps in {summary.duration_s:.1f} s"
+        self._report(Told(f"{summary.ending} after {took}; everything is kept in {from_here(run.path)}"))
         return summary
+
+    def _settled(self, run: RunDirectory, *, was_interrupted: bool) -> Summary:
+        """The summary of a run whose processes are gone."""
+        verdict, lacking = settled(
+            run.path, self._heard, stopped_by=self.error, was_interrupted=was_interrupted
+        )
+        self.error = self.error or lacking
+        return self._summary(verdict)
 
     def _run_directory(self) -> RunDirectory:
         if self._taken_up is not None:
@@ -167,10 +175,13 @@ class MissionRun:
             write_record()  # Now all processes have an id.
             self._services_ready_s = self._elapsed_s()
         await until_skills_can_run(supervisor, self._deployment)
+        await self._ask_to_start(supervisor, StartMission())
+
+    async def _ask_to_start(self, supervisor: Supervisor, start: StartMission) -> None:
         await ask_until_answered(
             supervisor.bus,
             supervisor.keys.start_mission,
-            StartMission(),
+            start,
             MissionState,
             server=supervisor.keys.live("solver"),
             timeout_s=_BUILD_TIMEOUT_S,
@@ -219,13 +230,18 @@ class MissionRun:
 
     async def _follow_mission(self, supervisor: Supervisor) -> None:
         client = AosClient(supervisor.bus, self._deployment.file.robot)
-        async for event in client.follow(away_s=None):
+        async for event in client.follow(away_s=None, stays=self.stays):
             if isinstance(event, BundleReport) and event.source in self._own_pushes:
                 # Told already, with the way to the files; another push of the same is news.
                 self._own_pushes.remove(event.source)
                 continue
             self._take(event)
             self._report(event)
+            if isinstance(event, MissionState) and event.phase == "ended":
+                self._take_end(event)
+
+    def _take_end(self, state: MissionState) -> None:
+        """Does nothing: the run ends with its mission, and is settled when all processes are gone."""
 
     def _take(self, event: Event) -> None:
         if isinstance(event, DecisionRecord | MissionState):

@@ -168,6 +168,7 @@ def _solver_settings(deployment: Deployment) -> dict[str, Any]:
         "cache_dir": str(cache_dir()),
         **budget,
         "policy": str(deployment.policy or ""),
+        **({"stay": True} if file.stay else {}),
         **{name: value for name, value in msgspec.structs.asdict(file.mission).items() if name != "set"},
         "constraints": msgspec.to_builtins(deployment.constraints),
         "mission_values": msgspec.to_builtins(deployment.mission_values),

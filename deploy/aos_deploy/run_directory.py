@@ -7,6 +7,7 @@ runs/20260105T101500Z-armadillo/
   faults/          why a service ended, if it ended by a fault
   journal.db       the mission: decisions and outcomes
   summary.json     how it ended; its absence means that it runs, was killed, or found no space for it
+  missions/3/      journal and summary of the third mission, in a system that stays
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ import msgspec
 
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
+from aos_runtime.mission_folders import mission_folder
 from aos_runtime.service_settings import fault_path
 
-__all__ = ["LATEST", "ProcessEnd", "RunDirectory", "RunRecord", "Summary"]
+__all__ = ["LATEST", "ProcessEnd", "RunDirectory", "RunRecord", "Summary", "SystemSummary"]
 
 LATEST = "latest"
 """The link to the newest run, in the folder of runs."""
@@ -81,6 +83,15 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     first_decision_s: float | None
     duration_s: float
     process_ends: tuple[ProcessEnd, ...] = ()
+
+
+class SystemSummary(Summary, frozen=True, kw_only=True):
+    """`summary.json` of a system that stays: the steps of all `missions`, each of which has its own summary.
+
+    The ending is `stopped`, or `cancelled` where a mission ran when the system was stopped.
+    """
+
+    missions: tuple[str, ...]
 
 
 class RunDirectory:
@@ -200,10 +211,18 @@ class RunDirectory:
         """All of it, or nothing and StorageError AOS701."""
         _write_whole(self.path / "summary.json", _pretty(summary))
 
-    def read_summary(self) -> Summary | None:
-        """Returns the summary; None while the mission runs, or if aos-up was killed."""
+    def write_summary_of_mission(self, number: int, summary: Summary) -> None:
+        """All of it, or nothing and StorageError AOS701."""
+        _write_whole(mission_folder(self.path, number) / "summary.json", _pretty(summary))
+
+    def read_summary(self, number: int = 0) -> Summary | None:
+        """Returns the summary of the run, or of the mission of this number in a system that stays.
+
+        None while the mission runs, or if aos-up was killed.
+        """
+        folder = mission_folder(self.path, number) if number else self.path
         try:
-            return msgspec.json.decode((self.path / "summary.json").read_bytes(), type=Summary)
+            return msgspec.json.decode((folder / "summary.json").read_bytes(), type=Summary)
         except (OSError, msgspec.MsgspecError):
             return None
 

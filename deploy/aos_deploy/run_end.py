@@ -26,10 +26,16 @@ def account_of(run: Path) -> Account:
 
 
 def settled(
-    run: Path, heard: Account, *, stopped_by: AosError | None, was_interrupted: bool
+    run: Path,
+    heard: Account,
+    *,
+    stopped_by: AosError | None,
+    was_interrupted: bool,
+    mission: str = "",
 ) -> tuple[Verdict, StorageError | None]:
     """The verdict on a run whose processes are gone, and why the journal has not all of it, if it has not.
 
+    `run` is the folder of the mission, which has the `mission`'s name where that is not the folder's.
     Where the journal cannot be read the verdict is on `heard` from the bus. Where it cannot be written,
     as on a full disk, the end is not in it, but the verdict is the same.
     """
@@ -40,7 +46,7 @@ def settled(
         account, lacking = heard, error
     stopped = None
     if was_interrupted or stopped_by is not None:
-        stopped = account.stopped(run.name, stopped_by)
+        stopped = account.stopped(mission or run.name, stopped_by)
     if stopped is not None:
         account.take(stopped)
         try:

@@ -10,7 +10,9 @@ from aos_deploy.deploy_file import Deployment, read_deploy_file, without_a_robot
 from aos_deploy.run_directory import RunDirectory, RunRecord
 from aos_protocol.errors import DeployError
 from aos_runtime.journal import Journal
-from aos_solver.mission.memory import MissionMemory, folded
+from aos_runtime.mission_folders import stays
+from aos_solver.mission.logbook import JOURNAL, entries_of
+from aos_solver.mission.memory import folded
 
 __all__ = ["TakenUp", "take_up"]
 
@@ -38,10 +40,10 @@ def take_up(path: Path) -> tuple[Deployment, TakenUp]:
             code="AOS810",
             hint="Follow it with `aos decisions`, or end it with a signal to its aos-up",
         )
-    memory = _memory(run)
-    if memory.has_ended and memory.state is not None:
+    has_begun, ending = _of_system(run) if stays(run.path) else _of_mission(run)
+    if ending:
         raise DeployError(
-            f"{run.path.name} has ended: {memory.state.ending}",
+            f"{run.path.name} has ended: {ending}",
             code="AOS810",
             hint="Start a new run with aos-up and the deploy file",
         )
@@ -52,16 +54,26 @@ def take_up(path: Path) -> tuple[Deployment, TakenUp]:
     file = deployment.file
     file = msgspec.structs.replace(
         file,
+        stay=stays(run.path),
         solver=msgspec.structs.replace(file.solver, seed=record.seed),
         bus=msgspec.structs.replace(file.bus, listen=record.endpoint),
     )
     deployment = msgspec.structs.replace(deployment, file=file, runs=run.path.parent)
-    return deployment, TakenUp(run, record, memory.epoch > 0)
+    return deployment, TakenUp(run, record, has_begun)
 
 
-def _memory(run: RunDirectory) -> MissionMemory:
-    path = run.path / "journal.db"
+def _of_mission(run: RunDirectory) -> tuple[bool, str]:
+    """Says whether the mission had begun, and how it has ended, if it has."""
+    path = run.path / JOURNAL
     if not path.exists():
-        return MissionMemory()  # It died before the solver was there.
+        return False, ""  # It died before the solver was there.
     with Journal.read(path) as journal:
-        return folded(journal.rows())
+        memory = folded(journal.rows())
+    ending = memory.state.ending if memory.has_ended and memory.state is not None else ""
+    return memory.epoch > 0, ending
+
+
+def _of_system(run: RunDirectory) -> tuple[bool, str]:
+    """Says the same of a system that stays. Between missions it goes on, until it was stopped."""
+    summary = run.read_summary()
+    return bool(entries_of(run.path)), summary.ending if summary is not None else ""

@@ -121,6 +121,8 @@ CODES: dict[str, str] = {
     "AOS512": "a skill may still be moving",
     "AOS513": "the mission held for too long",
     "AOS514": "the id of an activation was used for another one",
+    "AOS515": "a mission runs already",
+    "AOS516": "a mission cannot begin with this belief",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
     "AOS603": "another protocol version",

@@ -17,6 +17,8 @@
     aos/<robot>/topic/<path>        stream  raw data of the robot                                TopicMessage
     aos/<robot>/model/check         query   can the solver use these documents       CheckModel -> ModelCheck
     aos/<robot>/mission/start       query   start the mission                    StartMission -> MissionState
+    aos/<robot>/mission/stop        query   end the mission                        StopMission -> MissionState
+    aos/<robot>/mission/list        query   which missions there were               MissionsQuery -> Missions
     aos/<robot>/mission/resume      query   go on with a mission that holds     ResumeMission -> MissionState
     aos/<robot>/mission/state       stream and query: where the mission is       MissionQuery -> MissionState
     aos/<robot>/decision/record     stream  decisions and their outcomes                       DecisionRecord
@@ -144,6 +146,14 @@ class Keys:
     @property
     def start_mission(self) -> str:
         return f"{self._root}/mission/start"
+
+    @property
+    def stop_mission(self) -> str:
+        return f"{self._root}/mission/stop"
+
+    @property
+    def missions(self) -> str:
+        return f"{self._root}/mission/list"
 
     @property
     def resume_mission(self) -> str:

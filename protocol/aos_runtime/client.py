@@ -8,20 +8,33 @@ async with AosClient.connect("tcp/127.0.0.1:7447", "armadillo") as aos:
 from __future__ import annotations
 
 import logging
-from collections.abc import AsyncIterator
+import uuid
+from collections.abc import AsyncIterator, Iterable, Mapping
 from contextlib import asynccontextmanager
 from typing import Any
 
-from aos_protocol.errors import BusError, LateAnswerError, LostAnswerError, NobodyAnswersError
+from aos_protocol.errors import (
+    BusError,
+    LateAnswerError,
+    LostAnswerError,
+    NobodyAnswersError,
+    SkillError,
+)
 from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     BundleReport,
     DecisionRecord,
     History,
     HistoryQuery,
+    MissionEntry,
     MissionQuery,
+    Missions,
+    MissionsQuery,
     MissionState,
+    StartMission,
+    StopMission,
 )
+from aos_runtime.asking import ask_until_answered
 from aos_runtime.bus import Bus
 from aos_runtime.older_python import timeout
 from aos_runtime.subscription import Subscription, merged
@@ -39,8 +52,15 @@ SOLVER_AWAY_S = 15.0
 """A solver that is started again is back within this time."""
 
 
+START_TIMEOUT_S = 600.0
+"""A mission may begin with documents that are still to be compiled."""
+
+STOP_TIMEOUT_S = 300.0
+"""A mission that is stopped ends once what moves has stopped, and a decision on its way is made."""
+
+
 class AosClient:
-    """A watcher of one robot. Watching changes nothing."""
+    """A watcher of one robot, who can start and stop missions. Watching changes nothing."""
 
     def __init__(self, bus: Bus, robot: str) -> None:
         self.bus = bus
@@ -62,6 +82,78 @@ class AosClient:
             self.keys.mission_state, MissionQuery(), MissionState, timeout_s=_HISTORY_TIMEOUT_S
         )
 
+    async def start_mission(
+        self,
+        *,
+        belief: str = "initial",
+        given: Iterable[str] = (),
+        idle: int = 0,
+        values: Mapping[str, str] | None = None,
+    ) -> MissionState:
+        """Begins the next mission of a system that stays, once; what to give is as in StartMission.
+
+        AosError with the reason if it cannot begin: SkillError AOS515 while one runs.
+        """
+        start = StartMission(belief, tuple(given), idle, dict(values or {}), request=uuid.uuid4().hex)
+        return await ask_until_answered(
+            self.bus,
+            self.keys.start_mission,
+            start,
+            MissionState,
+            server=self.keys.live("solver"),
+            timeout_s=START_TIMEOUT_S,
+        )
+
+    async def stop_mission(self, mission: str = "") -> MissionState:
+        """Ends the mission that runs as `cancelled`, and returns when it has ended.
+
+        Where none runs, or another one than the `mission` that is named, nothing changes.
+        """
+        return await ask_until_answered(
+            self.bus,
+            self.keys.stop_mission,
+            StopMission(mission),
+            MissionState,
+            server=self.keys.live("solver"),
+            timeout_s=STOP_TIMEOUT_S,
+        )
+
+    async def missions(self) -> Missions:
+        """The missions of the system so far."""
+        return await self.bus.ask(self.keys.missions, MissionsQuery(), Missions, timeout_s=_HISTORY_TIMEOUT_S)
+
+    async def until_ended(self, mission: str) -> MissionEntry:
+        """Returns how a mission has ended, once it has.
+
+        NobodyAnswersError where the solver has gone for good; SkillError AOS501 if there is no such mission.
+        """
+        keys = self.keys
+        stream = merged(
+            self.bus.listen(keys.mission_state, MissionState), self.bus.presence(keys.live("solver"))
+        )
+        may_wait_s: float | None = SOLVER_AWAY_S
+        async with stream:
+            while True:
+                event = await _next(stream, may_wait_s)
+                if event is None:
+                    raise NobodyAnswersError(f"the solver has left before the end of {mission}")
+                if isinstance(event, bool):
+                    may_wait_s = None if event else SOLVER_AWAY_S
+                is_news = event is True or (isinstance(event, MissionState) and _may_end(event, mission))
+                entry = await self._entry(mission) if is_news else None
+                if entry is not None and entry.ended_ns:
+                    return entry
+
+    async def _entry(self, mission: str) -> MissionEntry | None:
+        try:
+            entries = (await self.missions()).entries
+        except (LateAnswerError, NobodyAnswersError, LostAnswerError):
+            return None  # There is news when it is back.
+        for entry in entries:
+            if entry.mission == mission:
+                return entry
+        raise SkillError(f"there is no mission {mission}", code="AOS501", hint="See `aos mission list`")
+
     async def decisions(self) -> AsyncIterator[DecisionRecord]:
         """Every decision record from the first, each once and in order, until the mission ends.
 
@@ -73,13 +165,13 @@ class AosClient:
                 yield event
 
     async def follow(
-        self, *, away_s: float | None = SOLVER_AWAY_S
+        self, *, away_s: float | None = SOLVER_AWAY_S, stays: bool = False
     ) -> AsyncIterator[DecisionRecord | MissionState | BundleReport]:
         """Yields what `decisions` yields, each change of the mission's state, and what becomes of dropped
         bundles.
 
-        The stream goes on with a solver that is started again. It ends when the solver was away for `away_s`,
-        or never where that is None.
+        The stream goes on with a solver that is started again, and with `stays` with the missions that
+        follow. It ends when the solver was away for `away_s`, or never where that is None.
         """
         keys = self.keys
         feed = DecisionFeed()
@@ -107,7 +199,7 @@ class AosClient:
                     yield state
                 if isinstance(event, BundleReport):
                     yield event
-                if is_over:
+                if is_over and not stays:
                     return
 
     async def history(self) -> AsyncIterator[DecisionRecord]:
@@ -154,6 +246,11 @@ class AosClient:
             return await self.mission_state()
         except BusError:
             return None
+
+
+def _may_end(state: MissionState, mission: str) -> bool:
+    """Says whether a state tells that a mission has ended: its own end, or what another one does."""
+    return state.phase == "ended" or state.mission != mission
 
 
 async def _next(stream: Subscription[Any], timeout_s: float | None) -> Any:

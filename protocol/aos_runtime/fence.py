@@ -15,6 +15,7 @@ from aos_protocol.errors import AosError, NobodyAnswersError, SkillError
 from aos_protocol.keys import Keys
 from aos_protocol.messages import Activate, ActivationId, Cancel, MissionQuery, MissionState, SkillCall
 from aos_runtime.bus import Bus
+from aos_runtime.mission_folders import is_before, number_of
 
 __all__ = ["Fence", "epoch_of_solver", "meaning"]
 
@@ -40,18 +41,26 @@ class Fence:
         self._epoch_of_solver = epoch_of_solver
         self._epochs: dict[str, int] = {}
         self._meanings: dict[ActivationId, str] = {}
+        self._newest: dict[str, int] = {}
 
     def note(self, request: Activate | SkillCall) -> None:
-        """Takes a request that was let through, now or by an earlier process."""
+        """Takes a request that was let through, now or by an earlier process.
+
+        With the first one of a mission those of the missions before it in the same system are forgotten.
+        """
         mission = request.id.mission
+        if mission not in self._epochs:
+            self._forget_before(mission)
         self._epochs[mission] = max(request.epoch, self._epochs.get(mission, 0))
         self._meanings[request.id] = meaning(request)
 
     async def check(self, request: Activate | SkillCall) -> None:
         """Returns if the request counts.
 
-        SkillError AOS506 for an epoch that is not the mission's, AOS514 for an id of another motion.
+        SkillError AOS506 for an epoch that is not the mission's, and for a mission that another one of its
+        system has followed. AOS514 for an id of another motion.
         """
+        self._check_mission(request.id)
         await self._check_epoch(request.id, request.epoch)
         known = self._meanings.get(request.id)
         if known is not None and known != meaning(request):
@@ -64,6 +73,25 @@ class Fence:
     def is_stale(self, cancel: Cancel) -> bool:
         """Says whether a cancellation comes from a solver that was replaced."""
         return cancel.id is not None and cancel.epoch < self._epochs.get(cancel.id.mission, 0)
+
+    def _forget_before(self, mission: str) -> None:
+        if (place := number_of(mission)) is None:
+            return
+        run, number = place
+        self._newest[run] = max(number, self._newest.get(run, 0))
+        self._epochs = {name: epoch for name, epoch in self._epochs.items() if not is_before(name, mission)}
+        self._meanings = {
+            id: meaning for id, meaning in self._meanings.items() if not is_before(id.mission, mission)
+        }
+
+    def _check_mission(self, id: ActivationId) -> None:
+        place = number_of(id.mission)
+        if place is not None and place[1] < self._newest.get(place[0], 0):
+            raise SkillError(
+                f"activation {id} comes from a mission that is over",
+                code="AOS506",
+                hint=f"Mission {self._newest[place[0]]} has begun since",
+            )
 
     async def _check_epoch(self, id: ActivationId, epoch: int) -> None:
         newest = self._epochs.get(id.mission, 0)

@@ -13,6 +13,7 @@ from aos_deploy.run_directory import RunDirectory
 from aos_deploy.running_system import System, on_system
 from aos_deploy.views.lines import lines_of
 from aos_protocol.messages import DecisionRecord, MissionState
+from aos_runtime.mission_folders import mission_folder, mission_folders
 
 if TYPE_CHECKING:
     from aos_runtime.client import AosClient
@@ -32,6 +33,9 @@ def decisions(
     system: System,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON decision record a line")] = False,
     follow: Annotated[bool, typer.Option(help="Go on until the mission ends")] = True,
+    mission: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Of a system that stays: instead of the last")
+    ] = None,
 ) -> None:
     """Print every decision of a mission from its first step.
 
@@ -49,8 +53,9 @@ def decisions(
 
     if not system.is_at_endpoint:
         directory = chosen_run(system.run, system.runs)
-        if not directory.is_running:
-            for event in _journaled(directory):
+        newest = max(mission_folders(directory.path), default=0)
+        if not directory.is_running or mission not in (None, newest):
+            for event in _journaled(directory, mission or newest):
                 show(event)
             return
         record = directory.read_record()
@@ -65,12 +70,13 @@ def _reason(event: DecisionRecord | MissionState) -> list[str]:
     return [f"         {event.planner}: {event.why}"]
 
 
-def _journaled(directory: RunDirectory) -> Iterator[DecisionRecord | MissionState]:
-    """The decisions of a mission that is over, and how it ended."""
+def _journaled(directory: RunDirectory, mission: int) -> Iterator[DecisionRecord | MissionState]:
+    """The decisions of a mission that is over, and how it ended; by number in a system that stays."""
     from aos_deploy.verdict import message_of_row
     from aos_runtime.journal import Journal
 
-    with Journal.read(directory.path / "journal.db") as journal:
+    folder = mission_folder(directory.path, mission) if mission else directory.path
+    with Journal.read(folder / "journal.db") as journal:
         for row in journal.walk():
             event = message_of_row(row)
             if isinstance(event, DecisionRecord) or (event is not None and event.phase == "ended"):

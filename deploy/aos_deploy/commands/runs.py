@@ -12,9 +12,10 @@ from aos_deploy.living_runs import RUNS, living_runs
 from aos_deploy.options import AsJson
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.pruning import Pruned, pruned
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_directory import RunDirectory, RunRecord
 from aos_deploy.run_end import account_of
 from aos_protocol.errors import DeployError, StorageError
+from aos_runtime.mission_folders import mission_folder, mission_folders
 
 __all__ = ["register"]
 
@@ -27,9 +28,11 @@ def register(app: typer.Typer) -> None:
     app.add_typer(runs_app, name="runs", epilog="Example: aos runs --running")
 
 
-class Entry(msgspec.Struct):
-    """A run in the output of `aos runs --json`. `ending` is `running`, or `killed` where there is no
-    other."""
+class Entry(msgspec.Struct, omit_defaults=True):
+    """A run in the output of `aos runs --json`. `ending` is `running`, or `killed` where there is no other.
+
+    A system that stays has its `missions` with it, each as an entry of its own; its steps are all of theirs.
+    """
 
     directory: str
     robot: str
@@ -38,6 +41,7 @@ class Entry(msgspec.Struct):
     steps: int | None
     duration_s: float | None
     endpoint: str
+    missions: tuple[Entry, ...] = ()
 
 
 Folder = Annotated[Path | None, typer.Option("--runs", metavar="DIR", help="Instead of ./runs")]
@@ -64,7 +68,7 @@ def runs(
     if as_json:
         print_json(entries)
         return
-    for entry in entries:
+    for entry in (each for listed in entries for each in (listed, *listed.missions)):
         steps = "" if entry.steps is None else f"{entry.steps:3} steps"
         took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
         typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}")
@@ -101,10 +105,10 @@ def _runs_in(folder: Path) -> list[RunDirectory]:
     return [RunDirectory(record.parent) for record in found if not record.parent.is_symlink()]
 
 
-def _ending_in_journal(run: RunDirectory) -> str:
-    """The ending of a run that has no summary, for want of space or because its aos-up was killed."""
+def _ending_in_journal(folder: Path) -> str:
+    """The ending of a mission that has no summary, for want of space or because its aos-up was killed."""
     try:
-        return account_of(run.path).verdict().ending or "killed"
+        return account_of(folder).verdict().ending or "killed"
     except StorageError:
         return "killed"
 
@@ -115,11 +119,27 @@ def _entry(run: RunDirectory) -> Entry:
     except DeployError:
         return Entry(str(from_here(run.path)), "", "", "unreadable", None, None, "")
     summary = run.read_summary()
-    ending = summary.ending if summary else "running" if run.is_running else _ending_in_journal(run)
+    ending = summary.ending if summary else "running" if run.is_running else _ending_in_journal(run.path)
     return Entry(
         directory=str(from_here(run.path)),
         robot=record.robot,
         started=record.started,
+        ending=ending,
+        steps=summary.steps if summary else None,
+        duration_s=summary.duration_s if summary else None,
+        endpoint=record.endpoint,
+        missions=tuple(_mission(run, number, record) for number in mission_folders(run.path)),
+    )
+
+
+def _mission(run: RunDirectory, number: int, record: RunRecord) -> Entry:
+    """A mission of a system that stays."""
+    folder, summary = mission_folder(run.path, number), run.read_summary(number)
+    ending = summary.ending if summary else "running" if run.is_running else _ending_in_journal(folder)
+    return Entry(
+        directory=str(from_here(folder)),
+        robot=record.robot,
+        started=summary.started if summary else "",
         ending=ending,
         steps=summary.steps if summary else None,
         duration_s=summary.duration_s if summary else None,

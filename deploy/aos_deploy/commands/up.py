@@ -47,6 +47,14 @@ Runs = Annotated[
 PlayedByModel = Annotated[
     bool, typer.Option("--model", help="Every skill is played by its own document; no robot is needed")
 ]
+Stay = Annotated[
+    bool,
+    typer.Option(
+        "--stay",
+        help="Go on after the mission, and wait for `aos mission start`, until Ctrl-C: its exit code is 130 "
+        "while a mission runs, else 0",
+    ),
+]
 Serve = Annotated[
     str | None,
     typer.Option(
@@ -70,6 +78,7 @@ def up(
     set_values: SetValues = None,
     model: PlayedByModel = False,
     serve: Serve = None,
+    stay: Stay = False,
     plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
     version: Version = False,
@@ -90,28 +99,28 @@ def up(
     from aos_deploy.needed_here import check_needed_here, check_sandbox
     from aos_deploy.run_directory import LATEST
     from aos_deploy.serve_run import ServeRun
+    from aos_deploy.system_run import SystemRun
     from aos_deploy.taking_up import take_up
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
 
     if resume:
-        _refuse_beside_resume(
-            seed=seed, listen=listen, runs=runs, set=set_values or None, model=model or None, serve=serve
-        )
+        flags = {"set": set_values or None, "model": model or None, "stay": stay or None}
+        _refuse_beside_resume(seed=seed, listen=listen, runs=runs, serve=serve, **flags)
         deployment, taken_up = take_up(deploy or RUNS / LATEST)
     elif deploy is None:
         raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
     else:
         deployment, taken_up = read_deploy_file(deploy), None
-    deployment = _with_options(deployment, seed, listen, runs, set_values)
+    deployment = _with_options(deployment, seed, listen, runs, set_values, is_to_stay=_stays(stay, serve))
     if model:
         deployment = without_a_robot(deployment)
     check_sandbox(deployment)
     check_needed_here(deployment)
-    title = f"{deployment.file.robot} · {deployment.path.name}"
-    view = make_view(title, is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
+    view = make_view(_title(deployment), is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
+    kind = SystemRun if deployment.file.stay else MissionRun
     mission: MissionRun | ServeRun = (
-        MissionRun(deployment, view, SystemClock(), taken_up=taken_up, is_played=model)
+        kind(deployment, view, SystemClock(), taken_up=taken_up, is_played=model)
         if serve is None
         else ServeRun(deployment, serve, view, SystemClock())
     )
@@ -130,18 +139,33 @@ def _refuse_beside_resume(**options: object) -> None:
         raise typer.BadParameter(text, param_hint=", ".join(given))
 
 
+def _title(deployment: Deployment) -> str:
+    return f"{deployment.file.robot} · {deployment.path.name}"
+
+
+def _stays(stay: bool, serve: str | None) -> bool:
+    """Returns `stay`; BadParameter where no mission runs that others could follow."""
+    if stay and serve is not None:
+        raise typer.BadParameter("no mission runs that others could follow", param_hint="--stay")
+    return stay
+
+
 def _with_options(
     deployment: Deployment,
     seed: int | None,
     listen: str | None,
     runs: Path | None,
     set_values: list[str] | None,
+    *,
+    is_to_stay: bool,
 ) -> Deployment:
     """The deployment with what the command says otherwise; of two values for a parameter the last counts."""
     from aos_deploy.deploy_file import check_endpoint
     from aos_deploy.mission_values import values_of_options
 
     file = deployment.file
+    if is_to_stay:
+        file = msgspec.structs.replace(file, stay=True)
     if seed is not None:
         file = msgspec.structs.replace(file, solver=msgspec.structs.replace(file.solver, seed=seed))
     if listen is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import msgspec
 
@@ -14,13 +14,22 @@ from aos_deploy.verdict import Verdict
 from aos_protocol.errors import StorageError
 from aos_runtime.journal import JournalRow
 
-__all__ = ["violations"]
+__all__ = ["History", "violations", "violations_of"]
 
 JOURNAL, MIDDLEWARE = "journal.db", "middleware.db"
 
 
 class _Takes(Protocol):
     def take(self, row: JournalRow, message: Any, found: Found) -> None: ...
+
+
+class History(NamedTuple):
+    """The rows of a mission's journal, with the file that they are of, and the verdict of its summary."""
+
+    mission: str
+    journal: Iterable[JournalRow]
+    summary: Verdict | None = None
+    file: str = JOURNAL
 
 
 def violations(
@@ -30,31 +39,53 @@ def violations(
     adapters: Mapping[str, Iterable[JournalRow]] | None = None,
     summary: Verdict | None = None,
 ) -> list[Violation]:
+    """The violations of a run with one mission, which has its name `run`; see `violations_of`."""
+    return violations_of([History(run, journal, summary)], middleware, adapters)
+
+
+def violations_of(
+    histories: Iterable[History],
+    middleware: Iterable[JournalRow] | None = None,
+    adapters: Mapping[str, Iterable[JournalRow]] | None = None,
+) -> list[Violation]:
     """The violations of all rules, in the order of the files and their rows; empty where all of them hold.
 
-    `run` is its name. `middleware` are the rows of its ledger, `adapters` those of each
-    adapter's by the name of the file, as far as they are on this machine. `summary` is the verdict that
-    summary.json has.
+    `middleware` are the rows of its ledger, `adapters` those of each adapter by the name of the file, as far
+    as they are on this machine.
     """
     found: list[Violation] = []
-    rules = JournalRules(run)
-    _go_through(JOURNAL, journal, KINDS, rules, found)
+    histories = list(histories)
+    read = []
+    for history in histories:
+        rules = JournalRules(history.mission)
+        _go_through(history.file, history.journal, KINDS, rules, found)
+        read.append(rules)
+    journals = {rules.mission: rules for rules in read}
     if middleware is not None:
-        ledger = LedgerRules(MIDDLEWARE, rules)
+        ledger = LedgerRules(MIDDLEWARE, journals)
         _go_through(MIDDLEWARE, middleware, MIDDLEWARE_KINDS, ledger, found)
-        for id, intention in rules.intentions.items():
-            if intention.observed_row and id not in ledger.ended:
-                text = f"the middleware has no outcome of {id}"
-                found.append(Violation("outcome", JOURNAL, intention.observed_row, text))
+        for history, rules in zip(histories, read, strict=True):
+            for id, intention in rules.intentions.items():
+                if intention.observed_row and id not in ledger.ended:
+                    text = f"the middleware has no outcome of {id}"
+                    found.append(Violation("outcome", history.file, intention.observed_row, text))
     motions = Motions()
     for file, rows in sorted((adapters or {}).items()):
-        _go_through(file, rows, ADAPTER_KINDS, LedgerRules(file, rules, motions), found)
-    if summary is not None and summary != (verdict := rules.account.verdict()):
-        differing = [
-            name for name in summary.__struct_fields__ if getattr(summary, name) != getattr(verdict, name)
-        ]
-        found.append(Violation("verdict", "summary.json", 0, f"it differs in {', '.join(differing)}"))
+        _go_through(file, rows, ADAPTER_KINDS, LedgerRules(file, journals, motions), found)
+    for history, rules in zip(histories, read, strict=True):
+        if history.summary is not None:
+            _check_summary(history, history.summary, rules, found)
     return found
+
+
+def _check_summary(history: History, summary: Verdict, rules: JournalRules, found: list[Violation]) -> None:
+    verdict = rules.account.verdict()
+    differing = [
+        name for name in summary.__struct_fields__ if getattr(summary, name) != getattr(verdict, name)
+    ]
+    if differing:
+        file = history.file.replace(JOURNAL, "summary.json")
+        found.append(Violation("verdict", file, 0, f"it differs in {', '.join(differing)}"))
 
 
 def _go_through(

@@ -7,25 +7,41 @@ from pathlib import Path
 
 import msgspec
 
-from aos_deploy.history_check.check import JOURNAL, MIDDLEWARE, violations
+from aos_deploy.history_check.check import JOURNAL, MIDDLEWARE, History, violations_of
 from aos_deploy.history_check.rules import Violation
-from aos_deploy.run_directory import RunDirectory
+from aos_deploy.run_directory import RunDirectory, Summary
 from aos_deploy.verdict import Verdict
 from aos_runtime.journal import Journal, JournalRow
+from aos_runtime.mission_folders import mission_folders, mission_name, stays
 
 __all__ = ["violations_of_run"]
 
 
 def violations_of_run(run: Path) -> list[Violation]:
     """Returns the violations in the files of a run that is over; a file that cannot be read is one."""
-    summary = RunDirectory(run).read_summary()
-    return violations(
-        run.resolve().name,
-        _rows(run / JOURNAL),
-        _rows(run / MIDDLEWARE) if (run / MIDDLEWARE).exists() else None,
-        {path.name: _rows(path) for path in run.glob("adapter-*.db")},
-        msgspec.convert(summary, Verdict, from_attributes=True) if summary is not None else None,
-    )
+    middleware = _rows(run / MIDDLEWARE) if (run / MIDDLEWARE).exists() else None
+    adapters = {path.name: _rows(path) for path in run.glob("adapter-*.db")}
+    return violations_of(_histories(run), middleware, adapters)
+
+
+def _histories(run: Path) -> list[History]:
+    directory = RunDirectory(run)
+    if not stays(run):
+        return [_history(run.resolve().name, run / JOURNAL, JOURNAL, directory.read_summary())]
+    return [
+        _history(
+            mission_name(run.resolve(), number),
+            folder / JOURNAL,
+            str((folder / JOURNAL).relative_to(run)),
+            directory.read_summary(number),
+        )
+        for number, folder in mission_folders(run).items()
+    ]
+
+
+def _history(mission: str, journal: Path, file: str, summary: Summary | None) -> History:
+    verdict = msgspec.convert(summary, Verdict, from_attributes=True) if summary is not None else None
+    return History(mission, _rows(journal), verdict, file)
 
 
 def _rows(path: Path) -> Iterator[JournalRow]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from aos_deploy.history_check.journal_rules import Found, JournalRules, digest
@@ -41,13 +42,16 @@ class Motions:
 class LedgerRules:
     """Takes the rows of one ledger in their order.
 
-    An id of another mission than the journal's is that of a call by hand: it moves at most once, too, but
-    nobody has intended it. With `motions` the ledger is an adapter's: what it starts moves something.
+    `journals` are those of the missions, by their names. An id of any other mission is that of a call by
+    hand: it moves at most once, too, but nobody has intended it. With `motions` the ledger is an adapter's:
+    what it starts moves something.
     """
 
-    def __init__(self, file: str, journal: JournalRules, motions: Motions | None = None) -> None:
+    def __init__(
+        self, file: str, journals: Mapping[str, JournalRules], motions: Motions | None = None
+    ) -> None:
         self._file = file
-        self._journal = journal
+        self._journals = journals
         self._motions = motions
         self._epochs: dict[str, int] = {}
         self._started: set[ActivationId] = set()
@@ -68,18 +72,21 @@ class LedgerRules:
         self._started.add(id)
         if self._motions is not None:
             self._motions.start(id, self._file, row.seq, found)
-        if id.mission == self._journal.mission:
-            self._check_intended(row, request, found)
+        if (journal := self._journals.get(id.mission)) is not None:
+            self._check_intended(row, request, journal, found)
 
-    def _check_intended(self, row: JournalRow, request: Activate | SkillCall, found: Found) -> None:
-        intention = self._journal.intentions.get(request.id)
+    @staticmethod
+    def _check_intended(
+        row: JournalRow, request: Activate | SkillCall, journal: JournalRules, found: Found
+    ) -> None:
+        intention = journal.intentions.get(request.id)
         if intention is None:
             found("id", f"{request.id} was not intended")
         elif _meaning_of_action(request) != intention.meaning:
             found("id", f"{request.id} stands for another skill or other parameters in the journal")
-        if self._journal.was_holding(row.stamp_ns):
+        if journal.was_holding(row.stamp_ns):
             found("hold", f"{request.id} starts while the mission holds")
-        if self._journal.end_ns is not None and row.stamp_ns > self._journal.end_ns:
+        if journal.end_ns is not None and row.stamp_ns > journal.end_ns:
             found("over", f"{request.id} starts after the mission's end")
 
     def _take_end(self, end: Outcome | SkillResult | Failed, found: Found) -> None:
@@ -88,7 +95,8 @@ class LedgerRules:
         if end.id in self.ended:
             found("ends", f"{end.id} ends for the second time")
         self.ended.add(end.id)
-        intention = self._journal.intentions.get(end.id)
+        journal = self._journals.get(end.id.mission)
+        intention = journal.intentions.get(end.id) if journal is not None else None
         if not isinstance(end, Outcome) or intention is None:
             return
         if intention.outcome not in (None, digest(end)):

@@ -61,6 +61,8 @@ class Screen:
             case Told():
                 self._remark(event.text)
             case MissionState():
+                if self.state is not None and event.mission != self.state.mission:
+                    self.steps, self.latest = {}, None  # Another mission of a system that stays.
                 self.state = event
                 self._remark(event.remark or event.phase)
             case DecisionRecord():

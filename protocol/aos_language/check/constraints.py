@@ -1,8 +1,11 @@
-"""The constraints of a mission: does each say something about states and actions that the project has?"""
+"""The constraints of a mission, and the conditions that it begins with: what they may say.
+
+A constraint speaks of states and actions that the project has, a condition of the state that there is.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from aos_language.assembly import Assembly
 from aos_language.check.blocks import Block, Role
@@ -12,9 +15,10 @@ from aos_language.cpp.snippets import Access, Cpp, read_cpp_expression, strip_co
 from aos_language.findings import Findings
 from aos_protocol.documents import Constraint, Project, Snippet
 
-__all__ = ["check_constraints"]
+__all__ = ["check_conditions", "check_constraints"]
 
 CONSTRAINT = Role("a constraint", ("state", "state__"), sees_chosen_action=True)
+CONDITION = Role("a condition", ("state",))
 
 _LANGUAGE = frozenset({"NULL", "false", "nullptr", "std", "true"})
 _DRAWS = frozenset({"AOS", "AOSUtils"})
@@ -22,25 +26,47 @@ _DRAWS = frozenset({"AOS", "AOSUtils"})
 
 def check_constraints(constraints: Iterable[Constraint], project: Project, findings: Findings) -> None:
     """Reports what a constraint names and the project does not have, and constraints that decide nothing."""
-    models = {skill.name: skill.model for skill in project.skills}
-    mappings = {skill.name: skill.mapping for skill in project.skills}
-    scope = Scope.of(Assembly(project.environment, models, mappings, project.low_level))
+    scope = _scope_of(project)
+    names = (*STATE_COPIES, *scope.skills)
+    hint = "Write it over `state`, `state__` and the names of skills, as `serve && state.is_out`"
     for constraint in constraints:
-        cpp = read_cpp_expression(constraint.never.code)
-        before = len(findings)
-        _check_expression(constraint.never, findings)
-        if len(findings) > before:
-            continue
-        _check_names(cpp, constraint.never, scope, findings)
-        if len(findings) == before:
-            check_block(Block(CONSTRAINT, constraint.never, is_expression=True), scope, findings)
-        if len(findings) == before and not _is_about_something(cpp, scope):
-            hint = "Write it over `state`, `state__` and the names of skills, as `serve && state.is_out`"
+        cpp = _checked(constraint.never, CONSTRAINT, names, scope, findings)
+        if cpp is not None and not _names_any(cpp, names):
             message = "a constraint that neither a state nor an action decides"
             findings.error("AOS142", message, constraint.never.span, hint)
 
 
-def _check_expression(snippet: Snippet, findings: Findings) -> None:
+def check_conditions(conditions: Iterable[Snippet], project: Project, findings: Findings) -> None:
+    """Reports what a condition names and the project does not have, and conditions that no state decides."""
+    scope = _scope_of(project)
+    for condition in conditions:
+        cpp = _checked(condition, CONDITION, ("state",), scope, findings)
+        if cpp is not None and not _names_any(cpp, ("state",)):
+            hint = "Write it over `state`, as `state.robot_at == Kitchen`"
+            findings.error("AOS142", "a condition that no state decides", condition.span, hint)
+
+
+def _scope_of(project: Project) -> Scope:
+    models = {skill.name: skill.model for skill in project.skills}
+    mappings = {skill.name: skill.mapping for skill in project.skills}
+    return Scope.of(Assembly(project.environment, models, mappings, project.low_level))
+
+
+def _checked(
+    snippet: Snippet, role: Role, names: Sequence[str], scope: Scope, findings: Findings
+) -> Cpp | None:
+    """The expression as it is read; None where something is wrong with it. It may begin with these names."""
+    cpp = read_cpp_expression(snippet.code)
+    before = len(findings)
+    _check_expression(snippet, role, findings)
+    if len(findings) == before:
+        _check_names(cpp, snippet, role, names, scope, findings)
+    if len(findings) == before:
+        check_block(Block(role, snippet, is_expression=True), scope, findings)
+    return cpp if len(findings) == before else None
+
+
+def _check_expression(snippet: Snippet, role: Role, findings: Findings) -> None:
     """Statements are none: what stands behind a semicolon would be read as nothing."""
     code, depth = strip_comments(snippet.code), 0
     for offset, character in enumerate(code):
@@ -48,26 +74,29 @@ def _check_expression(snippet: Snippet, findings: Findings) -> None:
         if character == ";" and depth == 0:
             line = code.count("\n", 0, offset) + 1
             span = snippet.locate(line, offset - code.rfind("\n", 0, offset))
-            findings.error("AOS108", "a constraint is one expression", span, "Join conditions by && and ||")
+            findings.error("AOS108", f"{role.title} is one expression", span, "Join conditions by && and ||")
             return
 
 
-def _check_names(cpp: Cpp, snippet: Snippet, scope: Scope, findings: Findings) -> None:
+def _check_names(
+    cpp: Cpp, snippet: Snippet, role: Role, names: Sequence[str], scope: Scope, findings: Findings
+) -> None:
     """Names that stand first: in an expression on its own nothing else could have declared them."""
     own = {declaration.name for declaration in cpp.declarations}
     own |= {*scope.enums, *scope.enum_values, *scope.compounds, *scope.low_level_names}
     for mention in cpp.mentions:
         name = mention.path[0]
-        if name in own or name in _LANGUAGE or name in scope.skills or name in STATE_COPIES:
+        if name in own or name in _LANGUAGE or name in names:
             continue
         span = snippet.locate(mention.root.line, mention.root.column)
         if name in _DRAWS:
             hint = "Name the state that the draw leads to, as `state__.is_out`"
-            findings.error("AOS142", "a constraint that draws at random", span, hint)
+            findings.error("AOS142", f"{role.title} that draws at random", span, hint)
         elif mention.access is not Access.CALL:
-            known = ("state", "state__", *scope.skills, *scope.enum_values)
-            findings.unknown(name, known, f"unknown name `{name}`", span, "It may name skills and states")
+            known = (*(each for each in names if each not in ("state_", "state___")), *scope.enum_values)
+            otherwise = f"It may name {'skills and ' if role is CONSTRAINT else ''}states"
+            findings.unknown(name, known, f"unknown name `{name}`", span, otherwise)
 
 
-def _is_about_something(cpp: Cpp, scope: Scope) -> bool:
-    return any(mention.path[0] in {*STATE_COPIES, *scope.skills} for mention in cpp.mentions)
+def _names_any(cpp: Cpp, names: Sequence[str]) -> bool:
+    return any(mention.path[0] in names for mention in cpp.mentions)

@@ -20,13 +20,17 @@ __all__ = [
     "HistoryQuery",
     "Marginal",
     "MissionBegun",
+    "MissionEntry",
     "MissionQuery",
     "MissionState",
+    "Missions",
+    "MissionsQuery",
     "ModelAdopted",
     "ModelCheck",
     "PredictedObservation",
     "ResumeMission",
     "StartMission",
+    "StopMission",
     "TakeoverWay",
 ]
 
@@ -44,15 +48,66 @@ class ModelCheck(Message, frozen=True):
 
 
 class StartMission(Message, frozen=True):
-    """Starts the mission that the solver was configured for. A second start changes nothing."""
+    """Starts the mission that the solver was configured for. A second start changes nothing.
+
+    A system that stays begins its next mission, and refuses that while one runs (AOS515). The mission's
+    `belief` at the start is the `initial` one, or with `keep` the last one of the mission before. Then `idle`
+    steps of extrinsic changes pass, and the belief is conditioned on what is `given`, as expressions over
+    `state` (AOS516 where that has probability 0). `values` are those of mission parameters that differ from
+    the deploy file's. One `request` begins one mission, however often it is asked for.
+    """
+
+    belief: str = "initial"
+    given: tuple[str, ...] = ()
+    idle: int = 0
+    values: dict[str, str] = {}
+    request: str = ""
 
 
-class MissionBegun(Message, frozen=True):
+class StopMission(Message, frozen=True):
+    """Cancels what moves and ends the mission as `cancelled`. Answered by its MissionState when it has ended.
+
+    Where no mission runs, nothing changes. An empty `mission` is the one that runs.
+    """
+
+    mission: str = ""
+    reason: str = "stopped by hand"
+
+
+class MissionsQuery(Message, frozen=True):
+    """Asks which missions the system has run."""
+
+
+class MissionEntry(Message, frozen=True):
+    """One mission of a system. What it began with is as in StartMission, `seed` is its own."""
+
+    mission: str
+    number: int
+    seed: int
+    begun_ns: int
+    belief: str = "initial"
+    given: tuple[str, ...] = ()
+    idle: int = 0
+    values: dict[str, str] = {}
+    ended_ns: int = 0
+    ending: str = ""
+    remark: str = ""
+    steps: int = 0
+
+
+class Missions(Message, frozen=True):
+    """The missions of a system, the oldest first. `stays` says that others may follow."""
+
+    entries: tuple[MissionEntry, ...]
+    stays: bool = False
+
+
+class MissionBegun(Message, frozen=True, omit_defaults=True):
     """The journal's row with which a solver begins a mission, or takes it up: `epoch` counts these rows.
 
     `revision` and `model_digest` are of the documents at this moment, `seed` is the mission's.
     `mission_parameters` are its values of all parts of mission parameters, which newer documents do not
-    change.
+    change. `start` is what a mission of a system that stays was asked to begin with.
     """
 
     mission: str
@@ -61,6 +116,7 @@ class MissionBegun(Message, frozen=True):
     revision: int
     model_digest: str
     mission_parameters: dict[str, str] = {}
+    start: StartMission | None = None
 
 
 TakeoverWay = Literal["import", "replay", "projection"]
@@ -253,11 +309,12 @@ class DecisionRecord(Message, frozen=True):
 class HistoryQuery(Message, frozen=True):
     """Asks for the decision records with a sequence number of at least `since`, at most `limit` of them.
 
-    With a limit of 0 there are as many as the answer's size allows.
+    With a limit of 0 there are as many as the answer's size allows. An empty `mission` is the newest one.
     """
 
     since: int = 0
     limit: int = 0
+    mission: str = ""
 
 
 class History(Message, frozen=True):

@@ -13,6 +13,7 @@ import msgspec
 from aos_protocol.errors import AosError, SkillError, error_from_code
 from aos_protocol.messages import ActivationId, Fault, Message, SkillCall, SkillResult
 from aos_runtime.journal import Journal
+from aos_runtime.mission_folders import is_before
 
 __all__ = ["Ledger"]
 
@@ -30,10 +31,10 @@ class Ledger:
         self._journal = Journal.open(path, survives_power_loss=False)
         self._started: dict[ActivationId, SkillCall] = {}
         self._ended: dict[ActivationId, SkillResult | Fault] = {}
+        self._mission = ""
         for row in self._journal.rows():
             if row.kind == "started":
-                call = msgspec.json.decode(row.payload, type=SkillCall)
-                self._started[call.id] = call
+                self._take(msgspec.json.decode(row.payload, type=SkillCall))
             elif row.kind == "ended":
                 result = msgspec.json.decode(row.payload, type=SkillResult)
                 self._ended[result.id] = result
@@ -66,7 +67,7 @@ class Ledger:
     def start(self, call: SkillCall) -> None:
         """Notes a call; it is called before anything moves."""
         self._journal.append("started", call)
-        self._started[call.id] = call
+        self._take(call)
 
     def end(self, result: SkillResult) -> None:
         """Notes a result; it is called after the robot moved."""
@@ -81,3 +82,12 @@ class Ledger:
 
     def close(self) -> None:
         self._journal.close()
+
+    def _take(self, call: SkillCall) -> None:
+        """Those of missions before it in the same system are on the disk, and nobody asks for them."""
+        mission = call.id.mission
+        if mission != self._mission:
+            self._mission = mission
+            self._started = {id: of for id, of in self._started.items() if not is_before(id.mission, mission)}
+            self._ended = {id: of for id, of in self._ended.items() if not is_before(id.mission, mission)}
+        self._started[call.id] = call

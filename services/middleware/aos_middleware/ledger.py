@@ -9,6 +9,7 @@ import msgspec
 
 from aos_protocol.messages import Activate, ActivationId, Outcome, Stray
 from aos_runtime.journal import Journal
+from aos_runtime.mission_folders import is_before
 
 __all__ = ["OutcomeLedger"]
 
@@ -24,10 +25,10 @@ class OutcomeLedger:
         self._journal = journal
         self._requests: dict[ActivationId, Activate] = {}
         self._outcomes: dict[ActivationId, Outcome] = {}
+        self._mission = ""
         for row in journal.rows():
             if row.kind == _STARTED:
-                request = msgspec.json.decode(row.payload, type=Activate)
-                self._requests[request.id] = request
+                self._take(msgspec.json.decode(row.payload, type=Activate))
             elif row.kind == _ENDED:
                 outcome = msgspec.json.decode(row.payload, type=Outcome)
                 self._outcomes[outcome.id] = outcome
@@ -44,7 +45,7 @@ class OutcomeLedger:
     def start(self, request: Activate) -> None:
         """Notes that an activation begins."""
         self._journal.append(_STARTED, request)
-        self._requests[request.id] = request
+        self._take(request)
 
     def end(self, outcome: Outcome) -> None:
         """Notes how an activation ended."""
@@ -70,3 +71,23 @@ class OutcomeLedger:
     def was_started(self, activation: ActivationId) -> bool:
         """Says whether an activation was begun, by this process or by an earlier one."""
         return activation in self._requests
+
+    def _take(self, request: Activate) -> None:
+        """Those of missions before it in the same system are on the disk, and nobody asks for them.
+
+        Outcomes that assigned low-level values are kept: the values outlive the mission.
+        """
+        mission = request.id.mission
+        if mission != self._mission:
+            self._mission = mission
+            self._outcomes = {
+                id: outcome
+                for id, outcome in self._outcomes.items()
+                if outcome.assigned or not is_before(id.mission, mission)
+            }
+            self._requests = {
+                id: earlier
+                for id, earlier in self._requests.items()
+                if id in self._outcomes or not is_before(id.mission, mission)
+            }
+        self._requests[request.id] = request

@@ -15,9 +15,12 @@ from typing import TypeVar
 
 import msgspec
 
-from aos_protocol.errors import AosError, BusError
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError, BusError, SkillError
 from aos_protocol.messages import (
     Activate,
+    Cancel,
+    Cancelled,
     CheckModel,
     DecisionRecord,
     History,
@@ -27,6 +30,8 @@ from aos_protocol.messages import (
     Message,
     MissionBegun,
     MissionQuery,
+    Missions,
+    MissionsQuery,
     MissionState,
     ModelCheck,
     Outcome,
@@ -34,11 +39,12 @@ from aos_protocol.messages import (
     ProjectRevision,
     ResumeMission,
     StartMission,
+    StopMission,
 )
 from aos_runtime.asking import ask_until_answered
-from aos_runtime.journal import Journal
 from aos_runtime.lifecycle import Service
 from aos_runtime.reported_state import state_when
+from aos_runtime.served import served_paths
 from aos_runtime.subscription import merged
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Progress
@@ -48,9 +54,11 @@ from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.history import history_page
 from aos_solver.mission.hot_plug import ModelShelf
+from aos_solver.mission.logbook import Logbook, Logbooks
 from aos_solver.mission.loop import Mission
-from aos_solver.mission.memory import BEGUN, MissionMemory, folded
+from aos_solver.mission.memory import BEGUN, MissionMemory
 from aos_solver.mission.past import Past
+from aos_solver.mission.succession import Succession
 from aos_solver.mission.takeover import RunningModel, Takeover
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
@@ -64,12 +72,14 @@ T = TypeVar("T")
 
 ASK_TIMEOUT_S = 5.0
 MAPPING_DEADLINE_S = 20.0
+CANCEL_AGAIN_S = 0.2
+"""A mission that is stopped cancels again after this time: what it asked for may not have begun before."""
 ACTIVATION_MARGIN_S = 5.0
 """An answer may take this much longer than the activation itself."""
 
 
 async def serve(service: Service[Settings]) -> None:
-    """Run one mission and stay until stopped, so that its history can be asked for."""
+    """Run one mission, or one after the other, and stay until stopped, so that histories can be asked for."""
     solver = _Solver(service)
     try:
         await solver.run()
@@ -89,11 +99,9 @@ class _Solver:
         self._bus = service.bus
         self._keys = service.keys
         self._settings = settings
-        self._journal_path = Path(settings.run_dir) / "journal.db"
-        self._journal = Journal.open(self._journal_path)
-        self._memory = folded(self._journal.walk())
-        if self._memory.has_ended:
-            self._memory = msgspec.structs.replace(self._memory, steps=())
+        self._books = Logbooks(Path(settings.run_dir), settings.seed, stay=settings.stay)
+        if self._books.newest is not None and self._books.newest.memory.has_ended:
+            self._books.newest.forget_steps()
         self._shelf = ModelShelf(
             Path(settings.cache_dir),
             self._report_progress,
@@ -103,13 +111,16 @@ class _Solver:
             settings.mission_values,
         )
         self._shelf.on_ready = lambda: self._changed.set()
-        self._shelf.kept = self._memory.mission_parameters
-        self._name = Path(settings.run_dir).name
+        if self._books.newest is not None and not self._books.newest.memory.has_ended:
+            self._shelf.kept = self._books.newest.memory.mission_parameters
         self._mapped: tuple[int, ...] = ()
-        self._search = self._settings_as(Search)
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()
+        self._ended = asyncio.Event()
+        self._succession = Succession(
+            self._books, self._terms, self._documents, Path(settings.cache_dir), settings.mission_values
+        )
         self._changed = asyncio.Event()
         self.unavailable: dict[str, str] = {}
         self.announced: dict[str, int] = {}
@@ -122,11 +133,13 @@ class _Solver:
             await bus.answer(keys.decision_history, HistoryQuery, self._answer_history)
             await bus.answer(keys.check_model, CheckModel, self._check)
             await bus.answer(keys.resume_mission, ResumeMission, self._resume)
+            await bus.answer(keys.stop_mission, StopMission, self._stop)
+            await bus.answer(keys.missions, MissionsQuery, self._answer_missions)
             await self._service.ready()
             tasks.create_task(self._follow_registry())
-            if self._memory.epoch and not self._memory.has_ended:
-                tasks.create_task(self._start(StartMission(), ""))  # It goes on without being told.
-            tasks.create_task(self._run_mission())
+            if self._is_interrupted:
+                tasks.create_task(self._go_on())  # It goes on without being told.
+            tasks.create_task(self._run_missions())
             tasks.create_task(self._follow_mappings())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
@@ -135,7 +148,7 @@ class _Solver:
     async def close(self) -> None:
         """Leaves the journal as it is: why the solver was stopped, whoever stopped it knows."""
         await self._shelf.close()
-        self._journal.close()
+        self._books.close()
 
     def _settings_as(self, kind: type[T]) -> T:
         """The part of the settings that has the fields of this kind."""
@@ -143,14 +156,121 @@ class _Solver:
 
     # --- answers -------------------------------------------------------------------------------------
 
-    async def _start(self, _: StartMission, __: str) -> MissionState:
+    async def _start(self, start: StartMission, _: str) -> MissionState:
         """Starts the mission once its model runs; tells the caller why if it cannot."""
+        if start.request and start.request == self._books.last_request:
+            return self._state()  # It is asked for again.
+        if (self._runs or self._starting.locked()) and (start.request or self._settings.stay):
+            raise self._busy()
         async with self._starting:
-            running = self._shelf.running or await self._shelf.first()
-            policy = Path(self._settings.policy) if self._settings.policy else None
-            self._search = following(self._settings_as(Search), policy, engine=running.engine)
-        self._started.set()
+            if self._settings.stay:
+                await self._begin_next(start)
+            elif start.request:
+                raise SkillError(
+                    f"the system of {self._books.name} has one mission",
+                    code="AOS515",
+                    hint="Start the system with `aos-up --stay`",
+                )
+            elif self._mission is None and not self._has_ended:
+                await self._begin_only()
         return self._state()
+
+    @property
+    def _is_interrupted(self) -> bool:
+        """True where the newest mission had begun when its solver ended, and has not ended."""
+        book = self._books.newest
+        return book is not None and book.memory.epoch > 0 and not book.memory.has_ended
+
+    @property
+    def _has_ended(self) -> bool:
+        book = self._books.newest
+        return self._mission is None and book is not None and book.memory.has_ended
+
+    @property
+    def _runs(self) -> bool:
+        """Says whether a mission runs, or one that has begun is to be taken up."""
+        if self._mission is not None:
+            return self._mission.state.phase != "ended"
+        return self._is_interrupted
+
+    def _busy(self) -> SkillError:
+        hint = "Wait for its end, or end it with `aos mission stop`"
+        return SkillError(f"the mission {self._books.name} runs", code="AOS515", hint=hint)
+
+    async def _begin_only(self) -> None:
+        """Begins the only mission of a system that ends with it, or takes it up."""
+        assert self._books.newest is not None
+        self._begin(self._books.newest, await self._first_model(), None)
+
+    async def _begin_next(self, start: StartMission) -> None:
+        """Begins the next mission of a system that stays; nothing has changed where that fails."""
+        running = await self._succession.model(self._shelf, await self._first_model(), start, self._mission)
+        begun = await self._succession.next(running, start, self._mission)
+        running = RunningModel(running.revision, begun.engine)
+        await self._shelf.turn_to(running, self._succession.values(start))
+        self._begin(self._books.open_next(), running, start, begun.past)
+
+    async def _go_on(self) -> None:
+        """Takes up the mission that had begun when the solver before this one ended."""
+        async with self._starting:
+            book = self._books.newest
+            if self._mission is not None or book is None:
+                return  # Whoever has started the system was quicker.
+            running, past = await self._first_model(), None
+            if book.number:
+                begun = await self._succession.at_start_of(running, book.number)
+                running, past = RunningModel(running.revision, begun.engine), begun.past
+                await self._shelf.turn_to(running, self._succession.values(book.start))
+            self._begin(book, running, book.start, past)
+
+    async def _first_model(self) -> RunningModel:
+        return self._shelf.running or await self._shelf.first()
+
+    def _begin(
+        self, book: Logbook, running: RunningModel, start: StartMission | None, past: Past | None = None
+    ) -> None:
+        """Begins a mission or takes it up; that it begins is in the journal."""
+        terms = self._terms(book.name, book.seed, book.memory.epoch + 1, running)
+        begun = MissionBegun(
+            book.name,
+            terms.epoch,
+            book.seed,
+            running.revision,
+            running.digest,
+            running.engine.description.mission_parameters,
+            start,
+        )
+        book.append(BEGUN, begun)
+        memory, book.memory = book.memory, MissionMemory()
+        self._mission = Mission(terms, running, self, memory, past)
+        self._ended.clear()
+        self._started.set()
+
+    async def _stop(self, stop: StopMission, _: str) -> MissionState:
+        """Ends the mission that runs, and returns when it has ended."""
+        mission = self._mission
+        if mission is None or stop.mission not in ("", mission.state.mission):
+            return self._state()
+        mission.stop(stop.reason)
+        self._changed.set()
+        while mission.state.phase != "ended":
+            await self._cancel(mission, stop.reason)
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(CANCEL_AGAIN_S):
+                    await self._ended.wait()
+        return mission.state
+
+    async def _cancel(self, mission: Mission, reason: str) -> None:
+        """Cancels what the mission has asked for, whoever serves it: what has begun meanwhile too."""
+        if mission.activation is None:
+            return
+        cancel = Cancel(reason, mission.activation, mission.state.epoch)
+        for path in await served_paths(self._bus, self._keys):
+            with contextlib.suppress(AosError):
+                await self._bus.ask(self._keys.cancel(path), cancel, Cancelled, timeout_s=ASK_TIMEOUT_S)
+
+    async def _answer_missions(self, _: MissionsQuery, __: str) -> Missions:
+        return Missions(await asyncio.to_thread(self._books.entries), self._settings.stay)
 
     async def _resume(self, _: ResumeMission, __: str) -> MissionState:
         if self._mission is not None:
@@ -162,7 +282,10 @@ class _Solver:
         return self._state()
 
     async def _answer_history(self, query: HistoryQuery, _: str) -> History:
-        return await asyncio.to_thread(history_page, self._journal_path, self._name, query)
+        if self._books.newest is None:
+            return History(self._books.name, ())
+        book, name = self._books.path_of(query.mission), query.mission or self._books.name
+        return await asyncio.to_thread(history_page, book, name, query)
 
     async def _check(self, question: CheckModel, _: str) -> ModelCheck:
         return ModelCheck(await self._shelf.check(question.project, self._shelf.running))
@@ -170,9 +293,10 @@ class _Solver:
     def _state(self) -> MissionState:
         if self._mission is not None:
             return self._mission.state
-        if self._memory.has_ended and self._memory.state is not None:
-            return self._memory.state
-        return MissionState(self._name, "waiting", 0, 0.0)
+        book = self._books.newest
+        if book is not None and book.memory.has_ended and book.memory.state is not None:
+            return book.memory.state
+        return MissionState(self._books.name, "waiting", 0, 0.0)
 
     # --- models --------------------------------------------------------------------------------------
 
@@ -213,6 +337,16 @@ class _Solver:
         engine.on_progress = self._report_planning
         return engine
 
+    async def _documents(self, revision: int) -> Project:
+        """The documents of a revision."""
+        answer = await self._bus.ask(
+            self._keys.project,
+            ProjectQuery(self._settings.project, revision),
+            ProjectRevision,
+            timeout_s=ASK_TIMEOUT_S,
+        )
+        return answer.project
+
     async def _ask_mapping_state(self) -> MappingState:
         return await self._bus.ask(
             self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
@@ -221,7 +355,7 @@ class _Solver:
     def _report_progress(self, remark: str) -> None:
         log.info("%s", remark)
         if self._mission is None:
-            self.publish_state(MissionState(self._name, "building", 0, 0.0, remark=remark))
+            self.publish_state(MissionState(self._books.name, "building", 0, 0.0, remark=remark))
 
     def _report_planning(self, progress: Progress) -> None:
         """Tells people how far a decision is that takes long. The journal has only the decision."""
@@ -230,40 +364,34 @@ class _Solver:
 
     # --- the mission and its ports -------------------------------------------------------------------
 
-    async def _run_mission(self) -> None:
-        if self._memory.has_ended:
+    async def _run_missions(self) -> None:
+        if self._has_ended and not self._settings.stay:
             return
-        await self._started.wait()
-        running = self._shelf.running
-        assert running is not None
-        self._mission = self._begun(running, self._memory)
-        # The steps are needed once: a long mission has many.
-        self._memory = MissionMemory()
-        await self._await_mappings(running.revision)
-        state = await self._mission.run()
-        log.info("the mission ended: %s, %s", state.ending, state.remark)
+        is_last = False
+        while not is_last:
+            await self._started.wait()
+            self._started.clear()
+            mission = self._mission
+            assert mission is not None
+            await self._await_mappings(mission.state.revision)
+            state = await mission.run()
+            self._ended.set()
+            log.info("the mission ended: %s, %s", state.ending, state.remark)
+            is_last = not self._settings.stay
 
-    def _begun(self, running: RunningModel, memory: MissionMemory) -> Mission:
-        """The mission of this solver, with what the journal has of it; that it begins is in the journal."""
-        begun = MissionBegun(
-            self._name,
-            memory.epoch + 1,
-            self._settings.seed,
-            running.revision,
-            running.digest,
-            running.engine.description.mission_parameters,
-        )
-        self.journal(BEGUN, begun)
-        terms = Terms(
-            name=self._name,
-            epoch=begun.epoch,
+    def _terms(self, name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
+        """The terms of a mission."""
+        search = msgspec.structs.replace(self._settings_as(Search), seed=seed)
+        policy = Path(self._settings.policy) if self._settings.policy else None
+        return Terms(
+            name=name,
+            epoch=epoch,
             limits=self._settings_as(MissionLimits),
-            search=self._search,
+            search=following(search, policy, engine=running.engine),
             failures=self._settings_as(FailureRules),
             activation_timeout_s=self._settings.activation_timeout_s,
             hold_s=self._settings.hold_s,
         )
-        return Mission(terms, running, self, memory)
 
     async def _await_mappings(self, revision: int) -> None:
         """Waits until the middleware has dealt with a revision. After the deadline activations tell of it."""
@@ -306,7 +434,8 @@ class _Solver:
                 await self._changed.wait()
 
     def journal(self, kind: str, payload: Message) -> None:
-        self._journal.append(kind, payload)
+        assert self._books.newest is not None
+        self._books.newest.append(kind, payload)
 
     def publish_record(self, record: DecisionRecord) -> None:
         self._bus.tell(self._keys.decisions, record)

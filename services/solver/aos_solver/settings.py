@@ -19,7 +19,8 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
 
     The planning budget is `time_s` if given, else `simulations`. Where `horizon` is None the environment
     document's counts. With a `policy` file decisions come from that, without a search. `project` names the
-    documents to ask the registry for.
+    documents to ask the registry for. A solver with `stay` runs one mission after the other, `seed` is that
+    of the first.
     """
 
     project: str
@@ -29,6 +30,7 @@ class Settings(ServiceSettings, frozen=True, kw_only=True):
     horizon: int | None = None
     seed: int = 1
     policy: str = ""
+    stay: bool = False
     goal_probability: float = 0.9
     step_limit: int = 30
     stop_below_value: float | None = None

@@ -13,6 +13,7 @@ from aos_solver.child.command_line import command_line
 __all__ = [
     "BeliefCount",
     "BeliefUpdate",
+    "Conditioned",
     "EngineDescription",
     "EngineFault",
     "ExactValues",
@@ -300,6 +301,16 @@ class BeliefCount(msgspec.Struct, frozen=True):
 
     beliefs: int
     words: str
+
+
+class Conditioned(msgspec.Struct, frozen=True):
+    """The probability of what a belief was conditioned on, and the belief after it.
+
+    Where the probability is 0, the belief is the one before.
+    """
+
+    probability: float
+    summary: BeliefSummary
 
 
 class WorldStart(msgspec.Struct, frozen=True):

@@ -104,6 +104,16 @@ class Asking:
             await self._drop_child()
             await self._start_child()
 
+    async def anew(self, seed: int, mission_values: Mapping[str, str]) -> Self:
+        """Starts another engine of the same model, on its initial belief; errors are those of `start`.
+
+        The values are as in `start_with`.
+        """
+        built = msgspec.structs.replace(self._built, mission_values=dict(mission_values))
+        other = await self.start(built, seed=seed, impossible_observation=self._policy)
+        other.on_progress = self.on_progress
+        return other
+
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
         await self._drop_child()

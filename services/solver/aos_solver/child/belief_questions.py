@@ -13,6 +13,7 @@ from aos_protocol.messages import BeliefSummary
 from aos_solver.child.answers import (
     BeliefCount,
     BeliefUpdate,
+    Conditioned,
     EngineFault,
     ExportedBelief,
     ExportedBeliefs,
@@ -37,6 +38,21 @@ class BeliefQuestions(Asking):
     async def reset_belief(self) -> BeliefSummary:
         """Goes back to the initial belief."""
         return await self._change_belief("reset_belief", BeliefSummary)
+
+    async def begin_mission(self, idle: int) -> BeliefSummary:
+        """Begins another mission from what is believed, after so many steps of extrinsic changes alone.
+
+        Nothing has ended or counted before it.
+        """
+        return await self._change_belief(command_line("begin_mission", idle=idle), BeliefSummary)
+
+    async def condition(self, refuted_below: float) -> Conditioned:
+        """Conditions on what the constraints of this model say of a state: see `conditions.py`.
+
+        `refuted_below` is as in `update`.
+        """
+        command = command_line("condition", refuted_below=refuted_below)
+        return await self._change_belief(command, Conditioned)
 
     async def draw_belief(self) -> BeliefSummary:
         """Goes back to the initial belief, as particles even where it could be enumerated."""

@@ -23,6 +23,13 @@ class WorldQuestions(Asking):
         self._world = [command]
         return start
 
+    async def begin_mission_in_world(self, idle: int) -> WorldStart:
+        """Begins another mission in the world as it is, after so many steps of extrinsic changes alone."""
+        command = command_line("begin_mission_in_world", idle=idle)
+        start = await self._ask(command, WorldStart)
+        self._world.append(command)
+        return start
+
     async def step_world(self, index: int) -> WorldStep:
         """Runs an action on the hidden state, by the model."""
         command = command_line("step_world", action=index)

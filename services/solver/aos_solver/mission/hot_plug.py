@@ -283,6 +283,43 @@ class ModelShelf:
             self._end(candidate)
             return None
 
+    async def replacement(self, running: RunningModel) -> RunningModel:
+        """The newest model that is ready on both sides, whatever is believed; else the running one.
+
+        The engine of the model that ran is not asked any more.
+        """
+        async with self._shelf:
+            candidate = self._ready
+            if candidate is None or not self._is_mapped(candidate.model.revision):
+                return running
+            await candidate.end_following()
+            self._ready, self._running = None, candidate.model
+            self._end(running.engine)
+        return candidate.model
+
+    async def turn_to(self, model: RunningModel, mission_values: tuple[MissionValue, ...]) -> None:
+        """Lets a model run another mission, by an engine of its own that has the mission's values already.
+
+        The model that ran is not asked any more. One that is to take over gets the mission's values, or is
+        given up where it cannot have them.
+        """
+        async with self._shelf:
+            before, self._running = self._running, model
+            self._mission_values = mission_values
+            self.kept = model.engine.description.mission_parameters
+            if before is not None and before.engine is not model.engine:
+                self._end(before.engine)
+            if self._ready is None:
+                return
+            await self._ready.end_following()
+            engine = self._ready.model.engine
+            try:
+                await engine.start_with(self._values_in(engine.parameters, _NOWHERE))
+            except AosError as error:
+                log.warning("revision %d is not used: %s", self._ready.model.revision, error)
+                self._end(self._ready)
+                self._ready = None
+
     async def check(self, project: Project, running: RunningModel | None) -> tuple[Diagnostic, ...]:
         """Returns what keeps these documents from being used now: mistakes, or no belief for the mission."""
         span = project.environment.span

@@ -43,15 +43,22 @@ class Mission:
 
     `run` or `run_or_raise` is called once.
 
-    `belief` is the newest one.
+    `belief` is the newest one, `past` how it came to be.
     """
 
     belief: BeliefSummary
 
     def __init__(
-        self, terms: Terms, model: RunningModel, ports: Ports, memory: MissionMemory = _NOTHING
+        self,
+        terms: Terms,
+        model: RunningModel,
+        ports: Ports,
+        memory: MissionMemory = _NOTHING,
+        before: Past | None = None,
     ) -> None:
-        """`memory` is what the mission has behind it, which has not ended."""
+        """`memory` is what the mission has behind it, which has not ended. `before` is the past of the belief
+        that it begins with, where that is not the initial one.
+        """
         self.state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
         self._memory = memory
         self._sequence = memory.sequence
@@ -61,7 +68,8 @@ class Mission:
         self._ports = ports
         self._failures = Failures(terms.failures)
         self._is_resumed = False
-        self._past = Past(terms.limits.refuted_below)
+        self._to_stop = ""
+        self.past = Past(terms.limits.refuted_below, before.steps if before is not None else ())
         self._adopted: ModelAdopted | None = None
         self._budget = RiskBudget(model.engine.bounds)
         self._chooser = Chooser(terms, self._failures, ports, self._budget)
@@ -77,6 +85,21 @@ class Mission:
     def resume(self) -> None:
         """Somebody has looked after what the mission holds for."""
         self._is_resumed = True
+
+    def stop(self, reason: str) -> None:
+        """Ends the mission as `cancelled` before anything else moves. Whoever stops it cancels what moves."""
+        self._to_stop = reason
+
+    @property
+    def activation(self) -> ActivationId | None:
+        """The activation that may be moving something now."""
+        state = self.state
+        return ActivationId(state.mission, state.step) if state.phase == "acting" else None
+
+    async def replay(self) -> None:
+        """Brings the engine's belief to where the memory's steps end, and does nothing else."""
+        self.belief = await self._model.engine.summary()
+        await self._take_up()
 
     async def run_or_raise(self) -> None:
         """Decide and act until the mission ends, as `run`; AosError for a machine fault."""
@@ -94,7 +117,7 @@ class Mission:
             decision = self._decide(choice)
             self._move_to("acting", decision.step, remark=decision.action)
             await self._terms.search.ponder(self._model.engine, decision.step, choice.plan.index)
-            if not await self._finish(decision, await self._act(decision)):
+            if self._is_stopped() or not await self._finish(decision, await self._act(decision)):
                 return
         self._end(ending, remark_of(ending, self.belief, self._terms.limits))
 
@@ -105,9 +128,10 @@ class Mission:
         whether the mission goes on.
         """
         memory, self._memory = self._memory, _NOTHING
-        self._past.steps += [self._evidence(step.decision, step.outcome) for step in memory.steps]
+        known = len(self.past)
+        self.past.steps += [self._evidence(step.decision, step.outcome) for step in memory.steps]
         steps = iter(memory.steps)
-        async for update in replayed(self._model.engine, self._past):
+        async for update in replayed(self._model.engine, self.past, known):
             decision, observed, observed_ns = next(steps)
             self._budget.take_up(decision.constraints)
             self._take_failure(decision, observed, update, self._s_of(observed_ns))
@@ -133,7 +157,14 @@ class Mission:
         """Ends the mission where its failures call for that."""
         if self._failures.to_end:
             self._end(Ending.SKILLS_FAILED, self._failures.to_end)
-        return not self._failures.to_end
+            return False
+        return not self._is_stopped()
+
+    def _is_stopped(self) -> bool:
+        """Ends the mission where somebody wants that."""
+        if self._to_stop:
+            self._end(Ending.CANCELLED, self._to_stop)
+        return bool(self._to_stop)
 
     def _can_finish(self, pending: Pending) -> bool:
         """Returns whether a decision can be carried out: one that nobody was asked for can be made anew."""
@@ -141,7 +172,7 @@ class Mission:
 
     async def _adopt(self) -> bool:
         """Lets the newest model take over if it is ready; returns whether one did."""
-        takeover = await self._ports.newest_model(self._model, self._past)
+        takeover = await self._ports.newest_model(self._model, self.past)
         if takeover is None:
             return False
         self._model, self.belief, self._adopted = takeover.model, takeover.belief, takeover.row
@@ -160,8 +191,12 @@ class Mission:
     async def _choose(self) -> Choice | Ended | None:
         """The next decision, or an ending; None after a hold, since nothing can be run."""
         engine, step = self._model.engine, self.state.step
+        if self._to_stop:
+            return Ended(Ending.CANCELLED, self._to_stop)
         self._move_to("planning", step)
         choice = await self._chooser.choose(self._model, step + 1, self.belief)
+        if self._to_stop:
+            return Ended(Ending.CANCELLED, self._to_stop)
         if not isinstance(choice, Held):
             return choice
         await self._hold(choice.remark, lambda: self._chooser.is_something_available(engine), adopts=True)
@@ -176,7 +211,7 @@ class Mission:
         ends_at_s = self._ports.clock.monotonic_s() + hold_s
         self._is_resumed = False
         self._move_to("holding", self.state.step, remark=why)
-        while not (self._is_resumed or goes_on()):
+        while not (self._is_resumed or self._to_stop or goes_on()):
             now_s = self._ports.clock.monotonic_s()
             left_s = ends_at_s - now_s
             if adopts and await self._adopt():
@@ -248,8 +283,8 @@ class Mission:
     async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> None:
         before_s = self._ports.clock.monotonic_s()
         evidence = self._evidence(decision, outcome)
-        update = await updated(self._model.engine, evidence, self._past.refuted_below)
-        self._past.steps.append(evidence)
+        update = await updated(self._model.engine, evidence, self.past.refuted_below)
+        self.past.steps.append(evidence)
         update_s = self._ports.clock.monotonic_s() - before_s
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
         record = msgspec.structs.replace(

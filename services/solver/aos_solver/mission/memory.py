@@ -61,8 +61,9 @@ class Pending(NamedTuple):
 class MissionMemory(msgspec.Struct, frozen=True):
     """The epoch of the newest solver, the steps in order, the step that is not over, the newest state.
 
-    `sequence` is the number of the next record, and `goal_probability` that of the last one's belief.
-    `mission_parameters` are the values that the mission began with.
+    `begun` is the row with which the first solver began the mission, None where none has. `sequence` is the
+    number of the next record, and `goal_probability` that of the last one's belief. `mission_parameters` are
+    the values that the mission began with.
     """
 
     epoch: int = 0
@@ -72,6 +73,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
     sequence: int = 0
     goal_probability: float = 0.0
     mission_parameters: dict[str, str] = {}
+    begun: MissionBegun | None = None
 
     @property
     def has_ended(self) -> bool:
@@ -86,6 +88,7 @@ class MissionMemory(msgspec.Struct, frozen=True):
 def folded(rows: Iterable[JournalRow]) -> MissionMemory:
     """The memory that a mission's journal holds; StorageError AOS702 for a row that is damaged."""
     epoch, pending, state, sequence, goal_probability = 0, None, None, 0, 0.0
+    begun: MissionBegun | None = None
     steps: list[PastStep] = []
     parameters: dict[str, str] = {}
     for row in rows:
@@ -94,7 +97,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
         said = _decoded(row)
         match said:
             case MissionBegun():
-                epoch, parameters = said.epoch, said.mission_parameters
+                epoch, parameters, begun = said.epoch, said.mission_parameters, begun or said
             case MissionState():
                 state = said
             case DecisionRecord(outcome=None):
@@ -110,7 +113,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
                 pending = _of(pending, row)._replace(outcome=said)
         if isinstance(said, DecisionRecord):
             sequence, goal_probability = said.sequence + 1, said.belief.goal_probability
-    return MissionMemory(epoch, tuple(steps), pending, state, sequence, goal_probability, parameters)
+    return MissionMemory(epoch, tuple(steps), pending, state, sequence, goal_probability, parameters, begun)
 
 
 def _without_search(decision: DecisionRecord) -> DecisionRecord:

@@ -6,15 +6,16 @@ that is taken up and a model that takes a mission over update their beliefs by t
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Iterable, Mapping
 from typing import Any
 
 import msgspec
 
+from aos_protocol.errors import ModelError
 from aos_solver.child.answers import BeliefUpdate
 from aos_solver.child.engine import Engine
 
-__all__ = ["Evidence", "Past", "replayed", "updated"]
+__all__ = ["Beginning", "Evidence", "Past", "replayed", "updated"]
 
 _DEFAULT_RESPONSE = "DefaultObservation"
 
@@ -33,13 +34,34 @@ class Evidence(msgspec.Struct, frozen=True):
     ran_probability: float = 1.0
 
 
-class Past:
-    """The steps since a belief started, in order. A mission adds to it."""
+class Beginning(msgspec.Struct, frozen=True):
+    """The start of another mission from what was believed, after `idle` steps of extrinsic changes alone.
 
-    def __init__(self, refuted_below: float = 0.01) -> None:
+    `given` is what somebody knew then: a model of other variables cannot be asked whether it holds.
+    """
+
+    idle: int = 0
+    given: tuple[str, ...] = ()
+
+    @property
+    def action(self) -> str:
+        """The words for it, where people read of actions."""
+        return "the start of a mission"
+
+    @property
+    def response(self) -> str:
+        return " and ".join(self.given)
+
+
+class Past:
+    """The steps since a belief started, in order: those of the mission, which adds to it, and before them
+    those of the missions whose beliefs it has kept.
+    """
+
+    def __init__(self, refuted_below: float = 0.01, steps: Iterable[Evidence | Beginning] = ()) -> None:
         """`refuted_below` is that of the mission's limits."""
         self.refuted_below = refuted_below
-        self.steps: list[Evidence] = []
+        self.steps: list[Evidence | Beginning] = list(steps)
 
     def __len__(self) -> int:
         return len(self.steps)
@@ -53,11 +75,16 @@ async def replayed(engine: Engine, past: Past, first: int = 0) -> AsyncIterator[
         number += 1
 
 
-async def updated(engine: Engine, evidence: Evidence, refuted_below: float) -> BeliefUpdate:
+async def updated(engine: Engine, evidence: Evidence | Beginning, refuted_below: float) -> BeliefUpdate:
     """The belief after a step; without an observation by how probable it is that the skill ran.
 
     A model that lacks the action or the response lets extrinsic changes alone act (`is_foreign`).
+    ModelError AOS112 for what somebody knew at the start of a mission.
     """
+    if isinstance(evidence, Beginning):
+        if evidence.given:
+            raise ModelError(f"nobody has asked it whether {evidence.response} held", code="AOS112")
+        return BeliefUpdate(0.0, False, await engine.begin_mission(evidence.idle))
     if evidence.response is None and evidence.ran_probability == 0:
         return BeliefUpdate(0.0, False, await engine.summary())
     if _is_foreign(engine, evidence):

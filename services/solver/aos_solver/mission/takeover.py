@@ -92,13 +92,13 @@ class Successor:
         ModelError AOS112 if there is no way.
         """
         if self._imports_from(running):
-            await self._end_following()
+            await self.end_following()
             summary = await self._imported(running)
             return None if summary is None else self._takeover(running, past, summary, "import")
         engine = self.model.engine
         before = await running.engine.marginals()
         await self._replay(past)
-        await self._end_following()
+        await self.end_following()
         if self._cannot_replay:
             summary = await self._projected(running)
         else:
@@ -114,10 +114,11 @@ class Successor:
 
     async def close(self) -> None:
         """Ends the engine, and what it works on."""
-        await self._end_following()
+        await self.end_following()
         await self.model.engine.close()
 
-    async def _end_following(self) -> None:
+    async def end_following(self) -> None:
+        """Ends the replay beside the mission."""
         following, self._following = self._following, None
         if following is not None:
             following.cancel()

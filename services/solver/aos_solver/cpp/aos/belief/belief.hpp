@@ -133,6 +133,58 @@ class Belief {
     }
   }
 
+  // The belief in which each state is changed by `change(state, draws)`, which nobody observes. It has no history.
+  template <class Change>
+  Belief changed(Change&& change, Sampler& random) const {
+    try {
+      if (is_drawn()) throw NotEnumerable{"the states were drawn"};
+      Gathering<Model> gathering;
+      Enumerator draws;
+      const std::size_t limit = max_states(source_);
+      double gone = 0;
+      std::size_t paths = 0;
+      State next{};
+      for (const auto& [state, weight] : particles_) {
+        const auto run = [&](Enumerator& path) {
+          if (++paths > max_enumerated_paths) throw NotEnumerable{"too many outcomes"};
+          next = state;
+          change(next, path);
+        };
+        gone += weight * draws.for_nearly_each_path(run, [&](Enumerator& path) {
+          gathering.add(next, weight * path.probability());
+          if (gathering.size() > 2 * limit) gone += gathering.reduce(limit, random);
+        });
+      }
+      gone += gathering.reduce(limit, random);
+      return Belief{gathering, error_bound_ + gone, source_};
+    } catch (const NotEnumerable&) {
+      return changed_by_drawing(change, random);
+    }
+  }
+
+  // The belief at the start of a mission that nothing belongs to yet, after so many steps of extrinsic changes alone.
+  Belief begun(int idle_steps, Sampler& random) const {
+    Belief now = without_history();
+    for (int left = idle_steps; left > 1; --left) {
+      now = now.changed([](State& state, DirectedDraws& draws) { Model::begin(state, 1, draws); }, random);
+    }
+    const int last = idle_steps > 0 ? 1 : 0;
+    return now.changed([last](State& state, DirectedDraws& draws) { Model::begin(state, last, draws); }, random);
+  }
+
+  // The belief given that `holds(state)`, and the logarithm of its probability. It is empty where that is impossible. If
+  // some share e of the belief is wrong, the event has at least its probability p - e in the rest.
+  template <class Holds>
+  std::pair<Belief, double> conditioned(Holds&& holds) const {
+    Gathering<Model> gathering;
+    for (const auto& [state, weight] : particles_) {
+      if (holds(state)) gathering.add(state, weight);
+    }
+    const double probability = gathering.total() / total();
+    if (gathering.size() == 0) return {Belief{}, -std::numeric_limits<double>::infinity()};
+    return {Belief{gathering, error_bound_ / probability, source_}, std::log(probability)};
+  }
+
   // A mixture: `share` of `other` and the rest of this belief.
   Belief mixed_with(const Belief& other, double share) const {
     Gathering<Model> gathering;
@@ -283,6 +335,25 @@ class Belief {
     } catch (const NotEnumerable&) {
       return stepped(step, numbers, random);
     }
+  }
+
+  // Each state is changed once for each sample that its weight is worth, at least once.
+  template <class Change>
+  Belief changed_by_drawing(Change&& change, Sampler& random) const {
+    Gathering<Model> gathering;
+    Replay replay;
+    const std::vector<double> none;
+    for (const auto& [state, weight] : particles_) {
+      const double trials = std::max(1.0, std::ceil(weight * static_cast<double>(particle_count)));
+      for (double trial = 0; trial < trials; ++trial) {
+        State next = state;
+        replay.start(none, random);
+        change(next, replay);
+        gathering.add(next, weight / trials);
+      }
+    }
+    gathering.reduce(particle_count, random);
+    return Belief{gathering, 1, Source::drawing};
   }
 
   std::pair<Belief, double> stepped(const HistoryStep& step, NumberSink& numbers, Sampler& random) const {

@@ -163,6 +163,35 @@ class Hypotheses {
     return after;
   }
 
+  // At the start of the next mission: see Belief::begun.
+  Hypotheses begun(int idle_steps, Sampler& random) const {
+    Hypotheses after = *this;
+    for (Hypothesis& each : after.all_) each.belief = each.belief.begun(idle_steps, random);
+    after.mix();
+    after.cautious_.reset();
+    if (cautious_) after.keep_cautious(cautious_->begun(idle_steps, random));
+    return after;
+  }
+
+  // Given what somebody knows, which is possible: `found` are the posteriors by it. It closes no row. The cautious belief
+  // goes as in `given`.
+  Hypotheses known(Posteriors found, double refuted_below) const {
+    Hypotheses after;
+    after.discredited_ = discredited_;
+    after.open_ = open_;
+    const double log_total = log_probability(found);
+    for (std::size_t i = 0; i < all_.size(); ++i) {
+      auto& [posterior, log_likelihood] = found.each[i];
+      if (posterior.particles().empty()) continue;
+      const double weight = all_.size() == 1 ? 1 : std::exp(log_weight(i) + log_likelihood - log_total);
+      after.all_.push_back({weight, all_[i].ran, std::move(posterior)});
+    }
+    after.mix();
+    after.log_ratio_ = log_ratio_;
+    if (cautious_) after.follow_cautiously(*cautious_, std::move(*found.cautious), log_total, refuted_below, false);
+    return after;
+  }
+
   void write_summary(JsonWriter& json) const {
     json.begin_object();
     belief().write_members(json);

@@ -1,6 +1,7 @@
 // The commands that ask an engine child about its belief or change the belief.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <optional>
@@ -23,6 +24,7 @@
 #include "aos/child/saved_beliefs.hpp"
 #include "aos/child/wording.hpp"
 #include "aos/model/blame.hpp"
+#include "aos/model/violations.hpp"
 #include "aos/planning/planner.hpp"
 
 namespace aos {
@@ -50,6 +52,30 @@ class BeliefCommands {
   void reset(JsonWriter& json) {
     impossible_in_a_row_ = 0;
     become(json, Hypotheses{Belief<Model>::initial(random_)}, [&] { search_.start_over(); });
+  }
+
+  // Begins another mission from what is believed, after `idle` steps of extrinsic changes alone.
+  void begin_mission(JsonWriter& json, const Command& command) {
+    impossible_in_a_row_ = 0;
+    become(json, believed_.begun(command.number<int>("idle"), random_), [&] { search_.start_over(); });
+  }
+
+  // Conditions on all that this model's constraints say of a state; they are conditions here (conditions.py). Writes their
+  // joint probability. If it is 0, nothing changes.
+  void condition(JsonWriter& json, const Command& command) {
+    const auto all = static_cast<Violations>((std::uint64_t{1} << Model::constraint_count()) - 1);
+    auto found = believed_.posteriors([&](const Belief<Model>& belief) {
+      return belief.conditioned([&](const State& state) { return Model::violations(state, state, 0) == all; });
+    });
+    const bool is_possible = !found.hypotheses_are_empty();
+    json.begin_object().member("probability", is_possible ? std::exp(believed_.log_probability(found)) : 0.0);
+    json.key("summary");
+    if (is_possible) {
+      become(json, believed_.known(std::move(found), command.number<double>("refuted_below")));
+    } else {
+      summary(json);
+    }
+    json.end_object();
   }
 
   // Makes the belief the initial belief in particles, even where enumeration gives it exactly: tests compare the two.

@@ -9,6 +9,7 @@
 #include "aos/base/json.hpp"
 #include "aos/base/observed_numbers.hpp"
 #include "aos/base/random.hpp"
+#include "aos/base/replay.hpp"
 #include "aos/belief/risks.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/wording.hpp"
@@ -24,6 +25,15 @@ class WorldCommands {
     random_ = Sampler{command.number<std::uint64_t>("seed")};
     hidden_ = State{};
     Model::initial(hidden_, random_);
+    json.begin_object().member("ending", ending_text(Model::ending(hidden_))).end_object();
+  }
+
+  // Begins another mission in the world as it is, after `idle` steps of extrinsic changes alone.
+  void begin_mission(JsonWriter& json, const Command& command) {
+    Replay draws;
+    const std::vector<double> none;
+    draws.start(none, random_);
+    Model::begin(hidden_, command.number<int>("idle"), draws);
     json.begin_object().member("ending", ending_text(Model::ending(hidden_))).end_object();
   }
 

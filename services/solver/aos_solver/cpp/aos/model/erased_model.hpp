@@ -86,6 +86,15 @@ struct ErasedModel {
   static void initial(State& state, Random& random) {
     functions<Random>().initial(state.bytes, random);
   }
+  // Makes a state one in which a mission begins, after so many steps of extrinsic changes alone. Whether an earlier mission
+  // has ended there, makes no difference.
+  static void begin(State& state, int idle_steps, DirectedDraws& random) {
+    for (int step = 0; step < idle_steps; ++step) {
+      compiled_model.set_end(state.bytes, Ending::running, 0);
+      compiled_model.pass(state.bytes, random);
+    }
+    compiled_model.begin(state.bytes, random);
+  }
   template <class Random>
   static Step step(State& state, int action, Random& random) {
     if constexpr (!std::is_same_v<Random, Sampler>) {

@@ -146,6 +146,13 @@ class ModelOf {
     aos::pass<Environment>(state, random);
     blame::at(0);
   }
+  // Makes a state one in which a mission begins: nothing has ended or counted before, as in `initial`.
+  static void begin(State& state, auto& random) {
+    state.aos_ending = Ending::running;
+    if constexpr (requires { state.aos_spent; }) state.aos_spent = {};
+    Environment::special_states(state, random);
+    blame::at(0);
+  }
   static Violations violations(const State& before, const State& next, int action) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
       return Project::template violations<Skill>(before, next, parameters);

@@ -72,6 +72,7 @@ struct ModelTable {
   DrawingFunctions<Sampler> sampling;
   DrawingFunctions<DirectedDraws> directed;
   void (*pass)(void* state, DirectedDraws& random);
+  void (*begin)(void* state, DirectedDraws& random);
   void (*correct)(const void* before, void* next, int action, DirectedDraws& random);
   bool (*meets_precondition)(const void* state, int action, DirectedDraws& random);
   Violations (*violations)(const void* before, const void* next, int action);
@@ -146,6 +147,12 @@ constexpr ModelTable table_of() {
           [](void* state, DirectedDraws& random) {
             ModelSource<DirectedDraws> draws{random};
             Model::pass(*static_cast<State*>(state), draws);
+            blame::over();
+          },
+      .begin =
+          [](void* state, DirectedDraws& random) {
+            ModelSource<DirectedDraws> draws{random};
+            Model::begin(*static_cast<State*>(state), draws);
             blame::over();
           },
       .correct =

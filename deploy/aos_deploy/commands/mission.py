@@ -1,0 +1,156 @@
+"""`aos mission`: the missions of a system that stays, one after the other."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from aos_deploy.exit_codes import EXIT_CODES_TEXT, exit_code_of_ending
+from aos_deploy.living_runs import chosen_run
+from aos_deploy.mission_values import SetValues, values_of_options
+from aos_deploy.options import AsJson
+from aos_deploy.printing import print_json
+from aos_deploy.running_system import System, on_system
+from aos_protocol.messages import MissionEntry, MissionState
+
+if TYPE_CHECKING:
+    from aos_runtime.client import AosClient
+
+__all__ = ["register"]
+
+mission_app = typer.Typer(
+    no_args_is_help=True,
+    help="Start, stop and list the missions of a system that `aos-up --stay` has started.",
+    epilog="Example: aos mission start --set target=bob --belief keep --given 'state.robot_at == Kitchen'",
+)
+
+Belief = Annotated[
+    Literal["initial", "keep"],
+    typer.Option(help="The documents' initial belief, or what was believed last"),
+]
+Given = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--given", metavar="EXPRESSION", help="What is known: over `state`, in the documents' language"
+    ),
+]
+Idle = Annotated[
+    int, typer.Option("--idle", min=0, max=10_000, metavar="N", help="Steps of extrinsic changes before it")
+]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds `aos mission` to `aos`."""
+    app.add_typer(mission_app, name="mission")
+
+
+@mission_app.command(
+    epilog="Example: aos mission start --belief keep --wait. With --wait it exits as aos-up does. "
+    + EXIT_CODES_TEXT
+)
+@on_system
+def start(
+    system: System,
+    belief: Belief = "initial",
+    given: Given = None,
+    idle: Idle = 0,
+    set_values: SetValues = None,
+    wait: Annotated[
+        bool, typer.Option("--wait", help="Return when it has ended, with its exit code")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Start the next mission.
+
+    First the steps of `--idle` pass, then the belief is conditioned on what is `--given`. Flags of special
+    states that count once, constraints, steps and the seed begin anew, whatever the belief.
+    """
+
+    values = {value.name: value.text for value in values_of_options(set_values)}
+
+    async def work(aos: AosClient) -> MissionState | MissionEntry:
+        state = await aos.start_mission(belief=belief, given=given or (), idle=idle, values=values)
+        if not wait:
+            return state
+        if not as_json:
+            typer.echo(f"{state.mission} has begun")
+        return await aos.until_ended(state.mission)
+
+    outcome = system.do(work)
+    if as_json:
+        print_json(outcome)
+    elif isinstance(outcome, MissionEntry):
+        typer.echo(f"{outcome.mission}: {outcome.ending} after {outcome.steps} steps, {outcome.remark}")
+    else:
+        typer.echo(f"{outcome.mission} has begun")
+    if isinstance(outcome, MissionEntry):
+        raise typer.Exit(exit_code_of_ending(outcome.ending))
+
+
+@mission_app.command(epilog="Example: aos mission stop")
+@on_system
+def stop(system: System, as_json: AsJson = False) -> None:
+    """Cancel what moves, and end the mission that runs as `cancelled`.
+
+    It returns when the mission has ended. Where none runs, nothing changes.
+    """
+
+    async def work(aos: AosClient) -> tuple[MissionState, MissionState]:
+        return await aos.mission_state(), await aos.stop_mission()
+
+    before, after = system.do(work)
+    if as_json:
+        print_json(after)
+    elif after.phase != "ended":
+        typer.echo("no mission has begun")
+    elif before.phase == "ended":
+        typer.echo(f"no mission runs: {after.mission} has ended, {after.ending}")
+    else:
+        typer.echo(f"{after.mission}: {after.ending} after {after.step} steps")
+
+
+@mission_app.command("list", epilog="Example: aos mission list --json")
+@on_system
+def list_missions(system: System, as_json: AsJson = False) -> None:
+    """List the missions of a system, also of one that is over."""
+    entries = _entries(system)
+    if as_json:
+        print_json(entries)
+        return
+    for entry in entries:
+        typer.echo(_line(entry))
+    if not entries:
+        typer.echo("no mission has begun")
+
+
+def _entries(system: System) -> tuple[MissionEntry, ...]:
+    if not system.is_at_endpoint:
+        run = chosen_run(system.run, system.runs)
+        if not run.is_running:
+            return _kept_entries(run.path)
+
+    async def work(aos: AosClient) -> tuple[MissionEntry, ...]:
+        return (await aos.missions()).entries
+
+    return system.do(work)
+
+
+def _kept_entries(run: Path) -> tuple[MissionEntry, ...]:
+    from aos_solver.mission.logbook import entries_of
+
+    return entries_of(run)
+
+
+def _line(entry: MissionEntry) -> str:
+    begun = datetime.fromtimestamp(entry.begun_ns / 1e9).astimezone().isoformat(" ", "seconds")
+    began = [entry.belief, *(f"given {text}" for text in entry.given)]
+    began += [f"{name} = {text}" for name, text in entry.values.items()]
+    if entry.idle:
+        began.append(f"after {entry.idle} idle steps")
+    ending = entry.ending or "running"
+    return (
+        f"{ending:18} {entry.steps:3} steps  {begun}  {entry.mission}  seed {entry.seed}, {', '.join(began)}"
+    )

@@ -1,0 +1,160 @@
+"""The belief with which a mission begins: kept, some time later, given what is known; against enumeration."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_text, engine_of
+
+from aos_language.load import load_files
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError, PlanningError
+from aos_protocol.messages import StartMission
+from aos_solver.child.answers import ExportedBelief
+from aos_solver.child.engine import Engine
+from aos_solver.mission.beginning import begin_with
+from aos_solver.mission.conditions import built_with_conditions
+
+WALK = {
+    "walk.ef": """\
+project: walk
+horizon: 5
+discount: 0.9
+
+state_variable: int place
+code:
+state.place = 0;
+
+state_variable: bool paid
+code:
+state.paid = false;
+
+initial_belief:
+state.place = AOS.SampleDiscrete(vector<double>{0.5, 0.3, 0.2});
+
+extrinsic_code:
+if (AOS.Bernoulli(0.25)) state_.place = (state.place + 1) % 3;
+
+reward_code:
+if (state.place == 2) {
+    __reward = 1;
+    __stopEvaluatingState = true;
+}
+
+reward_code:
+if (state.place == 9) {
+    __reward = 1;
+    __isGoalState = true;
+}
+""",
+    "look.sd": """\
+project: walk
+dynamic_model:
+__moduleResponse = AOS.Bernoulli(state.place == 0 ? 0.9 : 0.2) ? low : high;
+__reward = -1;
+""",
+}
+
+
+async def distribution(engine: Engine) -> dict[str, float]:
+    """The states of the belief as text, the flags of special states among it, with their weights."""
+    belief: ExportedBelief = await engine.export_belief()
+    assert belief.is_exact
+    return {state: weight for weight, state in belief.particles}
+
+
+def project() -> Project:
+    loaded = load_files({name: text.encode() for name, text in WALK.items()})
+    assert loaded.project is not None, loaded.diagnostics
+    return loaded.project
+
+
+def after_time(places: list[float], steps: int) -> list[float]:
+    for _ in range(steps):
+        places = [0.75 * places[at] + 0.25 * places[at - 1] for at in range(3)]
+    return places
+
+
+@pytest.mark.parametrize("idle", [0, 1, 3])
+@pytest.mark.parametrize("given", [(), ("state.place != 1",)])
+@pytest.mark.parametrize("is_kept", [False, True])
+async def test_a_beginning_is_the_belief_by_enumeration(
+    cache_dir: Path, idle: int, given: tuple[str, ...], is_kept: bool
+) -> None:
+    built = await built_text(WALK, cache_dir)
+    start = StartMission("keep" if is_kept else "initial", given, idle)
+
+    async def conditioned() -> Engine:
+        return await Engine.start(await built_with_conditions(project(), given, cache_dir), seed=1)
+
+    async with engine_of(built) as last, engine_of(built) as engine:
+        places = [0.5, 0.3, 0.2]
+        kept = None
+        if is_kept:
+            await last.update("look", "low")
+            places = after_time([0.5 * 0.9, 0.3 * 0.2, 0.2 * 0.2], 1)
+            kept = await last.export_beliefs()
+        await begin_with(engine, start, kept, conditioned, 0.01)
+        places = after_time(places, idle)
+        weights = [weight for at, weight in enumerate(places) if not given or at != 1]
+        believed = await distribution(engine)
+        assert sorted(believed.values()) == pytest.approx(
+            sorted(weight / sum(weights) for weight in weights), abs=1e-12
+        )
+        # The flag of a special state that counts once is set for place 2 alone: nothing of before is left.
+        assert len(believed) == len(weights)
+
+
+async def test_a_state_that_had_ended_goes_on_in_the_next_mission(cache_dir: Path) -> None:
+    files = WALK | {"walk.ef": WALK["walk.ef"].replace("state.place == 9", "state.place == 1")}
+    built = await built_text(files, cache_dir)
+    async with engine_of(built) as engine:
+        assert (await engine.summary()).goal_probability == pytest.approx(0.3)
+        places = [0.5, 0.3, 0.2]
+        began = await engine.begin_mission(idle=2)
+        assert began.goal_probability == pytest.approx(after_time(places, 2)[1])
+
+
+async def test_what_is_impossible_begins_nothing(cache_dir: Path) -> None:
+    built = await built_text(WALK, cache_dir)
+    given = ("state.place == 7",)
+
+    async def conditioned() -> Engine:
+        return await Engine.start(await built_with_conditions(project(), given, cache_dir), seed=1)
+
+    async with engine_of(built) as engine:
+        before = await distribution(engine)
+        with pytest.raises(PlanningError, match=r"`state\.place == 7` has probability 0") as refused:
+            await begin_with(engine, StartMission(given=given), None, conditioned, 0.01)
+        assert refused.value.code == "AOS516"
+        assert await distribution(engine) == before
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "place"),
+    [
+        ("state.plaze == 1", "AOS110", "--given:1:7"),
+        ("state.place == 1; true", "AOS108", "--given:1:17"),
+        ("AOS.Bernoulli(0.5)", "AOS142", "--given:1:1"),
+        ("true", "AOS142", "--given:1:1"),
+        ("state__.place == 1", "AOS110", "--given:1:1"),
+        ("state.place = 1", "AOS123", "--given:1:1"),
+        ("", "AOS142", "--given:1:1"),
+        ('state.place == "x"', "AOS201", "--given:1:13"),
+    ],
+)
+async def test_a_condition_that_cannot_be_used_is_told_with_its_column(
+    cache_dir: Path, text: str, code: str, place: str
+) -> None:
+    with pytest.raises(AosError, match="what is given has errors") as refused:
+        await built_with_conditions(project(), [text], cache_dir)
+    (found, *_) = refused.value.diagnostics
+    assert (found.code, str(found.span)) == (code, place)
+
+
+async def test_a_condition_that_faults_is_told_at_its_place(cache_dir: Path) -> None:
+    built = await built_with_conditions(project(), ["1 / (state.place - 1) == 0"], cache_dir)
+    async with engine_of(built) as engine:
+        with pytest.raises(AosError, match="--given:1:1"):
+            await engine.condition(0.01)

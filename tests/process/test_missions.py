@@ -1,0 +1,219 @@
+"""Missions that follow one another in a system that stays: started, stopped, kept apart, taken up."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from processes import HANG_S, kill
+
+from aos_deploy.history_check.files import violations_of_run
+from aos_protocol.errors import SkillError
+from aos_runtime.client import AosClient
+from aos_runtime.journal import Journal
+from aos_runtime.mission_folders import mission_folder
+from aos_solver.mission.logbook import entries_of
+
+BIN = Path(sys.executable).parent
+DEPLOY = """\
+aos: 1
+robot: tiger
+bundles: [{root}/deploy/bundles/bench/tiger]
+bus: {{listen: "tcp/127.0.0.1:0"}}
+mission: {{goal_probability: 1.0, step_limit: 3}}
+solver: {{simulations: 200, planner: pomcp}}
+bind: {{/listen: {{python: robot.py:listen}}, /open: {{python: robot.py:open_door}}}}
+"""
+ROBOT = """\
+import asyncio
+from pathlib import Path
+
+SLOW = Path(__file__).with_name("slow")
+
+async def listen(call):
+    if SLOW.exists():
+        await asyncio.Event().wait()
+    return {"loudest": "left"}
+
+async def open_door(call, door):
+    return {}
+"""
+
+
+class System:
+    """A running `aos-up --stay`, and the commands beside it."""
+
+    def __init__(self, folder: Path, process: subprocess.Popen[str], environment: dict[str, str]) -> None:
+        self.folder = folder
+        self.process = process
+        self._environment = environment
+        self._said: queue.Queue[dict[str, Any]] = queue.Queue()
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self._said.put(json.loads(line))
+        self._said.put({"event": "end"})
+
+    def until(self, kind: str, **fields: Any) -> dict[str, Any]:
+        """The next event of the kind with these fields."""
+        while (event := self._said.get(timeout=HANG_S))["event"] != "end":
+            if event["event"] == kind and fields.items() <= event.items():
+                return event
+        raise AssertionError(f"aos-up ended before {kind} {fields}")
+
+    @property
+    def run(self) -> Path:
+        return (self.folder / "runs" / "latest").resolve()
+
+    @property
+    def record(self) -> dict[str, Any]:
+        return json.loads((self.run / "run.json").read_text())
+
+    def be_slow(self, is_slow: bool) -> None:
+        """Lets the robot listen for ever, or not."""
+        slow = self.folder / "slow"
+        slow.touch() if is_slow else slow.unlink(missing_ok=True)
+
+    def aos(self, *arguments: str) -> tuple[int, str, str]:
+        """Exit code, output and errors of a command."""
+        done = subprocess.run(
+            [BIN / "aos", *arguments],
+            cwd=self.folder,
+            env=self._environment,
+            capture_output=True,
+            text=True,
+            timeout=HANG_S,
+        )
+        return done.returncode, done.stdout, done.stderr
+
+    def interrupt(self) -> int:
+        """The exit code after Ctrl-C."""
+        self.process.send_signal(signal.SIGINT)
+        return self.ended()
+
+    def ended(self) -> int:
+        self._reader.join(HANG_S)
+        return self.process.wait(HANG_S)
+
+    def beliefs(self, number: int) -> list[dict[str, Any]]:
+        """The beliefs in a mission's decision records, as marginals."""
+        with Journal.read(mission_folder(self.run, number) / "journal.db") as journal:
+            records = [json.loads(row.payload) for row in journal.walk("decision")]
+        return [record["belief"]["marginals"] for record in records]
+
+
+@contextmanager
+def up(root: Path, folder: Path, cache_dir: Path, *options: str) -> Iterator[System]:
+    environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(folder / "running")}
+    (folder / "tiger.yaml").write_text(DEPLOY.format(root=root))
+    (folder / "robot.py").write_text(ROBOT)
+    command = [BIN / "aos-up", *(options or ("tiger.yaml", "--stay")), "--json"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": None}
+    with subprocess.Popen(command, cwd=folder, text=True, env=environment, **pipes) as process:
+        system = System(folder, process, environment)
+        try:
+            yield system
+        finally:
+            process.kill()
+
+
+@pytest.fixture
+def stays(root: Path, cache_dir: Path, tmp_path: Path) -> Iterator[System]:
+    with up(root, tmp_path, cache_dir) as system:
+        yield system
+
+
+async def test_missions_follow_one_another_and_are_told_apart(stays: System) -> None:
+    stays.be_slow(True)
+    first = stays.until("mission", phase="acting")["mission"]
+    name = stays.run.name
+    assert first == f"{name}-1"
+    code, _, error = stays.aos("mission", "start")
+    assert code == 3
+    assert f"AOS515: the mission {first} runs" in error
+
+    assert stays.aos("mission", "stop")[1] == f"{first}: cancelled after 1 steps\n"
+    assert stays.aos("mission", "stop")[1] == f"no mission runs: {first} has ended, cancelled\n"
+    stays.be_slow(False)
+    assert stays.aos("mission", "start", "--wait")[0] == 6
+    kept = stays.aos(
+        "mission", "start", "--belief", "keep", "--given", "state.tiger_behind == Left", "--wait"
+    )
+    assert kept[0] == 6, kept[2]
+    assert [marginal["values"] for marginal in stays.beliefs(3)[0]] == [{"Left": 1.0}]
+
+    code, _, error = stays.aos("mission", "start", "--given", "state.tiger_behind == Lefd")
+    assert code == 1
+    assert "--given:1:23: error[AOS110]: unknown name `Lefd`. Did you mean `Left`?" in error
+    given = "state.tiger_behind == Left && state.tiger_behind == Right"
+    code, _, error = stays.aos("mission", "start", "--belief", "keep", "--given", given)
+    assert code == 3
+    assert f"AOS516: `{given}` has probability 0 in the last belief" in error
+
+    async with AosClient.connect(stays.record["endpoint"], "tiger") as aos:
+        entry = await aos.until_ended((await aos.start_mission(idle=2)).mission)
+        assert (entry.number, entry.ending, entry.steps, entry.seed) == (4, "step_limit", 3, 4)
+        records = [record async for record in aos.history()]
+        assert {record.mission for record in records} == {f"{name}-4"}
+    assert stays.interrupt() == 0
+
+    assert [(each.mission, each.ending) for each in entries_of(stays.run)] == [
+        (f"{name}-1", "cancelled"),
+        (f"{name}-2", "step_limit"),
+        (f"{name}-3", "step_limit"),
+        (f"{name}-4", "step_limit"),
+    ]
+    assert violations_of_run(stays.run) == []
+    (listed,) = json.loads(stays.aos("runs", "--json")[1])
+    assert (listed["ending"], listed["steps"]) == ("stopped", 10)
+    assert [each["ending"] for each in listed["missions"]] == ["cancelled", *["step_limit"] * 3]
+    assert stays.aos("decisions", "--mission", "3")[1].count("step  1: ") == 2
+
+
+async def test_ctrl_c_in_a_mission_of_a_system_that_stays_ends_it_as_cancelled(stays: System) -> None:
+    stays.be_slow(True)
+    stays.until("mission", phase="acting")
+    assert stays.interrupt() == 130
+    (entry,) = entries_of(stays.run)
+    assert entry.ending == "cancelled"
+    assert violations_of_run(stays.run) == []
+
+
+async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_has_the_same_belief(
+    root: Path, cache_dir: Path, stays: System
+) -> None:
+    stays.until("mission", phase="ended")
+    kill(stays.record["pids"]["solver"])
+    stays.until("service", service="solver", state="ready")
+    stays.be_slow(True)
+    async with AosClient.connect(stays.record["endpoint"], "tiger") as aos:
+        mission = (await aos.start_mission(belief="keep")).mission
+        stays.until("mission", mission=mission, phase="acting")
+        kill(stays.record["pids"]["solver"])
+        stays.until("service", service="solver", state="ready")
+        with pytest.raises(SkillError, match=f"the mission {mission} runs") as refused:
+            await aos.start_mission()
+        assert refused.value.code == "AOS515"
+        kill(stays.process.pid)
+    stays.ended()
+    stays.be_slow(False)
+    run = stays.run
+    with up(root, stays.folder, cache_dir, "--resume") as again:
+        assert again.until("mission", mission=mission, phase="ended")["ending"] == "step_limit"
+        assert again.run == run
+        assert again.interrupt() == 0
+    assert again.beliefs(2)[0] == again.beliefs(1)[-1]
+    assert violations_of_run(run) == []
