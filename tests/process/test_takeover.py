@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
-from mappings import mapping_text
+from hall import HALL, changed, looked, marginal, past_of, with_bell
 from models import built_text, engine_of
 
 from aos_protocol.errors import ModelError
@@ -17,48 +17,6 @@ from aos_solver.child.engine import Engine
 from aos_solver.mission.past import Evidence, Past, updated
 from aos_solver.mission.takeover import REPLAY_S, RunningModel, Successor, Takeover, distances
 
-HALL = {
-    "hall.ef": """project: hall
-horizon: 3
-define_type: Room
-enum_members: Attic, Cellar, Yard
-state_variable: Room cat
-state_variable: bool is_wet
-initial_belief:
-state.cat = AOS.Bernoulli(0.25) ? Attic : Cellar;
-extrinsic_code:
-if (AOS.Bernoulli(0.1)) state_.is_wet = true;
-reward_code:
-if (state.cat == Yard) __reward = 1;
-""",
-    "look.sd": """project: hall
-dynamic_model:
-__moduleResponse = AOS.Bernoulli(state.cat == Attic ? 0.9 : 0.2) ? above : below;
-""",
-    "look.am": mapping_text(
-        "above: answer == 'above'", "below: answer == 'below'", project="hall", skill="look"
-    ),
-}
-BELL = "state_variable: bool has_bell\ninitial_belief:\n"
-"""Stands before the initial belief of documents with another variable."""
-
-
-def changed(**changes: tuple[str, str]) -> dict[str, str]:
-    """The documents with a text in place of another one, by the file's name without its ending."""
-    files = dict(HALL)
-    for stem, (old, new) in changes.items():
-        (name,) = (name for name in files if name.startswith(f"{stem}.") and old in files[name])
-        files[name] = files[name].replace(old, new)
-    return files
-
-
-def with_bell(code: str) -> dict[str, str]:
-    return changed(hall=("initial_belief:\n", f"{BELL}{code}\n"))
-
-
-def looked(response: str) -> Evidence:
-    return Evidence("look", "look", response)
-
 
 @asynccontextmanager
 async def hall(cache_dir: Path, past: Past) -> AsyncIterator[RunningModel]:
@@ -67,12 +25,6 @@ async def hall(cache_dir: Path, past: Past) -> AsyncIterator[RunningModel]:
         for evidence in past.steps:
             await updated(engine, evidence, past.refuted_below)
         yield RunningModel(1, engine)
-
-
-def past_of(*steps: Evidence) -> Past:
-    past = Past()
-    past.steps += steps
-    return past
 
 
 async def taken(
@@ -87,9 +39,15 @@ async def taken(
     return takeover, engine
 
 
-def marginal(marginals: Sequence[Marginal], variable: str) -> dict[str, float]:
-    (found,) = (each.values for each in marginals if each.variable == variable)
-    return found
+class SlowClock(SystemClock):
+    """A clock that goes on with each look at it."""
+
+    def __init__(self, step_s: float = 4.0) -> None:
+        self._now_s, self._step_s = 0.0, step_s
+
+    def monotonic_s(self) -> float:
+        self._now_s += self._step_s
+        return self._now_s
 
 
 async def test_the_same_state_is_imported(cache_dir: Path) -> None:
@@ -172,19 +130,9 @@ async def test_a_variable_of_another_type_is_new(cache_dir: Path) -> None:
 
 
 async def test_a_replay_that_would_take_too_long_is_a_projection(cache_dir: Path) -> None:
-    class SlowClock(SystemClock):
-        """A second passes with each look at it."""
-
-        def __init__(self) -> None:
-            self.now_s = 0.0
-
-        def monotonic_s(self) -> float:
-            self.now_s += 1.0
-            return self.now_s
-
     past = past_of(*[looked("below")] * 20)
     files = with_bell("state.has_bell = true;")
-    takeover, engine = await taken(files, cache_dir, past, SlowClock())
+    takeover, engine = await taken(files, cache_dir, past, SlowClock(1.0))
     await engine.close()
     assert takeover.row.by == "projection"
     assert takeover.row.why == "the replay of 20 steps would take about 20 s"
@@ -198,6 +146,70 @@ async def test_nothing_in_common_after_an_impossible_past_is_no_belief(cache_dir
     with pytest.raises(ModelError, match="no variable of the running model") as caught:
         await taken(files, cache_dir, past_of(looked("above")), SystemClock())
     assert caught.value.code == "AOS112"
+
+
+async def test_a_projection_keeps_what_nobody_observed_apart(cache_dir: Path) -> None:
+    # With its time the skill may have run three times, or never: 1 - 0.9 ** 3 of one half.
+    past = past_of(*[Evidence("look", "look", ran_probability=0.5)] * 3)
+    files = with_bell("state.has_bell = AOS.Bernoulli(0.5);")
+    engine = await Engine.start(await built_text(files, cache_dir), seed=1)
+    async with hall(cache_dir, past) as running:
+        takeover = await Successor(RunningModel(2, engine), SlowClock()).take_over(running, past)
+        assert takeover is not None
+        assert takeover.row.by == "projection"
+        before = await running.engine.update("look", "above")
+        after = await engine.update("look", "above")
+    await engine.close()
+    assert marginal(takeover.belief.marginals, "is_wet")["true"] == pytest.approx((1 - 0.9**3) / 2)
+    assert takeover.belief.cautious is not None
+    for variable in ("cat", "is_wet"):
+        told = marginal(after.summary.marginals, variable)
+        assert told == pytest.approx(marginal(before.summary.marginals, variable))
+
+
+async def test_a_projection_of_particles_keeps_their_weights(cache_dir: Path) -> None:
+    past = past_of(*[looked("below")] * 3)
+    files = with_bell("state.has_bell = AOS.Bernoulli(0.25);")
+    engine = await Engine.start(await built_text(files, cache_dir), seed=1)
+    async with engine_of(await built_text(HALL, cache_dir)) as old:
+        await old.draw_belief()
+        for evidence in past.steps:
+            await updated(old, evidence, past.refuted_below)
+        takeover = await Successor(RunningModel(2, engine), SlowClock()).take_over(RunningModel(1, old), past)
+        assert takeover is not None
+        common = old.layout.common_with(engine.layout)
+        (before,), (after,) = [(await each.export_joint(common)).beliefs for each in (old, engine)]
+    await engine.close()
+    kept = [{values: weight for weight, _, _, values in belief.rows} for belief in (before, after)]
+    assert kept[0] == pytest.approx(kept[1], abs=1e-12)
+    assert takeover.belief.error_bound == 1
+    assert marginal(takeover.belief.marginals, "has_bell")["true"] == pytest.approx(0.25, abs=0.02)
+
+
+async def test_a_projection_keeps_what_has_counted_once_where_both_have_the_same_code(
+    cache_dir: Path,
+) -> None:
+    once = "reward_code:\nif (state.cat == Attic) {{ __reward = {}; __stopEvaluatingState = true; }}\n"
+    files = with_bell("state.has_bell = false;")
+    files["hall.ef"] += once.format(5) + once.format(7)
+    old = dict(HALL)
+    old["hall.ef"] += once.format(7)
+    past = past_of(*[looked("above")] * 3)
+    engine = await Engine.start(await built_text(files, cache_dir), seed=1)
+    async with engine_of(await built_text(old, cache_dir)) as running:
+        for evidence in past.steps:
+            await updated(running, evidence, past.refuted_below)
+        common = running.layout.common_with(engine.layout)
+        assert common.bits == {1: 2}
+        await engine.project(await running.export_joint(common), common)
+        (before,), (after,) = [
+            (await each.export_joint(each.layout.common_with(each.layout))).beliefs
+            for each in (running, engine)
+        ]
+    await engine.close()
+    spent = {int(bits) & 2 for _, _, bits, values in after.rows if values.startswith("0 ")}
+    assert spent == {2 * int(bits) for _, _, bits, values in before.rows if values.startswith("0 ")} == {2}
+    assert {int(bits) & 2 for _, _, bits, values in after.rows if values.startswith("1 ")} == {0}
 
 
 def test_the_distance_of_marginals_is_half_of_what_their_values_differ_by() -> None:
