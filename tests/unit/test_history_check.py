@@ -182,6 +182,12 @@ def _other_belief(history: History) -> None:
     history.change("decision", 2, belief=belief(3))
 
 
+def _belief_of_no_replay(history: History) -> None:
+    """Particles without a digest may be replaced by a new solver; others may not."""
+    for number in (3, 4):
+        history.change("decision", number, belief=replace(belief(2), digest="0" if number == 3 else ""))
+
+
 def _epoch_that_falls(history: History) -> None:
     history.change("decision", 0, epoch=2)
 
@@ -263,6 +269,7 @@ def _summary_that_differs(history: History) -> None:
 
 
 BREAKS: dict[Callable[[History], None], str] = {
+    _belief_of_no_replay: "belief",
     _damaged_row: "rows",
     _sequence_with_a_gap: "sequence",
     _step_decided_twice: "steps",
@@ -299,7 +306,8 @@ def test_a_history_that_cannot_be_is_caught(spoil: Callable[[History], None], ru
 
 
 def test_each_rule_is_broken_by_some_history() -> None:
-    assert set(BREAKS.values()) == RULES.keys()
+    by_an_engine = {"replay"}  # test_replayed_history.py
+    assert set(BREAKS.values()) == RULES.keys() - by_an_engine
 
 
 def test_the_page_has_each_rule(root: Path) -> None:

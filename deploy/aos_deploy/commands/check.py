@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import Annotated
 
@@ -9,10 +10,12 @@ import typer
 
 from aos_deploy.exit_codes import ExitCode
 from aos_deploy.history_check.files import violations_of_run
+from aos_deploy.history_check.replayed import Replay, replayed
 from aos_deploy.history_check.rules import RULES
 from aos_deploy.living_runs import chosen_run
 from aos_deploy.options import AsJson, Runs
 from aos_deploy.printing import count, from_here, print_json
+from aos_deploy.terminal import waiting
 from aos_protocol.errors import DeployError
 
 __all__ = ["register"]
@@ -26,25 +29,48 @@ def register(app: typer.Typer) -> None:
 def check(
     run: Annotated[Path | None, typer.Argument(metavar="RUN", help="A run directory; else the last")] = None,
     runs: Runs = None,
+    replay: Annotated[
+        bool, typer.Option("--replay/--no-replay", help="Replay the outcomes through the run's model")
+    ] = True,
     as_json: AsJson = False,
 ) -> None:
     """Check that journal and ledgers of a run tell a history that can be.
 
     An id moved at most once, each decision follows its journalled belief, each outcome belongs to its
-    intention, and so on. The exit code is 1 where a row breaks a rule.
+    intention, and so on. A replay of the outcomes gives the journalled beliefs again; for that the run's
+    model is compiled where it is not in the cache. The exit code is 1 where a row breaks a rule.
     """
     directory = chosen_run(run, runs)
     if directory.is_running:
         raise DeployError(f"{from_here(directory.path)} goes on", hint="Check it when it has ended")
     found = violations_of_run(directory.path)
+    again = _replayed(directory.path) if replay else Replay(remark="not asked for")
+    found += again.violations
     if as_json:
-        print_json({"run": str(from_here(directory.path)), "rules": RULES, "violations": found})
+        print_json(
+            {
+                "run": str(from_here(directory.path)),
+                "rules": RULES,
+                "violations": found,
+                "replayed": {"beliefs": again.compared, "remark": again.remark},
+            }
+        )
     else:
         for violation in found:
             where = f"{violation.file}:{violation.row}" if violation.row else violation.file
             typer.echo(f"{where}: {violation.rule}: {violation.text}")
         broken = ", ".join(sorted({violation.rule for violation in found}))
         verdict = f"{count(len(found), 'violation')} of {broken}" if found else f"all {len(RULES)} rules hold"
-        typer.echo(f"{from_here(directory.path)}: {verdict}")
+        typer.echo(f"{from_here(directory.path)}: {verdict}; {_text(again)}")
     if found:
         raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+
+
+def _replayed(run: Path) -> Replay:
+    with waiting("replaying the outcomes") as told:
+        return asyncio.run(replayed(run, told))
+
+
+def _text(replay: Replay) -> str:
+    why = f" ({replay.remark})" if replay.remark else ""
+    return f"{count(replay.compared, 'belief')} replayed{why}"

@@ -105,9 +105,11 @@ class JournalRules:
             found("steps", f"step {decision.step} is decided before step {self._pending.step} is observed")
         elif decision.step != self._step + 1:
             found("steps", f"step {decision.step} follows step {self._step}")
-        # Another model has another belief: its hand-over is no matter of the history.
+        # Another model has another belief: its hand-over is no matter of the history. A new solver replaces
+        # particles that no replay gives.
         digest, belief = self._belief or ("", None)
-        if digest == decision.model_digest and decision.belief != belief:
+        is_repeated = belief is not None and not belief.digest and bool(decision.belief.digest)
+        if digest == decision.model_digest and decision.belief != belief and not is_repeated:
             found("belief", f"step {decision.step} is decided with another belief than was observed")
         self._step, self._pending, self._open, self._outcome = decision.step, decision, None, None
 

@@ -174,7 +174,9 @@ class BeliefSummary(Message, frozen=True):
     much. No event's probability is further than `error_bound` from what Bayes' rule gives; it is 1 where
     steps had to be sampled and nothing is certain. `is_exact`: it is a millionth at most. `cautious` has the
     chances of the endings if nothing ran that was not observed; None where nothing sets that belief apart
-    from this one.
+    from this one. `digest` is of all states with their weights, to 24 bits, of each hypothesis and of the
+    cautious belief; a replay of the outcomes gives the same one. It is
+    empty for particles that no replay gives.
     """
 
     marginals: tuple[Marginal, ...]
@@ -187,6 +189,7 @@ class BeliefSummary(Message, frozen=True):
     error_bound: float = 0.0
     over_probability: float = 0.0
     cautious: EndingOdds | None = None
+    digest: str = ""
 
 
 class MissionQuery(Message, frozen=True):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Self, TypeVar
 
@@ -16,9 +17,11 @@ import msgspec
 
 from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
+from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import EngineDescription, EngineFault, Progress
-from aos_solver.child.command_line import command_line
+from aos_solver.child.answers import BeliefUpdate, Conditioned, EngineDescription, EngineFault, Progress
+from aos_solver.child.belief_draws import BeliefDraws, BeliefLog
+from aos_solver.child.command_line import command_line, with_field
 from aos_solver.child.engine_child import (
     EngineChild,
     EngineStart,
@@ -37,6 +40,7 @@ __all__ = ["ANSWER_DEADLINE_S", "Asking", "Done"]
 log = logging.getLogger(__name__)
 
 A = TypeVar("A")
+B = TypeVar("B", BeliefSummary, BeliefUpdate, Conditioned)
 
 ANSWER_DEADLINE_S = 30.0
 
@@ -56,6 +60,8 @@ class Asking:
         self._beliefs: SharedMemory | None = None
         self._listing: SharedMemory | None = None
         self._changes = 0
+        self._draws = BeliefDraws(seed)
+        self._log = BeliefLog()
         self._correction_faults: dict[EngineFault, AosError] = {}
         self._world: list[str] = []
         self._asking = asyncio.Lock()
@@ -100,6 +106,8 @@ class Asking:
         async with self._asking:
             self._built = msgspec.structs.replace(self._built, mission_values=dict(mission_values))
             self._changes = 0
+            self._draws = BeliefDraws(self._seed)
+            self._log = BeliefLog()
             self._world = []
             await self._drop_child()
             await self._start_child()
@@ -167,10 +175,18 @@ class Asking:
                 return index
         raise ModelError(f"there is no action {action}", code="AOS501")
 
-    async def _change_belief(self, command: str, kind: type[A]) -> A:
+    async def _change_belief(self, command: str, kind: type[B], *, before: Sequence[str] = ()) -> B:
+        """The answer to a command that changes the belief; the commands `before` it prepare that."""
+        command = with_field(command, "change", self._changes + 1)
+        begun_s = time.monotonic()
         answer = await self._ask(command, kind)
+        summary = answer if isinstance(answer, BeliefSummary) else answer.summary
+        self._log.add([*before, command], summary, time.monotonic() - begun_s)
         self._changes += 1
-        return answer
+        told = self._log.told(summary)
+        if isinstance(answer, BeliefUpdate | Conditioned):
+            return msgspec.structs.replace(answer, summary=told)
+        return told
 
     async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
         async with self._asking:
@@ -214,7 +230,10 @@ class Asking:
         await self._start_child()
         assert self._child is not None
         try:
-            for command in [*self._restoration(self._changes), *self._world]:
+            is_kept = self._beliefs is not None
+            replays = is_kept and self._log.begin_child()
+            belief = self._log.commands if replays else self._restoration(self._changes)
+            for command in [*belief, *self._world]:
                 await self._child.ask(command, Done, ANSWER_DEADLINE_S)
         except AosError:
             await self._drop_child()

@@ -20,7 +20,7 @@ from aos_solver.child.answers import (
     Prediction,
 )
 from aos_solver.child.asking import Asking, Done
-from aos_solver.child.command_line import command_line
+from aos_solver.child.command_line import command_line, with_field
 from aos_solver.child.local_values import UnusableLocals, local_values_line
 from aos_solver.child.observed_numbers import numbers_field
 
@@ -33,18 +33,24 @@ class BeliefQuestions(Asking):
     """Beliefs that are told, changed, taken along and taken over."""
 
     async def summary(self) -> BeliefSummary:
-        return await self._ask("summary", BeliefSummary)
+        """The belief for people."""
+        return self._log.told(await self._ask("summary", BeliefSummary))
 
-    async def reset_belief(self) -> BeliefSummary:
-        """Goes back to the initial belief."""
-        return await self._change_belief("reset_belief", BeliefSummary)
+    async def reset_belief(self, seed: int | None = None) -> BeliefSummary:
+        """Goes back to the initial belief, for the mission of this seed or, without one, for another one.
 
-    async def begin_mission(self, idle: int) -> BeliefSummary:
+        With the seed of the start a drawn belief has the same particles as at the start.
+        """
+        draws = self._draws.begin(seed)
+        return await self._change_belief(command_line("reset_belief", draws=draws), BeliefSummary)
+
+    async def begin_mission(self, idle: int, *, step: int | None = None) -> BeliefSummary:
         """Begins another mission from what is believed, after so many steps of extrinsic changes alone.
 
-        Nothing has ended or counted before it.
+        Nothing has ended or counted before it. `step` is that of a past in which the mission begins.
         """
-        return await self._change_belief(command_line("begin_mission", idle=idle), BeliefSummary)
+        draws = self._draws.of_takeover() if step is None else self._draws.of(step)
+        return await self._change_belief(command_line("begin_mission", idle=idle, draws=draws), BeliefSummary)
 
     async def condition(self, refuted_below: float) -> Conditioned:
         """Conditions on what the constraints of this model say of a state: see `conditions.py`.
@@ -56,11 +62,13 @@ class BeliefQuestions(Asking):
 
     async def draw_belief(self) -> BeliefSummary:
         """Goes back to the initial belief, as particles even where it could be enumerated."""
-        return await self._change_belief("draw_belief", BeliefSummary)
+        draws = self._draws.begin(None)
+        return await self._change_belief(command_line("draw_belief", draws=draws), BeliefSummary)
 
     async def predict(self, index: int, *, cautious: bool = False) -> Prediction:
-        """Returns the responses that may be observed after an action."""
-        return await self._ask(command_line("predict", action=index, cautious=cautious or None), Prediction)
+        """Returns the responses that may be observed after an action; the belief stays as it is."""
+        command = command_line("predict", action=index, seed=self._draws.newest, cautious=cautious or None)
+        return await self._ask(command, Prediction)
 
     async def update(
         self,
@@ -69,12 +77,15 @@ class BeliefQuestions(Asking):
         local_variables: Mapping[str, str] | None = None,
         numbers: Mapping[str, Any] | None = None,
         refuted_below: float = 0.01,
+        step: int | None = None,
     ) -> BeliefUpdate:
         """Bayes' rule after an action and its observation: a response, and the numbers reported beside it.
 
         The local variables of a real outcome, as text, correct the belief where the skill's documents say so.
         The update's remark says why numbers or local variables could not be used. The cautious belief is
-        given up once all that was observed since it began is less probable in it by this factor.
+        given up once all that was observed since it began is less probable in it by this factor. `step` is
+        the mission's, without one the updates are counted: what an update draws depends on seed and step
+        alone.
         """
         index = self._index(action)
         skill = self.description.actions[index].skill
@@ -84,6 +95,7 @@ class BeliefQuestions(Asking):
             "response": response,
             "numbers": numbers_field(observed, numbers or {}),
             "refuted_below": refuted_below,
+            "draws": self._draws.of(step),
         }
         update = await self._corrected(action, question, local_variables)
         if not update.has_other_numbers:
@@ -128,13 +140,23 @@ class BeliefQuestions(Asking):
         if fault not in self._correction_faults:
             assert self._child is not None
             error = self._child.fault(fault.code, fault.text, fault.piece)
-            self._correction_faults[fault] = await self._at_its_statement(error, before, [command])
+            again = with_field(command, "change", before + 1)
+            self._correction_faults[fault] = await self._at_its_statement(error, before, [again])
         return self._correction_faults[fault]
 
-    async def update_without_observation(self, action: str, *, ran_probability: float) -> BeliefUpdate:
-        """The mixture of "it ran" and "it did not", with one cause for all such ends in a row of a skill."""
-        index = self._index(action)
-        command = command_line("update_without_observation", action=index, ran_probability=ran_probability)
+    async def update_without_observation(
+        self, action: str, *, ran_probability: float, step: int | None = None
+    ) -> BeliefUpdate:
+        """The mixture of "it ran" and "it did not", with one cause for all such ends in a row of a skill.
+
+        `step` is as in `update`.
+        """
+        command = command_line(
+            "update_without_observation",
+            action=self._index(action),
+            ran_probability=ran_probability,
+            draws=self._draws.of(step),
+        )
         return await self._change_belief(command, BeliefUpdate)
 
     async def export_belief(
@@ -168,4 +190,4 @@ class BeliefQuestions(Asking):
         *first, last = beliefs.commands
         for command in first:
             await self._ask(command, Done)
-        return await self._change_belief(last, BeliefSummary)
+        return await self._change_belief(last, BeliefSummary, before=first)

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 from aos_protocol.errors import ModelError
 
-__all__ = ["command_line"]
+__all__ = ["command_line", "with_field"]
 
 
 def command_line(command: str, items: Iterable[object] | None = None, /, **fields: object) -> str:
@@ -25,6 +25,12 @@ def command_line(command: str, items: Iterable[object] | None = None, /, **field
         if "\t" in part or "\n" in part:
             raise ModelError(f"{part!r} has a tab or a line end in it", code="AOS310")
     return "\t".join(parts)
+
+
+def with_field(command: str, name: str, value: object) -> str:
+    """The line of a command with one field more."""
+    before, tab, rest = command.partition("\t")
+    return f"{before}\t{name}={_text(value)}{tab}{rest}"
 
 
 def _text(value: object) -> str:

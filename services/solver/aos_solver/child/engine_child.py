@@ -26,6 +26,7 @@ from aos_protocol.errors import (
 from aos_runtime.children import PIPE, Child, Limits, guarded
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import EngineDescription, EngineFault, Progress
+from aos_solver.child.belief_draws import draws_of
 from aos_solver.child.blame_page import new_blame_page, running_piece
 from aos_solver.child.confinement import confinement_of
 from aos_solver.child.printed import pass_on
@@ -124,7 +125,7 @@ class EngineChild:
         blame = new_blame_page()
         shared = [memory.descriptor for memory in (blame, start.beliefs, start.listing) if memory is not None]
         kept = -1 if start.beliefs is None else start.beliefs.descriptor
-        arguments = [str(blame.descriptor), str(kept), str(start.seed), start.policy, str(periods)]
+        arguments = [str(blame.descriptor), str(kept), str(draws_of(start.seed)), start.policy, str(periods)]
         arguments += start.mission_values
         try:
             child = await Child.start(

@@ -54,9 +54,13 @@ class TakeoverQuestions(Asking):
         """The skills whose responses may be any text."""
         return self._built.emitted.texting_skills
 
-    async def pass_time(self, steps: int = 1) -> BeliefUpdate:
-        """Lets extrinsic changes alone act for so many steps; nothing is done and nothing observed."""
-        return await self._change_belief(command_line("pass_time", steps=steps), BeliefUpdate)
+    async def pass_time(self, steps: int = 1, *, step: int | None = None) -> BeliefUpdate:
+        """Lets extrinsic changes alone act for so many steps; nothing is done and nothing observed.
+
+        `step` is the mission's, as in `update`.
+        """
+        command = command_line("pass_time", steps=steps, draws=self._draws.of(step))
+        return await self._change_belief(command, BeliefUpdate)
 
     async def marginals(self) -> tuple[Marginal, ...]:
         """Returns the marginals of all variables with all of their values, up to 100,000 in all."""
@@ -87,13 +91,13 @@ class TakeoverQuestions(Asking):
 
         They keep their joint distribution; the others are as the initial belief has them (projection.hpp).
         """
-        *first, last = _projections(joint, common)
+        *first, last = _projections(joint, common, self._draws.of_takeover())
         for command in first:
             await self._ask(command, Done)
-        return await self._change_belief(last, BeliefSummary)
+        return await self._change_belief(last, BeliefSummary, before=first)
 
 
-def _projections(joint: JointBeliefs, common: Common) -> Iterator[str]:
+def _projections(joint: JointBeliefs, common: Common, draws: int) -> Iterator[str]:
     count = len(joint.beliefs)
     for number, belief in enumerate(joint.beliefs):
         items: list[object] = []
@@ -111,4 +115,5 @@ def _projections(joint: JointBeliefs, common: Common) -> Iterator[str]:
             left=count - number - 1,
             beliefs=count,
             words=joint.words,
+            draws=draws,
         )

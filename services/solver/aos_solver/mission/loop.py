@@ -27,7 +27,7 @@ from aos_solver.mission.choosing import Choice, Chooser, Ended, Held
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
 from aos_solver.mission.memory import MissionMemory, Pending
-from aos_solver.mission.past import Evidence, Past, replayed, updated
+from aos_solver.mission.past import Past, evidence_of, replayed, updated
 from aos_solver.mission.ports import Ports
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.takeover import RunningModel
@@ -129,7 +129,7 @@ class Mission:
         """
         memory, self._memory = self._memory, _NOTHING
         known = len(self.past)
-        self.past.steps += [self._evidence(step.decision, step.outcome) for step in memory.steps]
+        self.past.steps += [evidence_of(step.decision, step.outcome, self._failures) for step in memory.steps]
         steps = iter(memory.steps)
         async for update in replayed(self._model.engine, self.past, known):
             decision, observed, observed_ns = next(steps)
@@ -282,8 +282,10 @@ class Mission:
 
     async def _observe(self, decision: DecisionRecord, outcome: Outcome) -> None:
         before_s = self._ports.clock.monotonic_s()
-        evidence = self._evidence(decision, outcome)
-        update = await updated(self._model.engine, evidence, self.past.refuted_below)
+        evidence = evidence_of(decision, outcome, self._failures)
+        update = await updated(
+            self._model.engine, evidence, self.past.refuted_below, number=len(self.past) + 1
+        )
         self.past.steps.append(evidence)
         update_s = self._ports.clock.monotonic_s() - before_s
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
@@ -313,20 +315,6 @@ class Mission:
             surprise=update.surprise,
             now_s=now_s,
             announced=self._ports.announced,
-        )
-
-    def _evidence(self, decision: DecisionRecord, outcome: Outcome) -> Evidence:
-        """The step as a belief sees it."""
-        if outcome.status == "observed":
-            return Evidence(
-                decision.action,
-                decision.skill,
-                outcome.response,
-                outcome.local_variables,
-                outcome.numbers,
-            )
-        return Evidence(
-            decision.action, decision.skill, ran_probability=self._failures.ran_probability(outcome)
         )
 
     def _publish(self, record: DecisionRecord) -> None:

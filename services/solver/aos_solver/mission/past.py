@@ -12,16 +12,18 @@ from typing import Any
 import msgspec
 
 from aos_protocol.errors import ModelError
+from aos_protocol.messages import DecisionRecord, Outcome
 from aos_solver.child.answers import BeliefUpdate
 from aos_solver.child.engine import Engine
+from aos_solver.mission.failures import Failures
 
-__all__ = ["Beginning", "Evidence", "Past", "replayed", "updated"]
+__all__ = ["Beginning", "Evidence", "Past", "evidence_of", "replayed", "updated"]
 
 _DEFAULT_RESPONSE = "DefaultObservation"
 
 
 class Evidence(msgspec.Struct, frozen=True):
-    """A step as a belief sees it: the grounded action, and what was observed after it.
+    """A step of a mission as a belief sees it: the grounded action, and what was observed after it.
 
     Where nobody observed anything `response` is None, and the skill ran with `ran_probability`.
     """
@@ -32,6 +34,19 @@ class Evidence(msgspec.Struct, frozen=True):
     local_variables: Mapping[str, str] = {}
     numbers: Mapping[str, Any] = {}
     ran_probability: float = 1.0
+
+
+def evidence_of(decision: DecisionRecord, outcome: Outcome, failures: Failures) -> Evidence:
+    """The step as a belief sees it."""
+    evidence = Evidence(decision.action, decision.skill)
+    if outcome.status == "observed":
+        return msgspec.structs.replace(
+            evidence,
+            response=outcome.response,
+            local_variables=outcome.local_variables,
+            numbers=outcome.numbers,
+        )
+    return msgspec.structs.replace(evidence, ran_probability=failures.ran_probability(outcome))
 
 
 class Beginning(msgspec.Struct, frozen=True):
@@ -71,27 +86,30 @@ async def replayed(engine: Engine, past: Past, first: int = 0) -> AsyncIterator[
     """Updates the engine's belief by each step from `first` on, also by those that come meanwhile."""
     number = first
     while number < len(past):
-        yield await updated(engine, past.steps[number], past.refuted_below)
         number += 1
+        yield await updated(engine, past.steps[number - 1], past.refuted_below, number=number)
 
 
-async def updated(engine: Engine, evidence: Evidence | Beginning, refuted_below: float) -> BeliefUpdate:
+async def updated(
+    engine: Engine, evidence: Evidence | Beginning, refuted_below: float, *, number: int | None = None
+) -> BeliefUpdate:
     """The belief after a step; without an observation by how probable it is that the skill ran.
 
-    A model that lacks the action or the response lets extrinsic changes alone act (`is_foreign`).
+    A model that lacks the action or the response lets extrinsic changes alone act (`is_foreign`). `number` is
+    the step's in the past, from 1; it decides what is drawn. Without it the engine counts.
     ModelError AOS112 for what somebody knew at the start of a mission.
     """
     if isinstance(evidence, Beginning):
         if evidence.given:
             raise ModelError(f"nobody has asked it whether {evidence.response} held", code="AOS112")
-        return BeliefUpdate(0.0, False, await engine.begin_mission(evidence.idle))
+        return BeliefUpdate(0.0, False, await engine.begin_mission(evidence.idle, step=number))
     if evidence.response is None and evidence.ran_probability == 0:
         return BeliefUpdate(0.0, False, await engine.summary())
     if _is_foreign(engine, evidence):
-        return msgspec.structs.replace(await engine.pass_time(), is_foreign=True)
+        return msgspec.structs.replace(await engine.pass_time(step=number), is_foreign=True)
     if evidence.response is None:
         return await engine.update_without_observation(
-            evidence.action, ran_probability=evidence.ran_probability
+            evidence.action, ran_probability=evidence.ran_probability, step=number
         )
     # An observation that does not come from a mapping has no local variables.
     return await engine.update(
@@ -100,6 +118,7 @@ async def updated(engine: Engine, evidence: Evidence | Beginning, refuted_below:
         evidence.local_variables or None,
         evidence.numbers,
         refuted_below=refuted_below,
+        step=number,
     )
 
 

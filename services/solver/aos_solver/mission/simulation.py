@@ -67,7 +67,7 @@ async def simulate_mission(
     `world` plays the world where the robot's model may be wrong about it: the engine of other documents with
     the same actions. Rewards and endings are then theirs. An AosError ends it.
     """
-    await engine.reset_belief()
+    await engine.reset_belief(search.seed)
     played = _World(world or engine, engine.description.discount, with_states)
     await played.begin(search.seed)
     terms = Terms(

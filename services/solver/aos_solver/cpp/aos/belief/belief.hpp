@@ -36,6 +36,7 @@ inline constexpr std::size_t max_enumerated_paths = 4'000'000;  // of one update
 inline constexpr std::size_t max_predicted_paths = 200'000;  // beyond these a prediction is drawn
 inline constexpr double negligible_weight = 1e-12;
 inline constexpr double negligible_error = 1e-6;  // of a belief that counts as exact
+inline constexpr double negligible_rounding = 1e-9;  // of a sum of weights
 
 // What a belief becomes after an observation that it held impossible.
 enum class ImpossiblePolicy { hold, widen, reset };
@@ -231,12 +232,15 @@ class Belief {
     json.member("over_probability", probability_of(Ending::over));
   }
 
-  // A belief that was saved. If a drawn one was saved with lineages and a history, it has these again.
+  // A belief that was saved, with the same weights. If a drawn one was saved with lineages and a history, it has these again.
   static Belief of(Cloud<Model> cloud, double error_bound, bool is_drawn) {
-    if (is_drawn && !cloud.lineages.empty()) return Belief{std::move(cloud)};
+    // Dividing the weights of a whole belief again would change their last bits.
+    const double total = cloud.total();
+    const double sum = std::abs(total - 1) < negligible_rounding ? 1 : total;
+    if (is_drawn && !cloud.lineages.empty()) return Belief{cloud, sum};
     Gathering<Model> gathering;
     for (const auto& [state, weight] : cloud.particles) gathering.add(state, weight);
-    return Belief{gathering, error_bound, is_drawn ? Source::drawing : Source::enumeration};
+    return Belief{gathering, sum, error_bound, is_drawn ? Source::drawing : Source::enumeration};
   }
 
   // The same belief without its lineages and its history.
@@ -252,14 +256,15 @@ class Belief {
 
   Belief() = default;
   Belief(const Gathering<Model>& gathering, double error_bound, Source source)
+      : Belief(gathering, gathering.total(), error_bound, source) {}
+  Belief(const Gathering<Model>& gathering, double sum, double error_bound, Source source)
       : error_bound_(std::min(error_bound, 1.0)), source_(source) {
-    const double sum = gathering.total();
     for (const auto& [state, weight] : gathering.particles()) {
       if (weight > negligible_weight * sum) add(state, weight / sum);
     }
   }
-  explicit Belief(Cloud<Model> cloud) : history_(std::move(cloud.history)), error_bound_(1), source_(Source::drawing) {
-    const double sum = cloud.total();
+  explicit Belief(Cloud<Model> cloud) : Belief(cloud, cloud.total()) {}
+  Belief(Cloud<Model>& cloud, double sum) : history_(std::move(cloud.history)), error_bound_(1), source_(Source::drawing) {
     for (std::size_t i = 0; i < cloud.particles.size(); ++i) {
       add(cloud.particles[i].state, cloud.particles[i].weight / sum);
       lineages_.push_back({cloud.lineages[i].squares / sum / sum, std::move(cloud.lineages[i].trace)});

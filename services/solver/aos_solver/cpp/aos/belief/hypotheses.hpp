@@ -22,8 +22,10 @@
 #include <vector>
 
 #include "aos/base/json.hpp"
+#include "aos/base/mixed.hpp"
 #include "aos/base/random.hpp"
 #include "aos/belief/belief.hpp"
+#include "aos/belief/belief_digest.hpp"
 #include "aos/belief/posteriors.hpp"
 #include "aos/belief/saved_history.hpp"
 #include "aos/model/step.hpp"
@@ -195,11 +197,26 @@ class Hypotheses {
   void write_summary(JsonWriter& json) const {
     json.begin_object();
     belief().write_members(json);
+    json.member("digest", digest_text(digest()));
     if (cautious_) {
       cautious_->write_endings(json.key("cautious").begin_object());
       json.end_object();
     }
     json.end_object();
+  }
+
+  // How many of the newest observations in a row were impossible.
+  int impossible_in_a_row() const { return impossible_in_a_row_; }
+  void note_impossible(int in_a_row) { impossible_in_a_row_ = in_a_row; }
+
+  // The digest of all that is believed: of each hypothesis with its weight, and of the cautious belief (belief_digest.hpp).
+  std::uint64_t digest() const {
+    std::uint64_t digest = all_.size();
+    for (const Hypothesis& each : all_) {
+      digest = mixed(mixed(digest, canonical_weight(each.weight)), belief_digest(each.belief));
+      for (const bool ran : each.ran) digest = mixed(digest, ran ? 1 : 0);
+    }
+    return cautious_ ? mixed(digest, belief_digest(*cautious_)) : digest;
   }
 
   // The beliefs, the cautious one last, and all the rest as words, for `of`.
@@ -221,6 +238,7 @@ class Hypotheses {
       detail::add_text(words, skill);
       detail::add_text(words, response);
     }
+    words.push_back(static_cast<std::uint64_t>(impossible_in_a_row_));
     return words;
   }
   // Takes over what `beliefs` and `words` gave, in a model that may have other skills. There is at least one belief.
@@ -244,6 +262,7 @@ class Hypotheses {
       std::string skill = reader.text();
       taken.discredited_.emplace(std::move(skill), reader.text());
     }
+    taken.impossible_in_a_row_ = static_cast<int>(reader.next());
     for (std::size_t row = taken.open_.size(); row-- > 0;) {
       if (taken.open_[row] < 0) taken.close(static_cast<std::ptrdiff_t>(row));
     }
@@ -338,6 +357,7 @@ class Hypotheses {
   // two are the same, so that the inequality holds for the mission and not for each time.
   double log_ratio_ = 0;
   std::set<Report> discredited_;
+  int impossible_in_a_row_ = 0;
 };
 
 }  // namespace aos

@@ -1,5 +1,5 @@
 // Beliefs that outlive a process, in a file that its parent holds open. Each change of what is believed has a
-// number, and the parent counts the changes that it was told of. The file has room for the state after two changes: if
+// number, which the parent gives: it counts the changes that it was told of. The file has room for the state after two changes: if
 // a process ends during a change, the state before the change is whole.
 #pragma once
 
@@ -22,22 +22,24 @@ class KeptBeliefs {
   // A negative descriptor keeps nothing.
   explicit KeptBeliefs(int descriptor) : file_(descriptor) {}
 
-  // Keeps what is believed after one more change. A file without room for it keeps nothing.
+  // Gives the next change its number, which is one more than that of the change before.
+  void number_next(std::uint64_t change) { change_ = change; }
+
+  // Keeps what is believed after that change. A file without room for it keeps nothing.
   void keep(const Hypotheses<Model>& hypotheses) {
-    ++changes_;
     if (!file_.is_open()) return;
     const auto beliefs = hypotheses.beliefs();
     const Words words = hypotheses.words();
     put_head({});
     put(words.data(), words.size() * sizeof(Words::value_type));
     for (const Belief<Model>* belief : beliefs) put_belief(*belief);
-    if (file_.flush()) put_head({changes_, beliefs.size(), words.size()});
+    if (file_.flush()) put_head({change_, beliefs.size(), words.size()});
     file_.flush();
   }
 
-  // What was believed after this change, from which counting goes on; nothing if that was not kept.
+  // What was believed after this change; nothing if that was not kept.
   std::optional<Hypotheses<Model>> restore(std::uint64_t change) {
-    changes_ = change;
+    change_ = change;
     Head head{};
     file_.seek(begin());
     get(&head, sizeof head);
@@ -67,7 +69,7 @@ class KeptBeliefs {
 
   // The two places are far apart; the file takes memory only for what is written. It is limited to twice this, as
   // engine_child.py knows.
-  off_t begin() const { return static_cast<off_t>(changes_ % 2) << 32; }
+  off_t begin() const { return static_cast<off_t>(change_ % 2) << 32; }
 
   // The seek writes what was put before, so that the file has the same order.
   void put_head(const Head& head) {
@@ -101,7 +103,7 @@ class KeptBeliefs {
   void get(void* to, std::size_t count) { file_.read(to, count); }
 
   DescriptorFile file_;
-  std::uint64_t changes_ = 0;
+  std::uint64_t change_ = 0;
 };
 
 }  // namespace aos

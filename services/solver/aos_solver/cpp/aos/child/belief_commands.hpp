@@ -34,9 +34,10 @@ class BeliefCommands {
  public:
   using State = typename Model::State;
 
-  // `kept_beliefs` is the descriptor of KeptBeliefs. `search` follows the changes of the belief.
-  BeliefCommands(std::uint64_t seed, ImpossiblePolicy policy, int kept_beliefs, Planner<Model>& search)
-      : random_(seed), policy_(policy), believed_(Belief<Model>::initial(random_)), kept_(kept_beliefs), search_(search) {}
+  // `draws` is the seed of what the initial belief draws. `kept_beliefs` is the descriptor of KeptBeliefs. `search` follows
+  // the changes of the belief.
+  BeliefCommands(std::uint64_t draws, ImpossiblePolicy policy, int kept_beliefs, Planner<Model>& search)
+      : random_(draws), policy_(policy), believed_(Belief<Model>::initial(random_)), kept_(kept_beliefs), search_(search) {}
 
   const Belief<Model>& belief() const { return believed_.belief(); }
   // Null where nothing sets it apart from the belief.
@@ -49,13 +50,15 @@ class BeliefCommands {
 
   void summary(JsonWriter& json) const { believed_.write_summary(json); }
 
-  void reset(JsonWriter& json) {
+  void reset(JsonWriter& json, const Command& command) {
+    begin_change(command);
     impossible_in_a_row_ = 0;
     become(json, Hypotheses{Belief<Model>::initial(random_)}, [&] { search_.start_over(); });
   }
 
   // Begins another mission from what is believed, after `idle` steps of extrinsic changes alone.
   void begin_mission(JsonWriter& json, const Command& command) {
+    begin_change(command);
     impossible_in_a_row_ = 0;
     become(json, believed_.begun(command.number<int>("idle"), random_), [&] { search_.start_over(); });
   }
@@ -63,6 +66,7 @@ class BeliefCommands {
   // Conditions on all that this model's constraints say of a state; they are conditions here (conditions.py). Writes their
   // joint probability. If it is 0, nothing changes.
   void condition(JsonWriter& json, const Command& command) {
+    kept_.number_next(command.number<std::uint64_t>("change"));
     const auto all = static_cast<Violations>((std::uint64_t{1} << Model::constraint_count()) - 1);
     auto found = believed_.posteriors([&](const Belief<Model>& belief) {
       return belief.conditioned([&](const State& state) { return Model::violations(state, state, 0) == all; });
@@ -73,26 +77,30 @@ class BeliefCommands {
     if (is_possible) {
       become(json, believed_.known(std::move(found), command.number<double>("refuted_below")));
     } else {
-      summary(json);
+      become(json, believed_, [] {});
     }
     json.end_object();
   }
 
   // Makes the belief the initial belief in particles, even where enumeration gives it exactly: tests compare the two.
-  void draw(JsonWriter& json) { become(json, Hypotheses{Belief<Model>::drawn(random_)}); }
+  void draw(JsonWriter& json, const Command& command) {
+    begin_change(command);
+    become(json, Hypotheses{Belief<Model>::drawn(random_)});
+  }
 
-  // Writes the probability of each observation after an action.
-  void write_predicted(JsonWriter& json, int action, const Belief<Model>& belief) {
+  // Writes the probability of each observation after an action. The draws of a prediction are not those of the beliefs.
+  static void write_predicted(JsonWriter& json, int action, const Belief<Model>& belief, std::uint64_t seed) {
+    Sampler random{mixed(seed, prediction)};
     json.begin_array();
-    for (const auto& [observation, probability] : belief.observations(action, random_)) {
+    for (const auto& [observation, probability] : belief.observations(action, random)) {
       json.begin_object().member("response", text_of_response<Model>(action, observation));
       json.member("probability", probability).end_object();
     }
     json.end_array();
   }
-  void predict(JsonWriter& json, const Command& command) {
+  void predict(JsonWriter& json, const Command& command) const {
     json.begin_object().key("predicted");
-    write_predicted(json, action_of<Model>(command), belief_for(command));
+    write_predicted(json, action_of<Model>(command), belief_for(command), command.number<std::uint64_t>("seed"));
     json.end_object();
   }
 
@@ -101,6 +109,7 @@ class BeliefCommands {
   // the belief. A fault of this correction is told in the answer, and the belief stays uncorrected. `refuted_below` is
   // explained in hypotheses.hpp.
   void update(JsonWriter& json, const Command& command) {
+    begin_change(command);
     const int action = action_of<Model>(command);
     const Observation observation = observation_of<Model>(action, command.text("response"));
     const ObservedNumbers numbers = numbers_from(command.text("numbers"));
@@ -153,6 +162,7 @@ class BeliefCommands {
 
   // Updates the belief after an action that ran only with probability `ran_probability`.
   void update_without_observation(JsonWriter& json, const Command& command) {
+    begin_change(command);
     const int action = action_of<Model>(command);
     json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
     become(json.key("summary"), believed_.unobserved(action, command.number<double>("ran_probability"), random_));
@@ -179,6 +189,7 @@ class BeliefCommands {
 
   // Lets the time of so many steps pass in which nothing is done and nothing is observed.
   void pass_time(JsonWriter& json, const Command& command) {
+    begin_change(command);
     Hypotheses after = believed_;
     for (int step = command.number<int>("steps"); step > 0; --step) after = after.passed(random_);
     json.begin_object().member("log_probability", 0.0).member("is_impossible", false);
@@ -209,6 +220,7 @@ class BeliefCommands {
                                  command.number<std::size_t>("constants"), command.items()));
   }
   void project_belief(JsonWriter& json, const Command& command) {
+    random_ = Sampler{command.number<std::uint64_t>("draws")};
     take_over(json, command, load_joint<Model>(command, random_));
   }
 
@@ -217,12 +229,19 @@ class BeliefCommands {
     auto kept = kept_.restore(command.number<std::uint64_t>("change"));
     if (!kept) throw BadCommand{"that belief was not kept"};
     believed_ = *std::move(kept);
+    impossible_in_a_row_ = believed_.impossible_in_a_row();
     search_.forget();
     json.begin_object().end_object();
   }
 
  private:
   using Hypotheses = aos::Hypotheses<Model>;
+
+  // Each change draws from a stream of its own, so that it comes out the same whatever this process did before.
+  void begin_change(const Command& command) {
+    random_ = Sampler{command.number<std::uint64_t>("draws")};
+    kept_.number_next(command.number<std::uint64_t>("change"));
+  }
 
   void take_over(JsonWriter& json, const Command& command, Belief<Model> belief) {
     if (belief.particles().empty()) throw BadCommand{"an empty belief"};
@@ -233,6 +252,7 @@ class BeliefCommands {
       json.begin_object().end_object();
       return;
     }
+    kept_.number_next(command.number<std::uint64_t>("change"));
     std::vector<Belief<Model>> all = std::exchange(incoming_, {});
     if (!is_one_of_many) return become(json, Hypotheses{std::move(all.back())});
     if (all.size() != command.number<std::size_t>("beliefs")) throw BadCommand{"some of the beliefs are missing"};
@@ -264,6 +284,7 @@ class BeliefCommands {
   }
   template <class Follow>
   void become(JsonWriter& json, Hypotheses believed, Follow&& follow) {
+    believed.note_impossible(impossible_in_a_row_);
     believed.write_summary(json);
     believed_ = std::move(believed);
     kept_.keep(believed_);
@@ -282,6 +303,7 @@ class BeliefCommands {
   }
 
   static constexpr int left_out_in_a_row = 8;
+  static constexpr std::uint64_t prediction = 1;
 
   Sampler random_;
   ImpossiblePolicy policy_;

@@ -63,11 +63,12 @@ inline void say(std::FILE* out, const JsonWriter& json) {
 }  // namespace detail
 
 // The main function of an engine child. BLAME and BELIEFS are descriptors, negative ones for none; BELIEFS is for
-// KeptBeliefs, MAX_PERIODS for the watchdog. The values are those of mission parameters, as StateReader reads them.
+// KeptBeliefs, DRAWS is the seed of the initial belief's draws, and MAX_PERIODS is for the watchdog. The values are those of
+// mission parameters, as StateReader reads them.
 template <class Model>
 int run_child(int argc, char** argv) {
   if (argc < 6) {
-    std::fprintf(stderr, "usage: %s BLAME BELIEFS SEED hold|widen|reset MAX_PERIODS [NAME=VALUE]...\n", argv[0]);
+    std::fprintf(stderr, "usage: %s BLAME BELIEFS DRAWS hold|widen|reset MAX_PERIODS [NAME=VALUE]...\n", argv[0]);
     return 2;
   }
   for (int place = 6; place < argc; ++place) detail::take_mission_value_of(argv[place]);

@@ -25,8 +25,8 @@ namespace aos {
 template <class Model>
 class Commands {
  public:
-  Commands(std::uint64_t seed, ImpossiblePolicy policy, int kept_beliefs)
-      : beliefs_(seed, policy, kept_beliefs, search_), planning_(beliefs_, search_) {}
+  Commands(std::uint64_t draws, ImpossiblePolicy policy, int kept_beliefs)
+      : beliefs_(draws, policy, kept_beliefs, search_), planning_(beliefs_, search_) {}
 
   void describe(JsonWriter& json) const {
     json.begin_object().member("project", Model::project).member("horizon", Model::horizon);

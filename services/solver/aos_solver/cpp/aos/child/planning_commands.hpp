@@ -196,7 +196,7 @@ class PlanningCommands {
       json.member("at_most", is_barred ? std::numeric_limits<double>::infinity() : value.at_most).end_object();
     }
     json.end_array().key("predicted");
-    beliefs_.write_predicted(json, best, belief);
+    BeliefCommands<Model>::write_predicted(json, best, belief, command.number<std::uint64_t>("seed"));
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const std::chrono::duration<double> processor{processor_time() - processor_start};
     json.member("seconds", spent.count()).member("cpu_seconds", processor.count());
