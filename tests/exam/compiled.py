@@ -20,7 +20,7 @@ from aos_solver.emission.lower_relevance import irrelevant_variables
 
 from .documents import Documents
 from .driver import Driver
-from .problem import RUNNING, Problem, tabulate
+from .problem import RUNNING, Problem, World, tabulate
 
 __all__ = ["Examined", "examined", "left_out"]
 
@@ -47,7 +47,7 @@ def left_out(bundle: Documents) -> frozenset[str]:
 async def examined(
     bundle: Documents, truth: Driver, cache_dir: Path, planner: str, simulations: int
 ) -> Examined:
-    """Plays one mission, and asks for the exact values and a plan at each of its beliefs."""
+    """Plays a mission with each setting, and asks for exact values and a plan at each of its beliefs."""
     loaded = load_files({name: text.encode() for name, text in bundle.files.items()})
     assert loaded.project is not None, (bundle.name, loaded.diagnostics)
     if wrong := left_out(bundle):
@@ -63,23 +63,39 @@ async def examined(
         return Examined(bundle.name, bundle.idioms, (str(error),))
     engine = await Engine.start(built, seed=1)
     try:
-        return await _mission(bundle, truth, engine, planner, simulations)
+        return await _missions(bundle, truth, engine, planner, simulations)
     except AosError as error:
         return Examined(bundle.name, bundle.idioms, (str(error),))
     finally:
         await engine.close()
 
 
-async def _mission(
+async def _missions(
     bundle: Documents, truth: Driver, engine: Engine, planner: Any, simulations: int
 ) -> Examined:
+    found = []
+    for values, world in bundle.settings:
+        await engine.start_with(values)
+        found.append(await _mission(bundle, world, truth, engine, planner, simulations))
+    return Examined(
+        bundle.name,
+        bundle.idioms,
+        tuple(false for each in found for false in each.false),
+        sum(each.decisions for each in found),
+        max(each.worst for each in found),
+    )
+
+
+async def _mission(
+    bundle: Documents, world: World, truth: Driver, engine: Engine, planner: Any, simulations: int
+) -> Examined:
     source = random.Random(bundle.name)
-    problem = tabulate(bundle.name, bundle.world, 10_000)
+    problem = tabulate(bundle.name, world, 10_000)
     false: list[str] = []
     decisions, worst = 0, 0.0
     # The problem goes on from running states alone. In the engine's belief ended states stay and are worth 0.
     running = 1.0
-    for step in range(bundle.world.horizon):
+    for step in range(world.horizon):
         brackets = truth.report(problem)["values"]
         claimed = [value.q / running for value in (await engine.exact()).actions]
         false += [

@@ -1,6 +1,8 @@
 """Problems as documents: a hidden value goes through a chain of registers, one a step, by idioms of C++.
 
-At last it decides about a reward, a response, a precondition or an ending. These matter, others do not.
+At last it decides about a reward, a response, a precondition or an ending. These matter, others do not. In
+every second bundle two numbers are mission parameters, and the bundle means something with each of two
+settings.
 """
 
 from __future__ import annotations
@@ -22,15 +24,16 @@ HORIZON = 5
 WAIT, ONE, TWO = range(3)
 YES, NO = range(2)
 PENALTY = -7
+PRIZE = 10
 
 
 @dataclasses.dataclass(frozen=True)
 class Documents:
-    """A bundle, what it means, and the names of the variables that matter."""
+    """A bundle, what it means with each setting of its mission parameters, and the variables that matter."""
 
     name: str
     files: dict[str, str]
-    world: World
+    settings: tuple[tuple[dict[str, str], World], ...]
     relevant: frozenset[str]
     idioms: tuple[str, ...]
 
@@ -55,10 +58,24 @@ def documents(seed: int) -> Documents:
         moves[state].append(code)
     for codes in moves.values():
         source.shuffle(codes)
-    files = _files(registers, dead, sink, share, moves)
-    world = _world(length, sink, share)
+    has_parameters = seed % 2 == 0
+    files = _files(registers, dead, sink, "state.share" if has_parameters else repr(share), moves)
+    settings: list[tuple[dict[str, str], World]] = [({}, _world(length, sink, share, PRIZE))]
+    if has_parameters:
+        _declare_parameters(files)
+        settings = [
+            ({"share": repr(odds), "prize": str(prize)}, _world(length, sink, odds, prize))
+            for odds, prize in ((share, PRIZE), (1 - share, PRIZE // 2))
+        ]
     relevant = {register.name for register in registers} | ({"answer"} if sink == "response" else set())
-    return Documents(f"documents/{seed}", files, world, frozenset(relevant), (*used, sink))
+    return Documents(f"documents/{seed}", files, tuple(settings), frozenset(relevant), (*used, sink))
+
+
+def _declare_parameters(files: dict[str, str]) -> None:
+    """Makes the share and the prize parameters, with defaults that no setting has."""
+    declared = "mission_parameter: double share\ndefault_value: 0.125\n\nmission_parameter: int prize\n\n"
+    files["chain.ef"] = files["chain.ef"].replace("initial_belief:", f"{declared}initial_belief:")
+    files["act.sd"] = files["act.sd"].replace(f"? {PRIZE} : -{PRIZE}", "? state.prize : -state.prize")
 
 
 def _some_idiom(source: random.Random, before: Register, after: Register, state: str) -> tuple[str, str]:
@@ -74,7 +91,7 @@ def _files(
     registers: Sequence[Register],
     dead: Sequence[Register],
     sink: str,
-    share: float,
+    share: str,
     moves: dict[str, list[str]],
 ) -> dict[str, str]:
     last = registers[-1]
@@ -123,9 +140,9 @@ def _skill(last: Register, sink: str, moves: Sequence[str]) -> list[str]:
     """The lines of the skill document."""
     value = last.read("state")
     earned = {
-        "reward": f"{value} == 1 ? 10 : -10",
-        "draw": f"AOS.Bernoulli(0.2 + 0.6 * {value}) ? 10 : -10",
-        "response": "state.answer == 2 - choice ? 10 : -10",
+        "reward": f"{value} == 1 ? {PRIZE} : -{PRIZE}",
+        "draw": f"AOS.Bernoulli(0.2 + 0.6 * {value}) ? {PRIZE} : -{PRIZE}",
+        "response": f"state.answer == 2 - choice ? {PRIZE} : -{PRIZE}",
     }.get(sink, "1")
     return [
         "project: chain",
@@ -151,7 +168,7 @@ def _skill(last: Register, sink: str, moves: Sequence[str]) -> list[str]:
     ]
 
 
-def _world(length: int, sink: str, share: float) -> World:
+def _world(length: int, sink: str, share: float, prize: int) -> World:
     """Returns the meaning of the documents, as a state of the registers and the answer."""
 
     def step(state: State, action: int) -> list[Outcome]:
@@ -162,9 +179,9 @@ def _world(length: int, sink: str, share: float) -> World:
         odds = [(1.0, 0.0)]
         if action != WAIT:
             odds = {
-                "reward": [(1.0, 10.0 if value else -10.0)],
-                "draw": [(0.2 + 0.6 * value, 10.0), (0.8 - 0.6 * value, -10.0)],
-                "response": [(1.0, 10.0 if answer == 2 - action else -10.0)],
+                "reward": [(1.0, float(prize if value else -prize))],
+                "draw": [(0.2 + 0.6 * value, float(prize)), (0.8 - 0.6 * value, float(-prize))],
+                "response": [(1.0, float(prize if answer == 2 - action else -prize))],
             }.get(sink, [(1.0, 1.0)])
             reward = 0.0
         if sink == "extrinsic_reward":

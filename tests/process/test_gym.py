@@ -156,3 +156,10 @@ def test_the_command_prints_the_spaces_and_a_program_that_runs(kettle: Path) -> 
     assert "observations  Discrete(3): DefaultObservation, cold, warm" in text
     program = text[text.index("from aos_lab") :]
     subprocess.run([sys.executable, "-c", program], check=True, timeout=HANG_S)
+
+
+def test_a_world_has_the_values_of_mission_parameters(root: Path) -> None:
+    environment = AosEnv(root / "deploy" / "bundles" / "errand", mission_values={"target": "bob"})
+    assert "give(to=bob)" in environment.action_names
+    assert "give(to=alice)" not in environment.action_names
+    environment.close()

@@ -190,6 +190,19 @@ async def test_documents_without_the_value_that_was_set_are_refused(bundles: Pat
     await shelf.close()
 
 
+async def test_values_are_for_all_bundles_of_a_start_together(bundles: Path, cache_dir: Path) -> None:
+    shelf = Shelf(cache_dir, "whom=bob")
+    try:
+        assert await shelf.check(errand(bundles), None) == ()
+        await shelf.make(ProjectRevision(1, "", errand(bundles)))
+        with pytest.raises(DocumentError, match="unknown mission parameter `whom`"):
+            await shelf.first()
+        await shelf.make(ProjectRevision(2, "", errand(bundles, before="target", after="whom")))
+        assert (await shelf.first()).engine.description.mission_parameters == {"whom": "bob"}
+    finally:
+        await shelf.close()
+
+
 def test_commands_take_values_and_a_policy_is_for_its_own(
     bundles: Path, cache_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -215,6 +228,32 @@ def test_commands_take_values_and_a_policy_is_for_its_own(
     simulated = run("simulate", bundle, "--set", "target=bob", "--runs", "2", "--simulations", "500")
     assert isinstance(simulated, dict)
     assert all("give(to=bob)" in mission["actions"] for mission in simulated["runs"])
+
+
+MISSIONS = """aos: 1
+tests:
+  given:
+    deploy: {deploy}
+    seeds: 2
+    simulations: 2000
+    set: {{target: bob}}
+    claims: [{{says: it is given at once, first: give(to={person})}}]
+"""
+
+
+@pytest.mark.parametrize(("options", "person", "status"), [
+    ((), "bob", 0),
+    ((), "alice", 4),
+    (("--set", "target=alice"), "bob", 4),
+])  # fmt: skip
+def test_missions_of_a_test_file_have_its_values_or_the_commands(
+    root: Path, tmp_path: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch,
+    options: tuple[str, ...], person: str, status: int,
+) -> None:  # fmt: skip
+    monkeypatch.setenv("AOS_CACHE_DIR", str(cache_dir))
+    file = tmp_path / "missions.yaml"
+    file.write_text(MISSIONS.format(deploy=root / "deploy" / "errand.yaml", person=person))
+    assert CliRunner().invoke(aos_app(), ["test", str(file), *options]).exit_code == status
 
 
 SLOW_GIVE = """

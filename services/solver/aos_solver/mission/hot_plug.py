@@ -18,7 +18,8 @@ from pathlib import Path
 
 import msgspec
 
-from aos_language.mission_parameters import ParameterLeaf, usable_values
+from aos_language.findings import Findings
+from aos_language.mission_parameters import ParameterLeaf, checked_values, usable_values
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
 from aos_protocol.documents import Constraint, MissionValue, Project
 from aos_protocol.errors import AosError, ModelError
@@ -170,23 +171,23 @@ class ModelShelf:
             self._shelf.notify_all()
 
     async def _built(self, project: Project) -> BuiltModel:
-        span = project.environment.span
-        for_mission = msgspec.structs.replace(
-            project,
-            constraints=self._constraints,
-            mission_values=tuple(msgspec.structs.replace(v, span=span) for v in self._mission_values),
-        )
-        built = await build_project(for_mission, self._cache_dir, self._on_progress)
-        values = self._values_in(built.emitted.parameters, span)
+        constrained = msgspec.structs.replace(project, constraints=self._constraints)
+        built = await build_project(constrained, self._cache_dir, self._on_progress)
+        values = self._values_in(built.emitted.parameters, project.environment.span)
         return msgspec.structs.replace(built, mission_values=values)
 
-    def _values_in(self, leaves: Mapping[str, ParameterLeaf], span: Span) -> dict[str, str]:
-        """The mission's values for a model; DocumentError AOS146 at `span` where it cannot have one.
+    def _values_in(self, leaves: Mapping[str, ParameterLeaf], span: Span | None = None) -> dict[str, str]:
+        """The mission's values for a model.
 
-        A parameter that nobody has set may be gone from newer documents.
+        DocumentError AOS146 where it cannot have one, at `span` or else where it was set. A parameter that
+        nobody has set may be gone from newer documents. Before the first mission more documents may come: the
+        values that do not fit are told when it begins.
         """
-        kept = (MissionValue(name, text, span) for name, text in self.kept.items() if name in leaves)
-        return usable_values((*kept, *self._mission_values), leaves)
+        kept = (MissionValue(name, text, _NOWHERE) for name, text in self.kept.items() if name in leaves)
+        values = [msgspec.structs.replace(v, span=span or v.span) for v in (*kept, *self._mission_values)]
+        if self._running is None:
+            return checked_values(values, leaves, Findings())
+        return usable_values(values, leaves)
 
     async def _put(self, successor: Successor) -> None:
         """Puts a model on the shelf, in place of one that nobody has taken; its replay goes on there."""
@@ -195,7 +196,7 @@ class ModelShelf:
             if self._is_closed:
                 return self._end(successor)
             # The mission may have begun while the model was made.
-            await engine.start_with(self._values_in(engine.parameters, _NOWHERE))
+            await engine.start_with(self._values_in(engine.parameters))
             outdated, self._ready, self._fault = self._ready, successor, None
             if outdated is not None:
                 self._end(outdated)
@@ -238,6 +239,7 @@ class ModelShelf:
             if self._ready is None:
                 assert self._fault is not None
                 raise self._fault
+            usable_values(self._mission_values, self._ready.model.engine.parameters)
             self._running, self._ready = self._ready.model, None
             self.kept = self._running.engine.description.mission_parameters
             return self._running
