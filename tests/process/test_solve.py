@@ -214,9 +214,13 @@ async def test_a_policy_for_other_documents_is_refused(
     solution = await solve(found.model, QUICK, cache_dir=cache_dir)
     policy = saved(found, "of yesterday", solution)
     async with engine_of(await built_bundle(folder, cache_dir)) as engine:
+        search = PolicySearch(policy=policy, simulations=100, seed=1)
         with pytest.raises(PlanningError, match="solved for other documents of tiger") as caught:
-            await PolicySearch(policy=policy, simulations=1, seed=1).run(engine, 1)
+            await search.run(engine, 1)
+        # Where they have taken over in mid-mission, they are searched.
+        plan = await search.after_takeover().run(engine, 1)
     assert caught.value.code == "AOS322"
+    assert plan.planner != "policy"
 
 
 def test_a_file_that_is_no_policy_is_refused(tmp_path: Path) -> None:

@@ -11,9 +11,13 @@ from models import built_text, engine_of
 from scripted_missions import Surroundings, observed, run_mission
 
 from aos_deploy.views.lines import adopted_line
+from aos_protocol.errors import PlanningError
 from aos_protocol.messages import Activate, ModelAdopted, Outcome
 from aos_runtime.clock import SystemClock
 from aos_runtime.journal import JournalRow
+from aos_solver.child.answers import Plan
+from aos_solver.child.engine import Engine, Restriction
+from aos_solver.child.mission_questions import UNRESTRICTED
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.loop import Mission
@@ -59,6 +63,31 @@ async def test_a_skill_that_is_pushed_while_the_mission_holds_ends_the_hold(cach
         None,
         "revision 2 takes over from 1, its belief by import",
     )
+
+
+class Prepared(Search, frozen=True, kw_only=True):
+    """Decides for the first documents alone, as a policy file does."""
+
+    async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
+        if not engine.has_action("look"):
+            raise PlanningError("solved for other documents", code="AOS322")
+        return await Search(simulations=100, seed=1).run(engine, step, within)
+
+    def after_takeover(self) -> Search:
+        return Search(simulations=100, seed=1)
+
+
+async def test_what_was_prepared_for_the_documents_before_is_not_followed_any_more(cache_dir: Path) -> None:
+    around = Plugged(hears_below)
+    terms = Terms(name="m", search=Prepared(simulations=1, seed=1), limits=MissionLimits(step_limit=1))
+    async with (
+        engine_of(await built_text(HALL, cache_dir)) as before,
+        engine_of(await built_text(with_peek(HALL), cache_dir)) as after,
+    ):
+        around.successor = Successor(RunningModel(2, after), SystemClock())
+        state = await Mission(terms, RunningModel(1, before), around).run()
+    assert (state.ending, state.remark) == ("step_limit", "the step limit of 1 is reached")
+    assert [record.skill for record in around.decisions] == ["peek"]
 
 
 async def test_a_mission_is_taken_up_by_documents_without_the_skill_that_was_decided(cache_dir: Path) -> None:

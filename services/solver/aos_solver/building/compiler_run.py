@@ -31,6 +31,9 @@ _OUT_OF = (
 _ADDRESS_SPACE_BYTES = 4 << 30
 _FILE_BYTES = 512 << 20
 _OUTPUT_LIMIT_BYTES = 4 << 20
+_STOP_GRACE_S = 30.0
+"""The guard of a command that is served last is served late, too. Killed itself, it would leave what the
+command has started, and that keeps our pipe open."""
 
 
 class Given(TypedDict, total=False):
@@ -92,7 +95,7 @@ async def run_compiler(
         message = f"the compiler did not finish {what} within {deadline_s:g} s"
         raise ModelError(message, code="AOS202", hint=given.get("hint", _OUR_LIMIT_HINT)) from error
     finally:
-        await child.stop()
+        await child.stop(_STOP_GRACE_S)
 
 
 def _confinement(compiler: Compiler, directory: Path, cache: Path | None, given: Given) -> Confinement:

@@ -33,6 +33,10 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""
         return self.seed * SEEDS_PER_MISSION + step
 
+    def after_takeover(self) -> Search:
+        """The way to decide with a model that has taken over."""
+        return self
+
     async def run(self, engine: Engine, step: int, within: Restriction = UNRESTRICTED) -> Plan:
         """Decide on what the engine believes, with what the restriction leaves."""
         return await engine.plan(

@@ -58,7 +58,7 @@ class Chooser:
 
     def __init__(self, terms: Terms, failures: Failures, around: Available, budget: RiskBudget) -> None:
         self._terms = terms
-        self._search = terms.search
+        self.search = terms.search
         self._limits = terms.limits
         self._failures = failures
         self._around = around
@@ -73,7 +73,7 @@ class Chooser:
         """Chooses what follows at this belief; the action still can be carried out when it is chosen."""
         engine = model.engine
         actions = engine.description.actions
-        risks = await engine.risks(self._search.seed_of(step)) if self._budget else None
+        risks = await engine.risks(self.search.seed_of(step)) if self._budget else None
         forbidden = self._budget.forbidden(risks) if risks is not None else frozenset[int]()
         if risks is not None and len(forbidden) == len(actions):
             return Ended(Ending.TOO_RISKY, self._budget.remark(risks))
@@ -118,12 +118,12 @@ class Chooser:
         within = Restriction(barred=barred, without=sorted(set_aside))
         cautiously = Restriction(barred=barred, without=within.without, cautious=True)
         if not self._terms.is_cautious:
-            return await self._search.run(engine, step, within), False
+            return await self.search.run(engine, step, within), False
         if is_held_back(belief, self._limits):
-            return await self._search.run(engine, step, cautiously), True
-        plan = await self._search.run(engine, step, within)
+            return await self.search.run(engine, step, cautiously), True
+        plan = await self.search.run(engine, step, within)
         if belief.cautious is not None and is_worth_nothing(plan.best, self._limits):
-            cautious = await self._search.run(engine, step, cautiously)
+            cautious = await self.search.run(engine, step, cautiously)
             if not is_worth_nothing(cautious.best, self._limits):
                 return cautious, True
         return plan, False

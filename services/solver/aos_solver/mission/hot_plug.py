@@ -125,7 +125,7 @@ class ModelShelf:
         self._shelf = asyncio.Condition()
         self._newest_revision = 0
         self._building = asyncio.Lock()
-        self._thorough: asyncio.Task[None] | None = None
+        self._thorough: set[asyncio.Task[None]] = set()
         self._ending: set[asyncio.Task[None]] = set()
         self._is_closed = False
         self.on_ready: Callable[[], None] = lambda: None
@@ -160,9 +160,11 @@ class ModelShelf:
         except BaseException:
             await successor.close()
             raise
-        await self._end_thorough_build()
+        self._end_thorough_builds()
         if not self._is_closed:
-            self._thorough = asyncio.create_task(self._build_thoroughly(built.emitted))
+            build_task = asyncio.create_task(self._build_thoroughly(built.emitted))
+            self._thorough.add(build_task)
+            build_task.add_done_callback(self._thorough.discard)
 
     async def _refuse(self, revision: ProjectRevision, error: AosError) -> None:
         log.warning("revision %d is not used: %s", revision.revision, error)
@@ -226,11 +228,10 @@ class ModelShelf:
         except Exception:
             log.exception("%s was not built thoroughly", emitted.project)
 
-    async def _end_thorough_build(self) -> None:
-        task, self._thorough = self._thorough, None
-        if task is not None:
+    def _end_thorough_builds(self) -> None:
+        """Has them end. Nobody waits for that before the end: what is served last ends late, too."""
+        for task in self._thorough:
             task.cancel()
-            await asyncio.wait({task})
 
     async def first(self) -> RunningModel:
         """The first model that runs; raises what kept it from running."""
@@ -346,7 +347,7 @@ class ModelShelf:
     async def close(self) -> None:
         """Ends what is being built, and all engines."""
         self._is_closed = True
-        await self._end_thorough_build()
+        self._end_thorough_builds()
         async with self._shelf:
             unused, self._ready = self._ready, None
             running, self._running = self._running, None
@@ -357,5 +358,5 @@ class ModelShelf:
 
     async def settled(self) -> None:
         """Returns once all engines have ended that nobody asks any more."""
-        while self._ending:
-            await asyncio.wait(set(self._ending))
+        while ending := self._ending | (self._thorough if self._is_closed else set()):
+            await asyncio.wait(ending)

@@ -175,7 +175,11 @@ class Mission:
         takeover = await self._ports.newest_model(self._model, self.past)
         if takeover is None:
             return False
-        self._model, self.belief, self._adopted = takeover.model, takeover.belief, takeover.row
+        before, self._model = self._model, takeover.model
+        self.belief, self._adopted = takeover.belief, takeover.row
+        if takeover.model.digest != before.digest:
+            self._terms = msgspec.structs.replace(self._terms, search=self._terms.search.after_takeover())
+            self._chooser.search = self._terms.search
         self._ports.journal("adopted", takeover.row)
         return True
 

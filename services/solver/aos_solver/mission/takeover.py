@@ -137,20 +137,25 @@ class Successor:
 
     async def _replay(self, past: Past) -> None:
         async with self._replaying:
-            if past is not self._past:
-                if self._past is not None:
-                    await self.model.engine.reset_belief()
-                self._past, self._done, self._foreign, self._spent_s = past, 0, 0, 0.0
-                self._cannot_replay = ""
-            if self._cannot_replay:
+            is_another = past is not self._past
+            if self._cannot_replay and not is_another:
                 return
             try:
-                async with asyncio.timeout(max(REPLAY_S - self._spent_s, 0.0)):
+                async with asyncio.timeout(REPLAY_S if is_another else max(REPLAY_S - self._spent_s, 0.0)):
+                    if is_another:
+                        await self._begin(past)
                     await self._replay_the_rest(past)
             except TimeoutError:
                 self._cannot_replay = f"the replay of {len(past)} steps takes longer than {REPLAY_S:g} s"
             except AosError as error:
                 self._cannot_replay = f"step {self._done + 1} cannot be replayed: {error}"
+
+    async def _begin(self, past: Past) -> None:
+        """Goes back to the initial belief, for another past than before."""
+        if self._past is not None:
+            await self.model.engine.reset_belief()
+        self._past, self._done, self._foreign, self._spent_s = past, 0, 0, 0.0
+        self._cannot_replay = ""
 
     async def _replay_the_rest(self, past: Past) -> None:
         since_s = self._clock.monotonic_s()

@@ -123,6 +123,12 @@ class PolicySearch(Search, frozen=True, kw_only=True):
 
     policy: Policy
 
+    def after_takeover(self) -> Search:
+        """A search with the budget: the policy is for the model before."""
+        fields = msgspec.structs.asdict(self)
+        del fields["policy"]
+        return Search(**fields)
+
     async def ponder(self, engine: Engine, step: int, index: int) -> None:
         """Nothing: a policy is ready made."""
 
