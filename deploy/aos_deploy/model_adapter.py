@@ -106,15 +106,17 @@ class ModelAdapter:
             if fault == FAILED_CALL:
                 played = PlayedStep(name, "", 0.0, "", await world.engine.world_state(), fault)
                 numbers: dict[str, Any] = {}
+                monitors: dict[str, str] = {}
             else:
                 step = await world.engine.step_world(index)
                 state = await world.engine.world_state()
                 played = PlayedStep(name, step.response, step.reward, step.ending, state, fault)
                 numbers = step.numbers
+                monitors = await world.engine.monitor_world()
                 self._played.append(name)
         with self._file.open("ab") as file:
             file.write(msgspec.json.encode(played) + b"\n")
-        return Observed(played.response, numbers)
+        return Observed(played.response, numbers, monitors)
 
     async def _follow(self) -> None:
         async for revision in self._host.revisions():
@@ -136,6 +138,7 @@ class ModelAdapter:
             for name in self._played:
                 if name in world.names:
                     await engine.step_world(world.names.index(name))
+                    await engine.monitor_world()
             outdated, self._world = self._world, world
         if outdated is not None:
             await outdated.engine.close()

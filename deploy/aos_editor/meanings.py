@@ -98,6 +98,10 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
             _BLOCK_PARTS,
         ),
         "print_code": ("Writes a state to `ss`, for people.", _BLOCK_PARTS),
+        "monitor": (
+            "The model of a monitor: the response that it gives after each step, whatever the skill.",
+            {"code": "Sets `__moduleResponse` from `state`, the state after the step."},
+        ),
     },
     ".sd": {
         "project": (_PROJECT, {}),
@@ -145,6 +149,10 @@ SECTIONS: Mapping[str, Mapping[str, Meaning]] = {
         ),
         "response_local_variable": (
             "The local variable whose text is the response.",
+            {},
+        ),
+        "monitor": (
+            "In place of `module_activation:`: the monitor of the environment document that this mapping is.",
             {},
         ),
         "stop_when": (

@@ -32,6 +32,7 @@ class Assembly(msgspec.Struct):
     environment: Environment | None = None
     models: dict[str, SkillModel] = {}
     mappings: dict[str, AbstractionMapping] = {}
+    monitors: dict[str, AbstractionMapping] = {}
     low_level: LowLevelDocument | None = None
 
     def project(self) -> Project | None:
@@ -39,7 +40,8 @@ class Assembly(msgspec.Struct):
         if self.environment is None or not self.models or self.models.keys() != self.mappings.keys():
             return None
         skills = tuple(Skill(self.models[name], self.mappings[name]) for name in sorted(self.models))
-        return Project(self.environment.project, self.environment, skills, self.low_level)
+        monitors = tuple(sorted(self.monitors.values(), key=lambda mapping: mapping.monitor))
+        return Project(self.environment.project, self.environment, skills, self.low_level, monitors=monitors)
 
 
 def assemble(
@@ -60,6 +62,8 @@ def assemble(
                 assembly.low_level = low_level
             case SkillModel() as model if document.name:
                 assembly.models[document.name] = model
+            case AbstractionMapping() as mapping if mapping.monitor and document.name:
+                assembly.monitors[document.name] = mapping
             case AbstractionMapping() as mapping if document.name:
                 assembly.mappings[document.name] = mapping
     written = {name for kind, name in unique if kind is DocumentKind.MAPPING}
@@ -97,10 +101,19 @@ def _check_projects(documents: Mapping[str, Document], findings: Findings) -> No
             findings.error("AOS113", message, document.project_span or document.span, hint)
 
 
+def _monitors(document: Document) -> bool:
+    return isinstance(document.content, AbstractionMapping) and bool(document.content.monitor)
+
+
 def _check_complete(
     unique: Mapping[tuple[DocumentKind, str], Document], findings: Findings, bundle: Span
 ) -> None:
-    by_kind = {kind: {name for other, name in unique if other is kind} for kind in DocumentKind}
+    by_kind = {
+        kind: {
+            name for (other, name), document in unique.items() if other is kind and not _monitors(document)
+        }
+        for kind in DocumentKind
+    }
     if not by_kind[DocumentKind.ENVIRONMENT]:
         hint = "Add an .ef file, or a JSON document of type Environment"
         findings.error("AOS115", "there is no environment document", bundle, hint)

@@ -37,6 +37,9 @@ def outline(project: Project) -> str:
         lines += _low_level(project.low_level)
     for skill in project.skills:
         lines += ["", *_skill(skill)]
+    for mapping in project.monitors:
+        place = _placed(f"monitor {mapping.monitor}", mapping.activation.span)
+        lines += ["", place, *_indented(_responses(mapping))]
     return "".join(f"{_aligned(line)}\n" for line in lines)
 
 
@@ -65,6 +68,10 @@ def _environment(environment: Environment) -> Iterator[str]:
     yield from _block("extrinsic changes", environment.extrinsic_changes)
     yield from _block("state heuristic", environment.state_heuristic)
     yield from _block("print function", environment.print_state)
+    for monitor in environment.monitors:
+        yield _placed(f"monitor {monitor.name}, a response from the state after each step", monitor.span)
+        for assignment in monitor.code:
+            yield from _code(assignment.code)
 
 
 def _variable(variable: StateVariable) -> Iterator[str]:
@@ -120,6 +127,10 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
     if mapping.is_derived:
         yield "derived: no abstraction mapping is written"
     yield from _imports(activation.imports)
+    yield from _responses(mapping)
+
+
+def _responses(mapping: AbstractionMapping) -> Iterator[str]:
     for rule in mapping.rules:
         condition = rule.condition.code if rule.condition else "True"
         yield _placed(f"response {rule.response} when {condition}", rule.span)

@@ -192,6 +192,14 @@ class SpecialState(msgspec.Struct, frozen=True):
     code: tuple[Assignment, ...] = ()
 
 
+class MonitorModel(msgspec.Struct, frozen=True):
+    """The model of a monitor: `code` sets its response from `state`, which is the state after a step."""
+
+    name: str
+    span: Span
+    code: tuple[Assignment, ...] = ()
+
+
 class Environment(msgspec.Struct, frozen=True):
     """The robot's one environment document: state, initial belief, extrinsic changes, rewards.
 
@@ -214,6 +222,7 @@ class Environment(msgspec.Struct, frozen=True):
     is_one_state_model: bool = False
     shared_code: Snippet | None = None
     shared_mapping_code: Snippet | None = None
+    monitors: tuple[MonitorModel, ...] = ()
 
 
 # --- skills --------------------------------------------------------------------------------------------
@@ -336,6 +345,10 @@ class Activation(msgspec.Struct, frozen=True):
     max_duration_s: float | None = None
 
 
+NO_ACTIVATION = Activation("monitor", "", Span(""))
+"""The activation of a monitor's mapping, which calls nothing."""
+
+
 class AbstractionMapping(msgspec.Struct, frozen=True):
     """An abstraction mapping (AM): from parameters to the call, and from what happened to the observation.
 
@@ -343,6 +356,10 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     `stop_when` is a Python expression over local variables. It is evaluated with each topic message while the
     skill runs, and the first time it is True the skill is cancelled. One that `is_derived` is written
     nowhere: AOS made it from the skill document, where its places are.
+
+    One of a `monitor` belongs to no skill, and calls nothing: its activation is `NO_ACTIVATION`. It is at
+    work during the whole mission, its responses are explained by the environment's monitor of this name, and
+    its `stop_when` stops whatever runs.
     """
 
     project: str
@@ -355,6 +372,7 @@ class AbstractionMapping(msgspec.Struct, frozen=True):
     response_variable_span: Span | None = None
     is_derived: bool = False
     stop_when: Snippet | None = None
+    monitor: str = ""
 
 
 class Skill(msgspec.Struct, frozen=True):
@@ -430,7 +448,8 @@ class Project(msgspec.Struct, frozen=True):
     `constraints` and `mission_values` are the mission's and not the documents': the solver adds them. No
     generated code depends on the values.
 
-    Skills are sorted by name, so that grounded actions have the same numbers whatever the file names are.
+    Skills are sorted by name, so that grounded actions have the same numbers whatever the file names are. So
+    are `monitors`, the mappings without a skill, by the name of the monitor.
     """
 
     name: str
@@ -439,6 +458,7 @@ class Project(msgspec.Struct, frozen=True):
     low_level: LowLevelDocument | None = None
     constraints: tuple[Constraint, ...] = ()
     mission_values: tuple[MissionValue, ...] = ()
+    monitors: tuple[AbstractionMapping, ...] = ()
 
     def skill(self, name: str) -> Skill:
         """The skill of that name; KeyError if there is none."""

@@ -56,7 +56,7 @@ CODES: dict[str, str] = {
     "AOS111": "two documents of one name",
     "AOS112": "the new documents do not fit the running mission",
     "AOS113": "documents of different projects",
-    "AOS114": "an abstraction mapping has no skill document, or a skill without mapping names no responses",
+    "AOS114": "a skill or a monitor has one half only, and the other cannot be derived",
     "AOS115": "no environment document",
     "AOS116": "a response that the abstraction mapping never gives",
     "AOS117": "a response that the skill document never produces",

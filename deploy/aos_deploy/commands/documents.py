@@ -157,14 +157,17 @@ def inspect(
 
 
 def _python_modules(project: Project, only: str) -> str:
-    from aos_middleware.emit import emit_mapping  # Keeps the other commands quick to start.
+    from aos_middleware.emit import emit_mapping, emit_monitor  # Keeps the other commands quick to start.
 
-    names = [skill.name for skill in project.skills]
+    names = [*(skill.name for skill in project.skills), *(mapping.monitor for mapping in project.monitors)]
     if only and only not in names:
         raise typer.BadParameter(f"the skills are {', '.join(names)}", param_hint="--skill")
-    chosen = [skill for skill in project.skills if only in ("", skill.name)]
-    shared = project.environment.shared_mapping_code
-    return "\n\n".join(emit_mapping(skill, project.low_level, shared=shared).python for skill in chosen)
+    low_level, shared = project.low_level, project.environment.shared_mapping_code
+    skills = [skill for skill in project.skills if only in ("", skill.name)]
+    monitors = [mapping for mapping in project.monitors if only in ("", mapping.monitor)]
+    emitted = [emit_mapping(skill, low_level, shared=shared) for skill in skills]
+    emitted += [emit_monitor(mapping, low_level, shared) for mapping in monitors]
+    return "\n\n".join(mapping.python for mapping in emitted)
 
 
 def _solver_stage(project: Project, stage: Stage, bundle: Path) -> str:

@@ -132,6 +132,7 @@ def decision_line(record: DecisionRecord) -> str:
         what = f"{what} (stopped by {outcome.stopped_by})"
     if outcome.fault is not None:
         what = f"{what} ({outcome.fault.message})"
+    what += "".join(f", {monitor}: {response}" for monitor, response in outcome.monitors.items())
     surprise = "held impossible by the model" if record.is_impossible else f"surprise {record.surprise:.2f}"
     remark = f"  ({record.remark})" if record.remark else ""
     return f"{head} -> {what}  {surprise}  {endings_text(record.belief)}{remark}"

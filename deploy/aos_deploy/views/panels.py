@@ -156,6 +156,7 @@ def _observation(record: DecisionRecord) -> Text:
     if outcome.status != "observed":
         return Text(outcome.status, style="red")
     stopped = " (stopped)" if outcome.stopped_by else ""
+    stopped += "".join(f", {monitor}: {response}" for monitor, response in outcome.monitors.items())
     return Text(
         f"{observation_text(outcome.response, outcome.numbers)}{stopped}",
         style="red" if record.is_impossible else "",

@@ -110,4 +110,8 @@ def print_runs(runs: Iterable[SimulatedRun], summary: dict[str, float]) -> None:
 
 def _observations(run: SimulatedRun) -> list[str]:
     numbers = run.numbers or ({},) * len(run.observations)
-    return [observation_text(*observation) for observation in zip(run.observations, numbers, strict=True)]
+    monitors = run.monitors or ({},) * len(run.observations)
+    return [
+        observation_text(response, beside) + "".join(f", {name}: {said}" for name, said in told.items())
+        for response, beside, told in zip(run.observations, numbers, monitors, strict=True)
+    ]

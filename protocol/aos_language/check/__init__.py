@@ -3,9 +3,9 @@
 `declarations` looks at names and types, `defaults` at what variables start with, `mission_parameters` at what
 a mission may set, `model_code` at the C++ of environment and skills, `responses` at what the two halves of a
 skill say to each other, `mapping_code` at the Python of the mappings, `stop_when` at what stops a skill and
-`python_names` at the names in it, `endings` at what ends a mission, `observed_numbers` at numbers beside
-responses, `shared_code` at what all model code shares and `shared_mapping_code` at what all mappings share,
-`unused` at what nothing mentions.
+`python_names` at the names in it, `monitors` at mappings without a skill, `endings` at what ends a mission,
+`observed_numbers` at numbers beside responses, `shared_code` at what all model code shares and
+`shared_mapping_code` at what all mappings share, `unused` at what nothing mentions.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from aos_language.check.given_observation import (
 from aos_language.check.mapping_code import check_low_level, check_mapping
 from aos_language.check.mission_parameters import check_mission_parameters
 from aos_language.check.model_code import check_environment_code, check_skill_code
+from aos_language.check.monitors import check_monitors
 from aos_language.check.observed_numbers import (
     check_environment_reports,
     check_observed_numbers,
@@ -71,10 +72,12 @@ def check(assembly: Assembly, findings: Findings) -> None:
             check_reported_variables(mapping, assembly.environment, findings)
         if is_whole and is_sound and not mapping.is_derived:
             check_unused_locals(mapping, _reported_to_model(mapping, name, assembly), findings)
+    check_monitors(assembly, scope, findings, is_whole=is_whole)
+    mappings = (*assembly.mappings.values(), *assembly.monitors.values())
     if assembly.low_level is not None:
-        check_low_level(assembly.low_level, assembly.mappings.values(), scope, findings)
+        check_low_level(assembly.low_level, mappings, scope, findings)
     if scope.shared_mapping_code is not None:
-        check_shared_mapping_code(scope.shared_mapping_code, assembly.mappings.values(), scope, findings)
+        check_shared_mapping_code(scope.shared_mapping_code, mappings, scope, findings)
     if is_whole and assembly.environment is not None:
         check_goals(assembly.environment, findings)
         check_shared_names_are_used(assembly.environment, assembly.models.values(), findings)

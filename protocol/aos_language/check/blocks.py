@@ -52,6 +52,7 @@ SPECIAL = Role("a special state", ("state",))
 EXTRINSIC = Role("the extrinsic changes", ("state", "state_"), ("state_",), sees_chosen_action=True)
 HEURISTIC = Role("the state heuristic", ("state",))
 PRINT = Role("the print function", ("state",))
+MONITOR = Role("the model of a monitor", ("state",))
 PARAMETERS = Role("the list of parameters", ("state",))
 PRECONDITION = Role("the precondition", ("state",))
 ROLLOUT = Role("the rollout policy", ("state",))
@@ -81,6 +82,8 @@ def environment_blocks(environment: Environment) -> Iterator[Block]:
     yield from assignment_blocks(EXTRINSIC, environment.extrinsic_changes)
     yield from assignment_blocks(HEURISTIC, environment.state_heuristic)
     yield from assignment_blocks(PRINT, environment.print_state)
+    for monitor in environment.monitors:
+        yield from assignment_blocks(MONITOR, monitor.code)
 
 
 def skill_blocks(model: SkillModel) -> Iterator[Block]:

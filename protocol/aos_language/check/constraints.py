@@ -49,7 +49,7 @@ def check_conditions(conditions: Iterable[Snippet], project: Project, findings: 
 def _scope_of(project: Project) -> Scope:
     models = {skill.name: skill.model for skill in project.skills}
     mappings = {skill.name: skill.mapping for skill in project.skills}
-    return Scope.of(Assembly(project.environment, models, mappings, project.low_level))
+    return Scope.of(Assembly(project.environment, models, mappings, low_level=project.low_level))
 
 
 def _checked(

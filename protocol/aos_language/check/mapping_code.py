@@ -42,7 +42,8 @@ def check_mapping(
 
     Where the documents are not read as a `whole`, a local variable that seems missing may stand in the rest.
     """
-    _check_path(mapping.activation.path, mapping.activation.span, findings)
+    if not mapping.monitor:
+        _check_path(mapping.activation.path, mapping.activation.span, findings)
     _check_local_names(mapping, findings)
     names = PythonNames.of(mapping, model, scope)
     severity = Severity.ERROR if is_whole else Severity.WARNING

@@ -46,6 +46,7 @@ def check_environment_code(environment: Environment, scope: Scope, findings: Fin
         environment.state_heuristic,
         environment.print_state,
         *(special.code for special in environment.special_states),
+        *(monitor.code for monitor in environment.monitors),
     )
     _check_blocks(blocks, tuple(environment_blocks(environment)), scope, findings)
 

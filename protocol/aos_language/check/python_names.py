@@ -33,13 +33,15 @@ class PythonNames(msgspec.Struct, frozen=True):
     """The names that the code of one mapping can use.
 
     `known` are all names; `local_names` those of local variables, which are meant most often; `parameters`
-    those of the skill. `is_open` where an `import *` brings names that nobody knows here.
+    those of the skill. `is_open` where an `import *` brings names that nobody knows here. `of_end` are those
+    that say how the skill has ended.
     """
 
     known: frozenset[str]
     local_names: tuple[str, ...] = ()
     parameters: tuple[str, ...] = ()
     is_open: bool = False
+    of_end: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, mapping: AbstractionMapping, model: SkillModel | None, scope: Scope) -> PythonNames:
@@ -52,7 +54,8 @@ class PythonNames(msgspec.Struct, frozen=True):
         known = _BUILT_IN_NAMES.union(imported or (), local_names, _names_of_constants(scope.low_level))
         known |= _names_of_shared(scope.shared_mapping_code)
         parameters = tuple(parameter.name for parameter in model.parameters) if model is not None else ()
-        return cls(known, local_names, parameters, is_open=imported is None)
+        of_end = frozenset() if mapping.monitor else _OF_SKILL
+        return cls(known, local_names, parameters, is_open=imported is None, of_end=of_end)
 
     @classmethod
     def of_constants(cls, mappings: Iterable[AbstractionMapping], scope: Scope) -> PythonNames:
@@ -65,7 +68,7 @@ class PythonNames(msgspec.Struct, frozen=True):
 
     def of_rules(self, before: Iterable[ast.AST]) -> PythonNames:
         """Those of a rule: what says how the skill has ended, and what the rules `before` it have bound."""
-        return self._also(_OF_SKILL.union(*map(_bound_names, before)))
+        return self._also(self.of_end.union(*map(_bound_names, before)))
 
     def at_start(self) -> PythonNames:
         """Those of a first value, which is made when there is no local variable yet."""
@@ -196,7 +199,7 @@ def _hint(name: str, names: PythonNames) -> str:
     if name == _INPUT:
         return "It is there in the code of a local variable: make one of it, and name that one here"
     if name in _OF_SKILL:
-        return "Only rules know it"
+        return "Only rules of a skill's mapping know it"
     if name in names.parameters:
         return f"Add a local variable with `action_parameter: {name}`"
     if names.local_names:

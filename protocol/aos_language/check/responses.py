@@ -71,9 +71,13 @@ def check_responses(
             message = f"the response {rule.response} has the name of an enum value"
             findings.warning("AOS126", message, rule.span, "In the skill's code it is the response")
         if rule.response not in mentioned and model.dynamic_model and not mapping.response_variable:
-            message = f"the skill document of {model.name} never produces the response {rule.response}"
+            title = (
+                f"model of the monitor {model.name}" if mapping.monitor else f"skill document of {model.name}"
+            )
+            message = f"the {title} never produces the response {rule.response}"
             hint = "When it comes, the belief has no explanation for it"
-            findings.warning("AOS117", message, rule.span, hint)
+            report = findings.error if mapping.monitor else findings.warning
+            report("AOS117", message, rule.span, hint)
 
 
 def _check_any_response(
@@ -97,7 +101,8 @@ def _check_any_response(
     elif len(given) == 1:
         hint = f"Add `__moduleResponse = {given[0]};`"
     span = read[-1][0].snippet.span if read else model.span
-    message = f"the dynamic model of {model.name} never sets {word}, so that every response is impossible"
+    title = f"monitor {model.name}" if mapping.monitor else f"dynamic model of {model.name}"
+    message = f"the {title} never sets {word}, so that every response is impossible"
     findings.error("AOS117", message, span, hint)
     return True
 

@@ -53,7 +53,7 @@ def check_stop_when(
         hint = "It is looked at with each message: name a local variable of a topic"
         message = "`stop_when` reads no topic, so no message changes whether it holds"
         findings.warning("AOS118", message, snippet.span, hint)
-    else:
+    elif not mapping.monitor:
         _check_told(mapping, snippet, findings)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 from aos_language.reading.code import dedented, guarded
 from aos_language.reading.document import array_type, check_name, enum_type, normal_type
@@ -18,6 +19,7 @@ from aos_protocol.documents import (
     LowLevelConstant,
     LowLevelDocument,
     LowLevelType,
+    MonitorModel,
     Parameter,
     Snippet,
     SpecialState,
@@ -50,9 +52,23 @@ def read_environment(record: Record, project: str, span: Span) -> Environment:
         state_heuristic=read_block(record, "HeuristicStateValue"),
         print_state=read_block(record, "PrintStateFunc"),
         is_one_state_model=is_one_state,
+        monitors=tuple(_monitors(record)),
         shared_code=record.code("SharedCode"),
         shared_mapping_code=record.code("SharedMappingCode"),
     )
+
+
+def _monitors(record: Record) -> Iterator[MonitorModel]:
+    """The model of each monitor."""
+    for item in record.records("Monitors", "a monitor"):
+        name, code = item.text("Name", required=True), item.code("AssignmentCode")
+        item.ignore("Comment")
+        item.finish()
+        if code is None:
+            hint = "It sets __moduleResponse from `state`"
+            record.findings.error("AOS105", 'a monitor lacks "AssignmentCode"', item.span, hint)
+        elif name is not None and check_name(name, "a monitor", record.findings):
+            yield MonitorModel(name.text, name.span, (Assignment(code.span, code=code),))
 
 
 def read_low_level(record: Record, project: str, span: Span) -> LowLevelDocument:

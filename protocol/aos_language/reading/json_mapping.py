@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from aos_language.reading.code import dedented
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.json_record import Record
@@ -10,6 +12,7 @@ from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
     ACTIVATION_KINDS,
+    NO_ACTIVATION,
     AbstractionMapping,
     Activation,
     ActivationField,
@@ -29,7 +32,8 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> Abstrac
     rules, variable = _responses(record)
     stop_when = record.python_expression("StopWhen")
     locals_ = [_local_variable(item) for item in record.records("LocalVariablesInitialization", "a variable")]
-    activation = _activation(record)
+    monitor = record.text("Monitor")
+    activation = _activation(record) if monitor is None else _of_monitor(record, monitor)
     if activation is None:
         return None
     return AbstractionMapping(
@@ -42,7 +46,18 @@ def read_mapping(record: Record, project: str, name: str, span: Span) -> Abstrac
         local_variables=tuple(local for local in locals_ if local is not None),
         response_variable_span=variable.span if variable else None,
         stop_when=stop_when,
+        monitor=monitor.text if monitor is not None else "",
     )
+
+
+def _of_monitor(record: Record, monitor: Text) -> Activation:
+    """The activation of a monitor, which calls nothing, and is where the monitor is named."""
+    if record.has("ModuleActivation"):
+        message = "a mapping is that of a monitor or calls a skill, not both"
+        span = record.key_span("ModuleActivation")
+        record.findings.error("AOS106", message, span, "Take one of the two out")
+        record.ignore("ModuleActivation")
+    return msgspec.structs.replace(NO_ACTIVATION, span=monitor.span)
 
 
 def _responses(record: Record) -> tuple[tuple[ResponseRule, ...], Text | None]:

@@ -20,10 +20,12 @@ from aos_language.reading.sdl_text import Part, Section, listed_values
 from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
+    Assignment,
     CompoundType,
     EnumType,
     Environment,
     Field,
+    MonitorModel,
     SpecialState,
     StateVariable,
 )
@@ -61,8 +63,23 @@ def read_environment(sections: Sections, project: str, span: Span, findings: Fin
         shared_mapping_code=python.code()
         if (python := sections.last("shared_mapping_code")) is not None
         else None,
+        monitors=tuple(_monitors(sections, findings)),
         shared_code=shared.code() if (shared := sections.last("shared_code")) is not None else None,
     )
+
+
+def _monitors(sections: Sections, findings: Findings) -> Iterator[MonitorModel]:
+    """The model of each monitor; an error for one without a name or without code."""
+    for section in sections.all("monitor"):
+        name, part = section.value, section.last("code", findings)
+        code = part.code() if part is not None else None
+        if not name.text:
+            findings.error("AOS105", "`monitor:` needs a name", section.span)
+        elif code is None:
+            hint = "Add `code:` that sets __moduleResponse from `state`"
+            findings.error("AOS105", f"the monitor {name.text} has no model", name.span, hint)
+        elif check_name(name, "a monitor", findings):
+            yield MonitorModel(name.text, name.span, (Assignment(code.span, code=code),))
 
 
 def _horizon(sections: Sections, findings: Findings) -> int:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from itertools import pairwise
 
+import msgspec
+
 from aos_language.findings import Findings
 from aos_language.reading.document import check_name, normal_type
 from aos_language.reading.local_variable import LocalVariableParts, build_local_variable
@@ -15,6 +17,7 @@ from aos_language.reading.source import Text
 from aos_protocol.diagnostics import Span
 from aos_protocol.documents import (
     ACTIVATION_KINDS,
+    NO_ACTIVATION,
     AbstractionMapping,
     Activation,
     ActivationField,
@@ -39,11 +42,8 @@ def read_mapping(
     variables = [_local_variable(section, findings) for section in sections.all("local_variable")]
     text_response = sections.last("response_local_variable")
     stop_when = _stop_when(sections, findings)
-    section = sections.last("module_activation")
-    if section is None:
-        findings.error("AOS105", f"the mapping {name} lacks `module_activation:`", sections.span)
-        return None
-    activation = _activation(section, findings)
+    monitor = sections.last("monitor")
+    activation = _calls(sections, monitor, name, findings)
     if activation is None:
         return None
     return AbstractionMapping(
@@ -56,7 +56,27 @@ def read_mapping(
         local_variables=tuple(variable for variable in variables if variable is not None),
         response_variable_span=text_response.value.span if text_response is not None else None,
         stop_when=stop_when,
+        monitor=monitor.value.text if monitor is not None else "",
     )
+
+
+def _calls(sections: Sections, monitor: Section | None, name: str, findings: Findings) -> Activation | None:
+    """The activation; that of a monitor calls nothing, and is where the monitor is named."""
+    section = sections.last("module_activation")
+    if monitor is not None:
+        if section is not None:
+            message = "a mapping is that of a monitor or calls a skill, not both"
+            findings.error("AOS106", message, section.span, "Take one of the two out")
+        if not monitor.value.text:
+            hint = "It is that of a `monitor:` of the environment document"
+            findings.error("AOS105", "`monitor:` needs a name", monitor.span, hint)
+            return None
+        return msgspec.structs.replace(NO_ACTIVATION, span=monitor.value.span)
+    if section is None:
+        hint = "A mapping without a skill says `monitor: NAME` instead"
+        findings.error("AOS105", f"the mapping {name} lacks `module_activation:`", sections.span, hint)
+        return None
+    return _activation(section, findings)
 
 
 def _stop_when(sections: Sections, findings: Findings) -> Snippet | None:

@@ -64,6 +64,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         "extrinsic_code": _BLOCK,
         "heuristic_code": _BLOCK,
         "print_code": _BLOCK,
+        "monitor": Word(parts={"code": _CPP}),
     },
     ".sd": {
         "project": _LINE,
@@ -83,6 +84,7 @@ GRAMMARS: Mapping[str, Grammar] = {
         "response": Word(parts={"response_rule": _PYTHON, "assign_variable": _LINE, "value": _PYTHON}),
         "response_local_variable": _LINE,
         "stop_when": _PYTHON,
+        "monitor": _LINE,
         "module_activation": Word(
             parts={
                 "imports": _LINE,

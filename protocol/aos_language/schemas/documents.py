@@ -109,6 +109,13 @@ def _environment() -> Schema:
         Comment=TEXT,
         required=("TypeName", "Type"),
     )
+    monitor = object_of(
+        "The model of a monitor.",
+        Name=TEXT,
+        AssignmentCode=said(CODE, "Sets `__moduleResponse` from `state`, the state after the step."),
+        Comment=TEXT,
+        required=("Name", "AssignmentCode"),
+    )
     return object_of(
         "The environment: state, belief, goals, what happens by itself.",
         EnvironmentGeneral=general,
@@ -123,6 +130,7 @@ def _environment() -> Schema:
         SharedMappingCode=said(CODE, "Ours: constants and functions in Python that all mappings see."),
         HeuristicStateValue=said(BLOCK, "A state's worth where the search ends: `__heuristicValue`."),
         PrintStateFunc=said(BLOCK, "Writes a state to `ss`, for people."),
+        Monitors=said(list_of(monitor), "Ours: what monitors say of a state, after each step."),
         required=("EnvironmentGeneral",),
     )
 
@@ -260,17 +268,19 @@ def _mapping() -> Schema:
         MaxDuration=said({"type": "number", "exclusiveMinimum": 0}, "How long the call may take, in s."),
     )
     activation["anyOf"] = [{"required": [word]} for word in ACTIVATION_KINDS.values()]
-    return object_of(
-        "A skill's abstraction mapping.",
+    mapping = object_of(
+        "The abstraction mapping of a skill, or of a monitor.",
         GlueFramework={},
         ModuleResponse=responses,
         ModuleActivation=activation,
+        Monitor=said(TEXT, "In place of ModuleActivation: the monitor of the environment that this is."),
         StopWhen=said(
             expression(), "A Python expression over local variables: the skill is cancelled when it holds."
         ),
         LocalVariablesInitialization=list_of(_local_variable()),
-        required=("ModuleActivation",),
     )
+    mapping["oneOf"] = [{"required": ["ModuleActivation"]}, {"required": ["Monitor"]}]
+    return mapping
 
 
 def _local_variable() -> Schema:

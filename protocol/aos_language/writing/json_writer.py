@@ -9,6 +9,7 @@ from typing import Any
 from aos_protocol.documents import (
     ACTIVATION_KINDS,
     AbstractionMapping,
+    Activation,
     Assignment,
     CompoundType,
     Environment,
@@ -18,6 +19,7 @@ from aos_protocol.documents import (
     LocalVariable,
     LowLevelDocument,
     Parameter,
+    ResponseRule,
     SkillModel,
     Snippet,
     SpecialState,
@@ -80,6 +82,10 @@ def _environment(environment: Environment) -> dict[str, Any]:
         **_given(
             HeuristicStateValue=_block(environment.state_heuristic),
             PrintStateFunc=_block(environment.print_state),
+            Monitors=[
+                {"Name": monitor.name, "AssignmentCode": _code(monitor.code[0].code)}
+                for monitor in environment.monitors
+            ],
         ),
     }
 
@@ -167,7 +173,20 @@ def _parameters(parameters: Iterable[Parameter]) -> list[dict[str, str]]:
 
 
 def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
-    activation = mapping.activation
+    calls = {"Monitor": mapping.monitor} if mapping.monitor else _activation(mapping.activation)
+    return {
+        "GlueFramework": "ROS",
+        "ModuleResponse": {
+            "ResponseRules": [_rule(rule) for rule in mapping.rules],
+            **_given(FromStringLocalVariable=mapping.response_variable),
+        },
+        **calls,
+        **_given(StopWhen=_code(mapping.stop_when)),
+        "LocalVariablesInitialization": [_local_variable(variable) for variable in mapping.local_variables],
+    }
+
+
+def _activation(activation: Activation) -> dict[str, Any]:
     service = {
         **_given(ImportCode=_imports(activation.imports)),
         "ServicePath": activation.path,
@@ -177,29 +196,18 @@ def _mapping(mapping: AbstractionMapping) -> dict[str, Any]:
             for field in activation.fields
         ],
     }
-    rules = [
-        {
-            "Response": rule.response,
-            "ConditionCodeWithLocalVariables": _code(rule.condition) or "",
-            **_given(
-                AssignGlobalVariables=[
-                    {"VarName": assignment.path, "Value": _code(assignment.value)}
-                    for assignment in rule.assignments
-                ]
-            ),
-        }
-        for rule in mapping.rules
-    ]
     kind = ACTIVATION_KINDS[activation.kind]
+    return {"ModuleActivation": {kind: service, **_given(MaxDuration=activation.max_duration_s)}}
+
+
+def _rule(rule: ResponseRule) -> dict[str, Any]:
+    assigned = [
+        {"VarName": assignment.path, "Value": _code(assignment.value)} for assignment in rule.assignments
+    ]
     return {
-        "GlueFramework": "ROS",
-        "ModuleResponse": {
-            "ResponseRules": rules,
-            **_given(FromStringLocalVariable=mapping.response_variable),
-        },
-        "ModuleActivation": {kind: service, **_given(MaxDuration=activation.max_duration_s)},
-        **_given(StopWhen=_code(mapping.stop_when)),
-        "LocalVariablesInitialization": [_local_variable(variable) for variable in mapping.local_variables],
+        "Response": rule.response,
+        "ConditionCodeWithLocalVariables": _code(rule.condition) or "",
+        **_given(AssignGlobalVariables=assigned),
     }
 
 

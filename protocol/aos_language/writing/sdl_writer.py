@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from aos_protocol.documents import (
     AbstractionMapping,
+    Activation,
     Assignment,
     Environment,
     Field,
@@ -70,6 +71,8 @@ def _environment(environment: Environment) -> Iterator[str]:
     yield from _block("extrinsic_code", environment.extrinsic_changes)
     yield from _block("heuristic_code", environment.state_heuristic)
     yield from _block("print_code", environment.print_state)
+    for monitor in environment.monitors:
+        yield from ("", f"monitor: {monitor.name}", *_code("code", monitor.code[0].code))
 
 
 def _field(field: Field) -> str:
@@ -147,7 +150,15 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
         yield f"response_local_variable: {mapping.response_variable}"
     if mapping.stop_when is not None:
         yield from ("", *_expression("stop_when", mapping.stop_when))
-    activation = mapping.activation
+    if mapping.monitor:
+        yield from ("", f"monitor: {mapping.monitor}")
+    else:
+        yield from _activation(mapping.activation)
+    for variable in mapping.local_variables:
+        yield from ("", *_local_variable(variable))
+
+
+def _activation(activation: Activation) -> Iterator[str]:
     yield from ("", f"module_activation: {activation.kind}")
     yield from map(_import, activation.imports)
     yield f"path: {activation.path}"
@@ -157,8 +168,6 @@ def _mapping(mapping: AbstractionMapping) -> Iterator[str]:
         yield f"max_duration: {activation.max_duration_s!r}"
     for field in activation.fields:
         yield from (f"parameter: {field.name}", *_code("code", field.value))
-    for variable in mapping.local_variables:
-        yield from ("", *_local_variable(variable))
 
 
 def _local_variable(variable: LocalVariable) -> Iterator[str]:

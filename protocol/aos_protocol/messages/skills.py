@@ -62,7 +62,12 @@ class Outcome(Message, frozen=True):
     a number, or a list with null for those that are missing. Local variables are as they were when the rules
     ran, as text. `fault` says what went wrong; an observation has it where a rule has told a failure.
     `assigned` are the new low-level values that came with the response, as plain data, by the path of the
-    `anyValue` from its state variable. `stopped_by` names the skill whose `stop_when` has stopped this one.
+    `anyValue` from its state variable. `stopped_by` names the skill or the monitor whose `stop_when` has
+    stopped it.
+
+    `monitors` are the newest responses of the project's monitors since the outcome before, by monitor: an
+    observation of the state at this outcome, however the activation ended. `monitor_faults` says of a monitor
+    why its code gave none.
     """
 
     id: ActivationId
@@ -76,6 +81,8 @@ class Outcome(Message, frozen=True):
     assigned: dict[str, Any] = {}
     numbers: dict[str, Any] = {}
     stopped_by: str = ""
+    monitors: dict[str, str] = {}
+    monitor_faults: dict[str, str] = {}
 
 
 class Stray(Message, frozen=True):
@@ -129,7 +136,8 @@ class SkillResult(Message, frozen=True):
 
     `published` counts, by topic path, the messages sent on it since the adapter started: whoever listens has
     seen everything once it has seen that `TopicMessage.number`. An adapter that knows the observation itself
-    gives its `response` with the `numbers` beside it; then the mapping's rules do not run.
+    gives its `response` with the `numbers` beside it, and the responses of `monitors` that it knows; then the
+    mappings' rules do not run.
     """
 
     id: ActivationId
@@ -137,6 +145,7 @@ class SkillResult(Message, frozen=True):
     published: dict[str, int] = {}
     response: str = ""
     numbers: dict[str, Any] = {}
+    monitors: dict[str, str] = {}
 
 
 class Cancel(Message, frozen=True):

@@ -15,10 +15,14 @@ __all__ = ["Adapter", "Answer", "Call", "Observed"]
 
 
 class Observed(msgspec.Struct, frozen=True):
-    """The answer of an adapter that knows the observation itself: then the mapping's rules do not run."""
+    """The answer of an adapter that knows the observation itself: then the mappings' rules do not run.
+
+    `monitors` are the responses of monitors that it knows.
+    """
 
     response: str
     numbers: dict[str, Any] = {}
+    monitors: dict[str, str] = {}
 
 
 Answer = Mapping[str, Any] | Observed

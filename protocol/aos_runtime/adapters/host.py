@@ -352,7 +352,8 @@ class Host:
             if not isinstance(response, str):
                 raise SkillError(f"{what} is {response!r}, which is no word", code="AOS510")
             numbers = sendable(answer.numbers, what)
-            return SkillResult(call.id, {}, dict(self._published), response, numbers)
+            published = dict(self._published)
+            return SkillResult(call.id, {}, published, response, numbers, dict(answer.monitors))
         try:
             given = dict(answer)
         except (TypeError, ValueError) as error:

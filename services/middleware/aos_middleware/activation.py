@@ -16,6 +16,7 @@ import msgspec
 
 from aos_middleware.evaluator import Evaluator, MappingFault
 from aos_middleware.low_level import LowLevelValues, assigned_variables
+from aos_middleware.monitors import Monitored, Monitors
 from aos_middleware.motion_gate import GONE_S, MotionGate
 from aos_middleware.no_response import no_response
 from aos_middleware.observed_numbers import observed_numbers
@@ -72,6 +73,7 @@ class Surroundings(NamedTuple):
     gate: MotionGate
     on_stray: Callable[[Stray], None]
     is_played: Callable[[str], bool]
+    monitors: Monitors
 
 
 class _Observation(msgspec.Struct, frozen=True):
@@ -98,6 +100,8 @@ async def run_activation(
     fault: AosError | None = None
     status = "observed"
     activation = _Activation(request, evaluator, around, is_taken_up)
+    around.monitors.begin(activation.stop)
+    told = Monitored({}, {})
     try:
         observation = await activation.run()
     except MappingFault as error:
@@ -106,6 +110,8 @@ async def run_activation(
         status = "unknown" if activation.was_called else "failed"
     except AosError as error:
         fault, status = error, error.status
+    finally:
+        told = await around.monitors.end(activation.stop)
     cause = fault or observation.failure
     return Outcome(
         request.id,
@@ -119,6 +125,8 @@ async def run_activation(
         assigned=observation.assigned,
         numbers=observation.numbers,
         stopped_by=observation.stopped_by,
+        monitors=told.responses | activation.played_monitors,
+        monitor_faults=told.faults,
     )
 
 
@@ -163,8 +171,9 @@ class _Activation:
         self._last_numbers: dict[str, int] = {}
         self._has_received = asyncio.Event()
         self._fault: AosError | None = None
-        self._stop = Stop(around.bus, around.keys, request, self._mapping.activation.path)
+        self.stop = Stop(around.bus, around.keys, request, self._mapping.activation.path)
         self.was_called = False
+        self.played_monitors: dict[str, str] = {}
         self._has_missed = is_taken_up
 
     async def run(self) -> _Observation:
@@ -175,11 +184,12 @@ class _Activation:
         except MappingFault:
             raise
         except AosError as error:
-            if self._stop.is_cause(error):
+            if self.stop.is_cause(error):
                 return await self._observed_stop(error)
             if not self._evaluator.emitted.handles_failures:
                 raise
             return await self._observed_failure(error)
+        self.played_monitors = result.monitors
         if result.response:
             return _Observation(result.response, numbers=result.numbers)
         if self._has_missed and self._topic_of:
@@ -226,15 +236,15 @@ class _Activation:
         """Returns what the rules make of a skill that `stop_when` has stopped, which is no failure."""
         if self._has_missed:
             raise _missed_topics(self._request)
-        observed = await self._evaluator.finish({}, "stopped", self._stop.reason)
+        observed = await self._evaluator.finish({}, "stopped", self.stop.reason)
         if observed.response is None:
-            raise self._stop.unexplained(error)
+            raise self.stop.unexplained(error)
         return _Observation(
             observed.response,
             observed.local_variables,
             assigned_variables(observed.assigned, self._request),
             observed_numbers(self._evaluator.emitted.observed, observed.local_variables),
-            stopped_by=self._stop.by,
+            stopped_by=self.stop.by,
         )
 
     async def _listening_call(self, fields: dict[str, Any]) -> SkillResult:
@@ -246,7 +256,7 @@ class _Activation:
         streams = [self._bus.listen(key, TopicMessage) for key in sorted(self._topic_of)]
         async with merged(*streams, queue_size=_QUEUE_SIZE) as messages, asyncio.TaskGroup() as tasks:
             tasks.create_task(self._take(messages))
-            stopping = tasks.create_task(self._stop.follow())
+            stopping = tasks.create_task(self.stop.follow())
             try:
                 result = await self._call(fields)
                 await self._catch_up(result)
@@ -271,7 +281,7 @@ class _Activation:
             raise fault
         with self._around.gate.passing(path):
             await self._around.gate.confirm()
-            self._stop.let_out()
+            self.stop.let_out()
             return await self._call_path(path, fields)
 
     async def _call_path(self, path: str, fields: dict[str, Any]) -> SkillResult:
@@ -367,19 +377,21 @@ class _Activation:
                 _log.warning("%s goes on, but its mapping failed: %s", self._request.skill, error)
                 return
             if taken.stops:
-                self._stop.ask(self._request.skill)
+                self.stop.ask(self._request.skill)
             messages = messages[max(taken.messages, 1) :]
 
     async def _catch_up(self, result: SkillResult) -> None:
         """Waits until every message that the adapter had sent when the call ended has been evaluated."""
         published = {path.strip("/"): number for path, number in result.published.items()}
-        sent = {}
-        for key, topic in self._topic_of.items():
-            number = published.get(topic.strip("/"), 0)
-            # An unchanged number: the topic was silent, and there is nothing to wait for.
-            if number != self._published_before.get(topic.strip("/"), 0):
-                sent[key] = number
-        self._published_before.update(published)
+        # An unchanged number: the topic was silent, and there is nothing to wait for.
+        before = self._published_before
+        spoken = {topic: number for topic, number in published.items() if number != before.get(topic, 0)}
+        before.update(published)
+        sent = {
+            key: spoken[topic.strip("/")]
+            for key, topic in self._topic_of.items()
+            if topic.strip("/") in spoken
+        }
         try:
             async with asyncio.timeout(CATCH_UP_S):
                 while any(self._last_numbers.get(key, 0) < number for key, number in sent.items()):
@@ -388,6 +400,7 @@ class _Activation:
         except TimeoutError:
             for key, number in sent.items():
                 _log.info("%s: message %d did not come, seen %d", key, number, self._last_numbers.get(key, 0))
+        await self._around.monitors.catch_up(spoken, CATCH_UP_S)
 
 
 def _timed_out(path: str, limit_s: float) -> SkillError:

@@ -20,10 +20,10 @@ from aos_middleware.generated_lines import word
 from aos_middleware.python_code import LineOrigin, python_fault
 from aos_middleware.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
-from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, Snippet
+from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, SkillModel, Snippet
 from aos_protocol.errors import DocumentError
 
-__all__ = ["EmittedMapping", "emit_mapping"]
+__all__ = ["EmittedMapping", "emit_mapping", "emit_monitor"]
 
 _DIGEST_LENGTH = 16
 
@@ -68,6 +68,15 @@ class EmittedMapping(msgspec.Struct, frozen=True):
         return self.mapping.span if origin is None else origin.locate(column)
 
 
+def emit_monitor(
+    mapping: AbstractionMapping, low_level: LowLevelDocument | None = None, shared: Snippet | None = None
+) -> EmittedMapping:
+    """The Python module of a monitor's mapping, as of a skill that calls nothing."""
+    return emit_mapping(
+        Skill(SkillModel(mapping.project, mapping.monitor, mapping.span), mapping), low_level, shared=shared
+    )
+
+
 def emit_mapping(
     skill: Skill,
     low_level: LowLevelDocument | None = None,
@@ -107,7 +116,7 @@ def emit_mapping(
         constants=constant_code,
         shared_code=shared_lines,
         start_values=start_values,
-        request=request,
+        request=None if mapping.monitor else request,
         functions=functions,
         observe=observe,
         tables=sections.tables(constant_code),

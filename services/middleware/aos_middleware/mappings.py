@@ -13,7 +13,7 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
-from aos_middleware.emit import EmittedMapping, emit_mapping
+from aos_middleware.emit import EmittedMapping, emit_mapping, emit_monitor
 from aos_middleware.evaluator import Evaluator
 from aos_middleware.low_level import default_constants
 from aos_protocol.diagnostics import Diagnostic
@@ -30,7 +30,8 @@ _log = logging.getLogger("aos.middleware")
 
 
 def emit_project(project: Project) -> tuple[EmittedMapping, ...]:
-    """The mappings of all skills; DocumentError AOS121 with every diagnostic if one cannot be generated."""
+    """The mappings of all skills and monitors; DocumentError AOS121 with every diagnostic if one cannot be
+    generated."""
     emitted: list[EmittedMapping] = []
     diagnostics: list[Diagnostic] = []
     constants = default_constants(project)
@@ -38,6 +39,11 @@ def emit_project(project: Project) -> tuple[EmittedMapping, ...]:
         try:
             shared = project.environment.shared_mapping_code
             emitted.append(emit_mapping(skill, project.low_level, constants, shared))
+        except DocumentError as error:
+            diagnostics += error.diagnostics
+    for monitor in project.monitors:
+        try:
+            emitted.append(emit_monitor(monitor, project.low_level, project.environment.shared_mapping_code))
         except DocumentError as error:
             diagnostics += error.diagnostics
     if diagnostics:
@@ -77,13 +83,24 @@ class Mappings:
         """The newest revision with its skills, sorted, the newest that was refused, and those that are
         kept."""
         return MappingState(
-            self._revision, tuple(sorted(self._newest)), self._refused, revisions=tuple(sorted(self._kept))
+            self._revision,
+            tuple(sorted(_skills(self._newest))),
+            self._refused,
+            revisions=tuple(sorted(self._kept)),
         )
+
+    @property
+    def monitors(self) -> dict[str, Evaluator]:
+        """The monitors of the newest revision in use, by name."""
+        return {name: found for name, found in self._newest.items() if found.emitted.mapping.monitor}
 
     @property
     def paths(self) -> dict[str, str]:
         """The activation path of each skill of the newest revision in use."""
-        return {skill: evaluator.emitted.mapping.activation.path for skill, evaluator in self._newest.items()}
+        return {
+            skill: evaluator.emitted.mapping.activation.path
+            for skill, evaluator in _skills(self._newest).items()
+        }
 
     def evaluator(self, skill: str, revision: int = 0) -> Evaluator:
         """The evaluator of a skill in a revision, or in the newest where that one is not kept.
@@ -91,7 +108,7 @@ class Mappings:
         SkillError AOS501 if there is no such skill; the reason of the refusal if no revision could be used.
         """
         self._in_use = max(self._in_use, revision)
-        mappings = self._kept.get(revision) or self._newest
+        mappings = _skills(self._kept.get(revision) or self._newest)
         if skill in mappings:
             return mappings[skill]
         if not self._kept and self._refusal is not None:
@@ -181,6 +198,10 @@ class Mappings:
                 (self._folder / mapping.file_name).write_text(mapping.python, encoding="utf-8")
         except OSError as error:
             _log.warning("the generated modules are not in %s: %s", self._folder, error)
+
+
+def _skills(mappings: dict[str, Evaluator]) -> dict[str, Evaluator]:
+    return {name: evaluator for name, evaluator in mappings.items() if not evaluator.emitted.mapping.monitor}
 
 
 async def _load(evaluators: set[Evaluator]) -> None:

@@ -18,6 +18,7 @@ from aos_middleware.evaluator import EvaluationLimits, Evaluator
 from aos_middleware.ledger import OutcomeLedger
 from aos_middleware.low_level import LowLevelValues
 from aos_middleware.mappings import Mappings
+from aos_middleware.monitors import Monitors
 from aos_middleware.motion_gate import MotionGate
 from aos_middleware.served_paths import ServedPaths
 from aos_middleware.settings import Settings
@@ -68,13 +69,14 @@ class _Middleware:
             evaluation_s=settings.evaluation_s,
             allowed_imports=settings.allowed_imports,
         )
-        self._mappings = Mappings(folder, self._make_evaluator, self._tell_state)
+        self._mappings = Mappings(folder, self._make_evaluator, self._take_over)
         self._served = ServedPaths(service.bus, service.keys, self._tell_state)
         self._ledger = OutcomeLedger.open(run_dir / "middleware.db")
         self._fence = Fence(epoch_of_solver(service.bus, service.keys))
         for request in self._ledger.requests():
             self._fence.note(request)
         self._low_level = LowLevelValues(self._ledger.outcomes())
+        self._monitors = Monitors(service.bus, service.keys)
         self._around = Surroundings(
             bus=service.bus,
             keys=service.keys,
@@ -85,6 +87,7 @@ class _Middleware:
             gate=MotionGate(service.bus, service.keys, self._served),
             on_stray=self._ledger.note,
             is_played=settings.is_played,
+            monitors=self._monitors,
         )
         self._running: dict[ActivationId, asyncio.Event] = {}
         self._running_skills: dict[str, ActivationId] = {}
@@ -96,6 +99,7 @@ class _Middleware:
             await bus.answer(keys.mapping_state, MappingQuery, self._answer_state)
             await self._service.ready()
             tasks.create_task(self._served.follow())
+            tasks.create_task(self._monitors.run())
             tasks.create_task(self._follow_registry())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
@@ -139,6 +143,11 @@ class _Middleware:
         unavailable = {skill: fault.message for skill, fault in faults.items() if fault is not None}
         announced = {skill: self._served.announced(path) for skill, path in self._mappings.paths.items()}
         return msgspec.structs.replace(self._mappings.state, unavailable=unavailable, announced=announced)
+
+    def _take_over(self) -> None:
+        """Other mappings are in use."""
+        self._monitors.follow(self._mappings.monitors)
+        self._tell_state()
 
     def _tell_state(self) -> None:
         self._service.bus.tell(self._service.keys.mapping_state, self._state())

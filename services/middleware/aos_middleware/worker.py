@@ -70,6 +70,7 @@ class LoadedMapping:
         self._of_skill: dict[str, Any] = {}
         self._silent: set[str] = set()
         self._has_stopped = False
+        self._holds = False
         namespace: dict[str, Any] = {
             "__name__": load.file_name.removesuffix(".py"),
             "__builtins__": _builtins(load.allowed_imports),
@@ -107,14 +108,15 @@ class LoadedMapping:
         self._values = {}
         self._last_given = {}
         self._assigned = {}
-        self._has_stopped = False
+        self._has_stopped = self._holds = False
         with _watched(self._load.evaluation_s):
             named = self._with_constants(parameters)
             for path, value in low_level.items():
                 put(named, path, message_from(value))
             self._values = self._namespace["local_variables"](named)
-            fields = self._call(self._namespace["request"])
-            plain: dict[str, Any] = plain_from(fields)
+            # A monitor calls nothing.
+            request = self._namespace.get("request")
+            plain: dict[str, Any] = plain_from(self._call(request)) if request is not None else {}
         of_topics = {name for functions in self._namespace.get("TOPICS", {}).values() for name in functions}
         self._silent = {name for name in of_topics if self._values[name] is None}
         return plain
@@ -124,7 +126,8 @@ class LoadedMapping:
         self._update(functions, message_from(fields))
 
     def _stops(self) -> bool:
-        """Returns whether the skill is to be stopped, once: the first time that its condition holds.
+        """Returns whether what runs is to be stopped: for a skill the first time that the condition holds,
+        for a monitor each time that it becomes true.
 
         It is not asked before each topic that it reads has said something, or has an initial value.
         """
@@ -139,8 +142,9 @@ class LoadedMapping:
             # The truth values of numpy have no common class with Python's.
             if not isinstance(value, bool) and type(value).__name__ not in ("bool", "bool_"):
                 raise NoTruthValue(f"stop_when is {text_of(value)}, which is neither True nor False", code)
-            self._has_stopped = bool(value)
-        return self._has_stopped
+        held, self._holds = self._holds, bool(value)
+        self._has_stopped = self._holds and "request" in self._namespace
+        return self._holds and not held
 
     def _finish(self, result: dict[str, Any], status: str, error: str) -> str | None:
         self._of_skill = {"__skill_status": status, "__skill_error": error}

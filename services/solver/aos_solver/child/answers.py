@@ -51,7 +51,7 @@ class GroundedAction(msgspec.Struct, frozen=True):
 
 
 class EngineDescription(msgspec.Struct, frozen=True):
-    """The model as the engine knows it; responses are listed for each skill.
+    """The model as the engine knows it; responses are listed for each skill, and for each of the monitors.
 
     `mission_parameters` are the values that it runs with, by the names of their parts.
     """
@@ -62,6 +62,7 @@ class EngineDescription(msgspec.Struct, frozen=True):
     actions: tuple[GroundedAction, ...]
     responses: dict[str, tuple[str, ...]]
     mission_parameters: dict[str, str] = {}
+    monitors: tuple[str, ...] = ()
 
 
 class Plan(msgspec.Struct, frozen=True):

@@ -44,6 +44,8 @@ B = TypeVar("B", BeliefSummary, BeliefUpdate, Conditioned)
 
 ANSWER_DEADLINE_S = 30.0
 
+_FIRST_MONITOR = 1 << 24
+
 
 class Done(msgspec.Struct, frozen=True):
     """The answer that says nothing more."""
@@ -174,6 +176,10 @@ class Asking:
             if grounded.name == action:
                 return index
         raise ModelError(f"there is no action {action}", code="AOS501")
+
+    def _index_of_monitor(self, monitor: str) -> int:
+        """The number that stands for a monitor where an action is asked for; see step.hpp."""
+        return _FIRST_MONITOR + self.description.monitors.index(monitor)
 
     async def _change_belief(self, command: str, kind: type[B], *, before: Sequence[str] = ()) -> B:
         """The answer to a command that changes the belief; the commands `before` it prepare that."""

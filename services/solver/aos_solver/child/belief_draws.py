@@ -53,6 +53,11 @@ class BeliefDraws:
         self.newest = draws_of(self._mission, self._step)
         return self.newest
 
+    def of_monitor(self) -> int:
+        """The seed for an update by what a monitor says after a step, or after another monitor."""
+        self.newest = draws_of(self.newest, 2)
+        return self.newest
+
     def of_takeover(self) -> int:
         """The seed for a belief that comes from an engine with other variables."""
         self.newest = draws_of(self.newest, 1)

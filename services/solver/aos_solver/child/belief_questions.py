@@ -110,6 +110,30 @@ class BeliefQuestions(Asking):
         remark = f"{remark}; {update.remark}" if update.remark else remark
         return msgspec.structs.replace(update, remark=remark)
 
+    def has_monitored(self, monitor: str, response: str) -> bool:
+        """Returns whether the model has such a monitor with such a response."""
+        known = self.description.responses[monitor] if monitor in self.description.monitors else ()
+        return response in known
+
+    async def update_by_monitor(
+        self, monitor: str, response: str, refuted_below: float = 0.01
+    ) -> BeliefUpdate:
+        """Bayes' rule for what a monitor says of the state as it is: no time passes."""
+        command = command_line(
+            "update",
+            action=self._index_of_monitor(monitor),
+            response=response,
+            numbers="",
+            refuted_below=refuted_below,
+            draws=self._draws.of_monitor(),
+        )
+        return await self._change_belief(command, BeliefUpdate)
+
+    async def predict_monitor(self, monitor: str) -> Prediction:
+        """Returns the responses that a monitor may give to the state as it is believed."""
+        command = command_line("predict", action=self._index_of_monitor(monitor), seed=self._draws.newest)
+        return await self._ask(command, Prediction)
+
     async def _corrected(
         self, action: str, question: Mapping[str, Any], local_variables: Mapping[str, str] | None
     ) -> BeliefUpdate:

@@ -39,6 +39,15 @@ class WorldQuestions(Asking):
         numbers = numbers_by_name(observed, step.numbers)
         return WorldStep(step.reward, step.response, step.ending, numbers, step.violations)
 
+    async def monitor_world(self) -> dict[str, str]:
+        """What each monitor says of the hidden state, by the model."""
+        responses = {}
+        for monitor in self.description.monitors:
+            command = command_line("step_world", action=self._index_of_monitor(monitor))
+            responses[monitor] = (await self._ask(command, EngineStep)).response
+            self._world.append(command)
+        return responses
+
     async def world_state(self) -> str:
         """The hidden state as text for people."""
         return (await self._ask("show_world", WorldState)).state

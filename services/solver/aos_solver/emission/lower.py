@@ -6,7 +6,7 @@ A pure function of the project. Mistakes of the documents come back as diagnosti
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import msgspec
 
@@ -49,7 +49,16 @@ from aos_solver.emission.lower_state import (
 )
 from aos_solver.emission.lower_types import Types, lower_enum
 from aos_solver.emission.lower_writes import Changes, changes_of, drawing_defaults
-from aos_solver.emission.program import Constraint, Local, Observed, Parameter, Piece, Program, SpecialState
+from aos_solver.emission.program import (
+    Constraint,
+    Local,
+    Monitor,
+    Observed,
+    Parameter,
+    Piece,
+    Program,
+    SpecialState,
+)
 from aos_solver.emission.program import Skill as LoweredSkill
 
 __all__ = ["lower"]
@@ -124,6 +133,7 @@ class _Lowering:
         state_heuristic = code.section(LOOKING, environment.state_heuristic)
         print_state = code.section(LOOKING, environment.print_state)
         skills = tuple(self._skill(skill) for skill in project.skills)
+        monitors = tuple(self._monitors())
         constraints = tuple(self._constraint(constraint) for constraint in project.constraints)
         names = frozenset(self._pieces.identifiers)
         headers = headers_for(names)
@@ -157,7 +167,17 @@ class _Lowering:
             shared_functions=functions,
             shared_names=self._shared.all_names,
             leaves=tuple(parameter_leaves(environment).values()),
+            monitors=monitors,
         )
+
+    def _monitors(self) -> Iterator[Monitor]:
+        models = {model.name: model for model in self._project.environment.monitors}
+        for mapping in self._project.monitors:
+            model = models[mapping.monitor]
+            section = self._code.section(LOOKING, model.code)
+            if section is not None:
+                responses = tuple(dict.fromkeys(rule.response for rule in mapping.rules))
+                yield Monitor(model.name, model.span.file, responses, section)
 
     def _shared_piece(self, *, late: bool) -> Piece | None:
         snippet = self._project.environment.shared_code
@@ -298,6 +318,10 @@ def _digest(project: Project) -> str:
                 [(variable.name, variable.type) for variable in skill.mapping.local_variables],
             )
             for skill in project.skills
+        ],
+        *[
+            [(mapping.monitor, [rule.response for rule in mapping.rules]) for mapping in project.monitors]
+            for _ in project.monitors[:1]
         ],
     ]
     return hashlib.sha256(msgspec.json.encode(parts)).hexdigest()

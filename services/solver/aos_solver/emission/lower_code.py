@@ -67,6 +67,8 @@ def sections_of(project: Project) -> Iterator[tuple[Phase, tuple[Assignment, ...
     yield LOOKING, environment.print_state
     for special in environment.special_states:
         yield LOOKING, special.code
+    for monitor in environment.monitors:
+        yield LOOKING, monitor.code
     for model in (skill.model for skill in project.skills):
         yield LOOKING, model.possible_parameters
         yield LOOKING, model.precondition

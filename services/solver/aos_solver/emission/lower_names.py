@@ -22,8 +22,8 @@ _OF_NAMESPACES = frozenset({"model"})
 _OF_EMITTED_SKILLS = frozenset({
     "Locals", "Observed", "Parameters", "Response", "execution_time", "given_observation",
     "has_alike_groundings", "has_certain_rewards", "has_text_response", "locals", "make_groundings",
-    "next_state", "number_count",
-    "possible_parameters", "precondition", "read_locals", "response_names", "rollout_policy",
+    "is_monitor", "next_state", "number_count",
+    "possible_parameters", "precondition", "read_locals", "respond", "response_names", "rollout_policy",
     "violation_penalty",
 })  # fmt: skip
 _OF_EMITTED_ENVIRONMENTS = frozenset({
@@ -44,8 +44,8 @@ def check_names(project: Project, findings: Findings) -> None:
         _check(name, span, findings, global_names | _OF_NAMESPACES)
     for name, span in _member_names(project):
         _check(name, span, findings, frozenset())
-    for skill in project.skills:
-        for rule in skill.mapping.rules:
+    for mapping in (*(skill.mapping for skill in project.skills), *project.monitors):
+        for rule in mapping.rules:
             _check(rule.response, rule.span, findings, _OF_EMITTED_SKILLS)
 
 
@@ -69,6 +69,7 @@ def _member_names(project: Project) -> Iterator[tuple[str, Span]]:
     yield from ((variable.name, variable.span) for variable in environment.variables)
     if project.low_level is not None:
         yield from ((constant.name, constant.span) for constant in project.low_level.constants)
+    yield from ((monitor.name, monitor.span) for monitor in project.environment.monitors)
     for skill in project.skills:
         yield skill.name, skill.model.span
         yield from ((parameter.name, parameter.span) for parameter in skill.model.parameters)

@@ -41,6 +41,9 @@ def _lines(program: Program) -> Iterator[str]:
     yield from _titled("a state's text", _section(program.print_state))
     for skill in program.skills:
         yield from _skill(skill)
+    for monitor in program.monitors:
+        title = f"monitor {monitor.name} observes {' | '.join(monitor.responses)}"
+        yield from _titled(title, _section(monitor.model))
 
 
 def _titled(title: str, lines: Iterable[str]) -> Iterator[str]:

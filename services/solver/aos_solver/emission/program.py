@@ -289,6 +289,15 @@ class Skill(msgspec.Struct, frozen=True):
         )
 
 
+class Monitor(msgspec.Struct, frozen=True):
+    """A monitor: its responses in the order of the mapping's rules, and the code that gives one."""
+
+    name: str
+    document: str
+    responses: tuple[str, ...]
+    model: Section
+
+
 class Constraint(msgspec.Struct, frozen=True):
     """An event of a step, with its bound for a mission; `skills` are those that it names."""
 
@@ -333,6 +342,7 @@ class Program(msgspec.Struct, frozen=True):
     shared_functions: Piece | None = None
     shared_names: frozenset[str] = frozenset()
     leaves: tuple[ParameterLeaf, ...] = ()
+    monitors: tuple[Monitor, ...] = ()
 
     @property
     def particle(self) -> tuple[Variable, ...]:

@@ -304,7 +304,7 @@ class Mission:
             update_s=update_s,
             adopted=None,
             is_impossible=update.is_impossible,
-            remark="; ".join(text for text in (update.remark, remark) if text),
+            remark="; ".join(text for text in (update.remark, remark, *_faults_of_monitors(outcome)) if text),
         )
         self._publish(record)
         self.belief = update.summary
@@ -345,3 +345,8 @@ class Mission:
         self.state = msgspec.structs.replace(self.state, **changes)
         self._ports.journal("mission", self.state)
         self._ports.publish_state(self.state)
+
+
+def _faults_of_monitors(outcome: Outcome) -> list[str]:
+    """What people are told of monitors that gave nothing."""
+    return [f"the monitor {name} failed: {text}" for name, text in outcome.monitor_faults.items()]

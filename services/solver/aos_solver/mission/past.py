@@ -25,7 +25,8 @@ _DEFAULT_RESPONSE = "DefaultObservation"
 class Evidence(msgspec.Struct, frozen=True):
     """A step of a mission as a belief sees it: the grounded action, and what was observed after it.
 
-    Where nobody observed anything `response` is None, and the skill ran with `ran_probability`.
+    Where nobody observed anything `response` is None, and the skill ran with `ran_probability`. `monitors`
+    are what monitors said at the end of the step.
     """
 
     action: str
@@ -34,11 +35,12 @@ class Evidence(msgspec.Struct, frozen=True):
     local_variables: Mapping[str, str] = {}
     numbers: Mapping[str, Any] = {}
     ran_probability: float = 1.0
+    monitors: Mapping[str, str] = {}
 
 
 def evidence_of(decision: DecisionRecord, outcome: Outcome, failures: Failures) -> Evidence:
     """The step as a belief sees it."""
-    evidence = Evidence(decision.action, decision.skill)
+    evidence = Evidence(decision.action, decision.skill, monitors=outcome.monitors)
     if outcome.status == "observed":
         return msgspec.structs.replace(
             evidence,
@@ -93,16 +95,35 @@ async def replayed(engine: Engine, past: Past, first: int = 0) -> AsyncIterator[
 async def updated(
     engine: Engine, evidence: Evidence | Beginning, refuted_below: float, *, number: int | None = None
 ) -> BeliefUpdate:
-    """The belief after a step; without an observation by how probable it is that the skill ran.
+    """The belief after a step, and after what monitors said at its end, one after the other.
 
-    A model that lacks the action or the response lets extrinsic changes alone act (`is_foreign`). `number` is
-    the step's in the past, from 1; it decides what is drawn. Without it the engine counts.
+    A model that lacks the action or the response lets extrinsic changes alone act (`is_foreign`). Where it
+    lacks a monitor or its response, that says nothing. `number` is the step's in the past, from 1; it decides
+    what is drawn. Without it the engine counts.
     ModelError AOS112 for what somebody knew at the start of a mission.
     """
     if isinstance(evidence, Beginning):
         if evidence.given:
             raise ModelError(f"nobody has asked it whether {evidence.response} held", code="AOS112")
         return BeliefUpdate(0.0, False, await engine.begin_mission(evidence.idle, step=number))
+    update = await _stepped(engine, evidence, refuted_below, number)
+    for monitor, response in sorted(evidence.monitors.items()):
+        if engine.has_monitored(monitor, response):
+            seen = await engine.update_by_monitor(monitor, response, refuted_below)
+            remark = f"the model excludes that {monitor} says {response}" if seen.is_impossible else ""
+            update = msgspec.structs.replace(update, summary=seen.summary)
+        else:
+            remark = f"the model has no monitor {monitor} that says {response}"
+        if remark:
+            text = f"{update.remark}; {remark}" if update.remark else remark
+            update = msgspec.structs.replace(update, remark=text)
+    return update
+
+
+async def _stepped(
+    engine: Engine, evidence: Evidence, refuted_below: float, number: int | None
+) -> BeliefUpdate:
+    """The belief after a step; without an observation by how probable it is that the skill ran."""
     if evidence.response is None and evidence.ran_probability == 0:
         return BeliefUpdate(0.0, False, await engine.summary())
     if _is_foreign(engine, evidence):

@@ -33,10 +33,11 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
 
     `ending` is why it stopped: what the belief called for, or the world's end where the belief has not
     noticed it. `world_ending` is the truth: how the world has ended, None where it has not. `believed_ending`
-    is what the last belief held for sure enough. `numbers` are what was observed beside each response,
-    where a model reports any. `states` are texts of the world's state before the first action and after each,
-    where they were wanted. `violated` are the mission's constraints that were violated in the world, and
-    `risked` is what the decisions took of each constraint's budget.
+    is what the last belief held for sure enough. `numbers` are what were observed beside each response,
+    where a model reports any, and `monitors` what monitors said after each step. `states` are texts of the
+    world's state before the first action and after each, where they were wanted. `violated` are the mission's
+    constraints that were violated in the world, and `risked` is what the decisions took of each constraint's
+    budget.
     """
 
     seed: int
@@ -52,6 +53,7 @@ class SimulatedRun(msgspec.Struct, frozen=True, rename={"total": "return"}):
     numbers: tuple[dict[str, float | list[float | None]], ...] = ()
     violated: tuple[str, ...] = ()
     risked: dict[str, float] = {}
+    monitors: tuple[dict[str, str], ...] = ()
 
 
 async def simulate_mission(
@@ -92,6 +94,7 @@ async def simulate_mission(
         world_ending=played.world_ending,
         believed_ending=believed_ending(mission.belief, limits),
         numbers=tuple(played.numbers) if any(played.numbers) else (),
+        monitors=tuple(played.monitors) if any(played.monitors) else (),
         violated=tuple(
             bound.never for number, bound in enumerate(engine.bounds) if played.violations >> number & 1
         ),
@@ -113,6 +116,7 @@ class _World(QuietPorts):
         self.actions: list[str] = []
         self.responses: list[str] = []
         self.numbers: list[dict[str, float | list[float | None]]] = []
+        self.monitors: list[dict[str, str]] = []
         self.states: list[str] = []
 
     async def begin(self, seed: int) -> None:
@@ -137,7 +141,11 @@ class _World(QuietPorts):
         self.responses.append(step.response)
         self.numbers.append(step.numbers)
         await self._look(step.ending)
-        return Outcome(request.id, request.skill, "observed", step.response, numbers=step.numbers)
+        monitors = await self._engine.monitor_world()
+        self.monitors.append(monitors)
+        return Outcome(
+            request.id, request.skill, "observed", step.response, numbers=step.numbers, monitors=monitors
+        )
 
     async def _look(self, ending: str | None) -> None:
         self.world_ending = Ending(ending) if ending else None

@@ -119,7 +119,8 @@ Cloud<Model> with_history(std::vector<Particle<Model>> particles, const Words& w
       step.numbers = std::make_shared<const ObservedNumbers>(std::move(numbers));
     }
     if (!text.empty() && text_observation(text) != step.observation) return alone;
-    if (step.action < no_action || step.action >= Model::action_count()) return alone;
+    const int count = is_monitor(step.action) ? first_monitor + Model::monitor_count() : Model::action_count();
+    if (step.action < no_action || step.action >= count) return alone;
     cloud.history.add(step);
   }
   Replay replay;

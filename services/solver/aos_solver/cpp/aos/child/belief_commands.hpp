@@ -131,7 +131,7 @@ class BeliefCommands {
       }
     }
     const bool is_impossible = found.are_empty();
-    impossible_in_a_row_ = is_impossible ? impossible_in_a_row_ + 1 : 0;
+    if (!is_monitor(action)) impossible_in_a_row_ = is_impossible ? impossible_in_a_row_ + 1 : 0;
     // A drawn belief may only have had too few particles, and a mixed one can be moved no more (moves.hpp). So the first
     // impossible observations in a row are left out.
     const bool may_be_too_few = belief().is_drawn() && impossible_in_a_row_ <= left_out_in_a_row;
@@ -153,7 +153,7 @@ class BeliefCommands {
     } else if (is_impossible) {
       become(json, believed_.remedied(report, after_impossible(action)));
     } else {
-      const bool is_by_bayes = !found.hypotheses_are_empty() && !believed_.excludes(found, report);
+      const bool is_by_bayes = !found.hypotheses_are_empty() && !believed_.excludes(found, report) && !is_monitor(action);
       auto after = believed_.given(Model::skill_of(action), report, std::move(found), command.number<double>("refuted_below"));
       become(json, std::move(after), [&] { is_by_bayes ? search_.move_to(action, observation) : search_.forget(); });
     }

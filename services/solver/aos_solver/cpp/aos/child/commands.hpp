@@ -39,6 +39,10 @@ class Commands {
       for (const auto& [parameter, value] : Model::arguments_of(action)) json.member(parameter, value);
       json.end_object().end_object();
     }
+    json.end_array().key("monitors").begin_array();
+    for (int monitor = 0; monitor < Model::monitor_count(); ++monitor) {
+      json.value(Model::action_name(first_monitor + monitor));
+    }
     json.end_array().key("responses").begin_object();
     for (int skill = 0; skill < Model::skill_count; ++skill) {
       json.key(Model::skill_name(skill)).begin_array();

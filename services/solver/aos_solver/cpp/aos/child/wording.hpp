@@ -14,10 +14,11 @@
 
 namespace aos {
 
-// Returns the action's number. Throws BadCommand if there is no such action.
+// Returns the number of an action or a monitor. Throws BadCommand if there is no such action.
 template <class Model>
 int checked_action(int action) {
-  if (action < 0 || action >= Model::action_count()) throw BadCommand{"there is no such action"};
+  const int count = is_monitor(action) ? first_monitor + Model::monitor_count() : Model::action_count();
+  if (action < 0 || action >= count) throw BadCommand{"there is no such action"};
   return action;
 }
 template <class Model>

@@ -34,6 +34,7 @@ struct ErasedModel {
   // The constants that the mission sets; they have their values when all is prepared.
   static std::span<const Member> mission_parameters() { return compiled_model.mission_parameters; }
   static int action_count() { return static_cast<int>(compiled_model.actions->size()); }
+  static int monitor_count() { return static_cast<int>(compiled_model.monitors->size()); }
   static const char* action_name(int action) { return grounded(action).words->name.c_str(); }
   // The parameters of an action with the texts of their values.
   static const auto& arguments_of(int action) { return grounded(action).words->arguments; }
@@ -149,7 +150,10 @@ struct ErasedModel {
   }
 
  private:
-  static const GroundedAction& grounded(int action) { return (*compiled_model.actions)[static_cast<std::size_t>(action)]; }
+  static const GroundedAction& grounded(int action) {
+    if (is_monitor(action)) return (*compiled_model.monitors)[static_cast<std::size_t>(action - first_monitor)];
+    return (*compiled_model.actions)[static_cast<std::size_t>(action)];
+  }
 
   static Step corrected_step(State& state, int action, DirectedDraws& random) {
     const State before = state;

@@ -34,6 +34,7 @@ template <class... Skills>
 struct SkillList {
   template <class Model>
   static constexpr std::array<SkillFacts, sizeof...(Skills)> facts{facts_of<Skills>(Model::template read_locals<Skills>)...};
+  static constexpr bool has_monitors = (Skills::is_monitor || ...);
   // The local variables of the last real observation of each skill.
   struct Locals : LocalsOf<Skills>... {};
 };
@@ -108,6 +109,7 @@ class ModelOf {
     Project::set_constants(draft);
     prepared_.start = draft;
     prepared_.grounded = {};
+    prepared_.monitors = {};
     ground(Skills{}, draft);
     if (prepared_.grounded.actions.empty()) throw ModelFault{"AOS119", "no skill has a grounded action"};
     blame::at(0);
@@ -115,6 +117,7 @@ class ModelOf {
 
   static int action_count() { return static_cast<int>(prepared_.grounded.actions.size()); }
   static constexpr const std::vector<GroundedAction>& grounded_actions() { return prepared_.grounded.actions; }
+  static constexpr const std::vector<GroundedAction>& monitors() { return prepared_.monitors.actions; }
 
   static void initial(State& state, auto& random) {
     if constexpr (Project::draws_defaults) {
@@ -130,7 +133,7 @@ class ModelOf {
   }
   static Step step(State& state, int action, auto& random) {
     return with_action(action, [&]<class Skill>(std::type_identity<Skill>, const auto& parameters) {
-      if constexpr (Project::has_costs) {
+      if constexpr (Project::has_costs && !Skill::is_monitor) {
         const State before = state;
         Step step = aos::step<Environment, Skill>(state, parameters, random);
         if (before.aos_ending == Ending::running) {
@@ -236,6 +239,7 @@ class ModelOf {
   struct Prepared {
     State start;
     GroundedActions grounded;
+    GroundedActions monitors;
     typename Skills::Locals locals;
   };
   inline static Prepared prepared_;
@@ -257,12 +261,21 @@ class ModelOf {
   template <class... Listed>
   static void ground(SkillList<Listed...>, const Draft& draft) {
     int number = 0;
-    (Listed::make_groundings(draft, Groundings{prepared_.grounded, number++, Listed::aos_name}), ...);
+    (Listed::make_groundings(
+         draft, Groundings{Listed::is_monitor ? prepared_.monitors : prepared_.grounded, number++, Listed::aos_name}),
+     ...);
+  }
+
+  static const GroundedAction& grounded(int action) {
+    if constexpr (Skills::has_monitors) {
+      if (is_monitor(action)) return prepared_.monitors.actions[action - first_monitor];
+    }
+    return prepared_.grounded.actions[action];
   }
 
   // Calls `use` with the type of the action's skill and with the action's parameters.
   static decltype(auto) with_action(int action, auto&& use) {
-    const GroundedAction& chosen = prepared_.grounded.actions[action];
+    const GroundedAction& chosen = grounded(action);
     return with_skill(Skills{}, chosen.skill, [&]<class Skill>(std::type_identity<Skill> skill) -> decltype(auto) {
       return use(skill, parameters_of<Skill>(chosen));
     });

@@ -48,6 +48,7 @@ struct ModelTable {
   double discount;
   std::span<const SkillFacts> skills;
   const std::vector<GroundedAction>* actions;
+  const std::vector<GroundedAction>* monitors;
   bool has_rollout_policy;
   bool has_state_heuristic;
   std::size_t ending_offset;
@@ -115,6 +116,7 @@ constexpr ModelTable table_of() {
       .discount = Model::discount,
       .skills = Model::skills(),
       .actions = &Model::grounded_actions(),
+      .monitors = &Model::monitors(),
       .has_rollout_policy = Model::has_rollout_policy,
       .has_state_heuristic = Model::has_state_heuristic,
       .ending_offset = offsetof(State, aos_ending),

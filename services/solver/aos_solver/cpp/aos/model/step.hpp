@@ -15,10 +15,15 @@ inline constexpr int ending_count = 4;
 using Observation = std::int64_t;
 
 inline constexpr Observation default_observation = -1;
+inline constexpr const char* default_observation_text = "DefaultObservation";
 
 // The number that stands for no action where a belief is updated: time passes, and nothing is observed.
 inline constexpr int no_action = -1;
-inline constexpr const char* default_observation_text = "DefaultObservation";
+
+// Monitors are asked like actions: these are their numbers, from here on. No list of actions has them, so that nobody
+// plans with them.
+inline constexpr int first_monitor = 1 << 24;
+inline constexpr bool is_monitor(int action) { return action >= first_monitor; }
 
 struct Step {
   double reward = 0;

@@ -51,6 +51,7 @@ struct SkillDefaults {
   };
   static constexpr double violation_penalty = 0;
   static constexpr bool has_text_response = false;
+  static constexpr bool is_monitor = false;
   static constexpr int number_count = 0;
   // Whether the parameters shape only what is observed (lower_relevance.py).
   static constexpr bool has_alike_groundings = false;
@@ -210,13 +211,30 @@ template <class Environment, class Skill, class State>
 
 }  // namespace detail
 
-// Runs a skill in place. An ended state stays as it is and gives no reward.
+// The response of a monitor to a state, which stays as it is. In an ended state a ModelFault is the default observation.
+template <class Monitor, class State>
+Step look(const State& state, auto& random) {
+  Effect effect;
+  try {
+    Monitor::respond(state, effect, random);
+    return {0, detail::observation_of<Monitor>(effect)};
+  } catch (const ModelFault&) {
+    if (state.aos_ending == Ending::running) throw;
+    return {};
+  }
+}
+
+// Runs a skill in place, or asks a monitor. An ended state stays as it is and gives no reward.
 template <class Environment, class Skill, class State>
 Step step(State& state, const auto& parameters, auto& random) {
-  if (state.aos_ending != Ending::running) [[unlikely]] {
-    return detail::step_after_the_end<Environment, Skill>(state, parameters, random);
+  if constexpr (Skill::is_monitor) {
+    return look<Skill>(state, random);
+  } else {
+    if (state.aos_ending != Ending::running) [[unlikely]] {
+      return detail::step_after_the_end<Environment, Skill>(state, parameters, random);
+    }
+    return detail::transition<Environment, Skill>(state, parameters, random);
   }
-  return detail::transition<Environment, Skill>(state, parameters, random);
 }
 
 // Lets the time of a step pass: the extrinsic changes, and the special states that they lead to.

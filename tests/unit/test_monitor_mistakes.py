@@ -1,0 +1,126 @@
+"""Monitors in documents: what is wrong with either half, told at its line, and both dialects."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_language.convert import Dialect, convert, without_origins
+from aos_language.load import load_files, read_bundle_files
+from aos_protocol.documents import Project
+from aos_solver.emission.emit import emit
+from aos_solver.emission.lower import lower
+
+BATTERY = {
+    path.name: path.read_text()
+    for path in sorted((Path(__file__).parents[1] / "data" / "bundles" / "battery").iterdir())
+}
+RULE = "response_rule: level < 0.2"
+TOPIC = "topic: /battery\nmessage_type: Battery\n"
+
+
+def findings(**changed: tuple[str, str]) -> list[str]:
+    """The findings where in these files (`drive_ef`) the first text gives way to the second."""
+    files = dict(BATTERY)
+    for name, (find, put) in changed.items():
+        file = name.replace("_", ".")
+        assert find in files[file]
+        files[file] = files[file].replace(find, put)
+    loaded = load_files({name: text.encode() for name, text in files.items() if text})
+    return [
+        f"{finding.severity} {finding.code} {finding.span.file}:{finding.span.line}:{finding.span.column} "
+        f"{finding.message}"
+        for finding in loaded.diagnostics
+    ]
+
+
+def test_the_bundle_has_no_findings() -> None:
+    assert findings() == []
+
+
+@pytest.mark.parametrize(
+    ("file", "find", "put", "finding"),
+    [
+        ("battery_am", "monitor: battery", "monitor: batery",
+         "error AOS114 battery.am:2:10 the environment document has no monitor `batery`"),
+        ("battery_am", BATTERY["battery.am"], "",
+         "error AOS114 drive.ef:24:10 the monitor battery has no abstraction mapping"),
+        ("battery_am", "response: low", "response: lo",
+         "error AOS116 drive.ef:27:54 the abstraction mapping of battery has no response `low`"),
+        ("battery_am", RULE, f"{RULE}\nresponse: unknown\nresponse_rule: level == 0.5",
+         "error AOS117 battery.am:5:11 the model of the monitor battery never produces the response unknown"),
+        ("battery_am", TOPIC, "from_ros_service_response: true\n",
+         "error AOS106 battery.am:8:17 `level` is of a call's result, and a monitor calls nothing"),
+        ("battery_am", RULE, "response_rule: __skill_status == 'stopped'",
+         "error AOS110 battery.am:4:16 no local variable gives `__skill_status`"),
+        ("battery_am", RULE, f"{RULE}\nassign_variable: charge\nvalue: 1",
+         "error AOS106 battery.am:5:18 a monitor gives no low-level values"),
+        ("battery_am", "monitor: battery", "monitor: battery\nmodule_activation: skill\npath: /battery",
+         "error AOS106 battery.am:3:1 a mapping is that of a monitor or calls a skill, not both"),
+        ("battery_am", "monitor: battery", "monitor:", "error AOS105 battery.am:2:1 `monitor:` needs a name"),
+        ("drive_ef", "if (state.charge == Low) __moduleResponse", 
+         "state.charge = Full;\nif (true) __moduleResponse",
+         "error AOS123 drive.ef:26:1 `state.charge` is written in the model of a monitor"),
+        ("drive_ef", "monitor: battery\ncode:", 
+         "monitor: battery\ncode:\nint unused = 0;\nmonitor: battery\ncode:",
+         "error AOS111 drive.ef:27:10 a second monitor battery"),
+        ("drive_ef", "monitor: battery\ncode:", "monitor: battery\n#",
+         "error AOS105 drive.ef:24:10 the monitor battery has no model"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_told_at_its_line(file: str, find: str, put: str, finding: str) -> None:
+    told = findings(**{file: (find, put)})
+    assert any(each.startswith(finding) for each in told), told
+
+
+def test_a_monitor_without_rules_or_topics_says_what_it_lacks() -> None:
+    text = "project: battery\nmonitor: battery\n"
+    told = findings(battery_am=(BATTERY["battery.am"], text))
+    assert [each.partition(".am:")[2] for each in told if ".am:" in each] == [
+        "1:1 the monitor battery listens to no topic",
+        "1:1 the monitor battery has no response rules",
+    ]
+
+
+def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused() -> None:
+    files = {name: text.encode() for name, text in BATTERY.items()}
+    files["again.am"] = files["battery.am"]
+    told = [f"{finding.code} {finding.span}" for finding in load_files(files).diagnostics]
+    assert told == ["AOS111 battery.am:2:10"]
+    files = {name: text.replace("monitor: battery", "monitor: go").encode() for name, text in BATTERY.items()}
+    assert "AOS111 drive.ef:24:10" in [f"{each.code} {each.span}" for each in load_files(files).diagnostics]
+
+
+def test_both_dialects_say_the_same() -> None:
+    files = read_bundle_files(Path(__file__).parents[1] / "data" / "bundles" / "battery")[0]
+    original = without_origins(project_of(files))
+    json = {name: text.encode() for name, text in convert(files, Dialect.JSON)[0].items()}
+    sdl = {name: text.encode() for name, text in convert(json, Dialect.SDL)[0].items()}
+    assert without_origins(project_of(json)) == original == without_origins(project_of(sdl))
+
+
+def test_a_model_is_another_one_with_other_responses_of_a_monitor_and_without_it() -> None:
+    files = dict(BATTERY)
+    digests = {emitted(files)}
+    files["battery.am"] = files["battery.am"].replace(
+        "response: fine", "response: flat\nresponse_rule: level < 0\nresponse: fine"
+    )
+    files["drive.ef"] = files["drive.ef"].replace("? fine : low", "? fine : AOS.Bernoulli(0.5) ? flat : low")
+    digests.add(emitted(files))
+    files["drive.ef"] = files["drive.ef"].partition("monitor:")[0]
+    del files["battery.am"]
+    digests.add(emitted(files))
+    assert len(digests) == 3
+
+
+def project_of(files: dict[str, bytes]) -> Project:
+    loaded = load_files(files)
+    assert loaded.project is not None, loaded.diagnostics
+    return loaded.project
+
+
+def emitted(files: dict[str, str]) -> str:
+    program, diagnostics = lower(project_of({name: text.encode() for name, text in files.items()}))
+    assert program is not None, diagnostics
+    return emit(program).digest
