@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import stopping, takeovers
+from . import monitored, stopping, takeovers
 
 
 class Part(NamedTuple):
@@ -29,6 +29,7 @@ PARTS: Mapping[str, Part] = {
     "truth": Part("beliefs of new documents", takeovers.add_truth_options, takeovers.measure_truth),
     "shelf": Part("the shelf of models", takeovers.add_shelf_options, takeovers.measure_shelf),
     "pushes": Part("pushes into missions", takeovers.add_push_options, takeovers.measure_pushes),
+    "monitored": Part("what monitors say in beliefs", monitored.add_options, monitored.measure),
 }
 
 

@@ -156,6 +156,9 @@ MISUSES = {
         "room.ef", "horizon: 5", "horizon: 5\nshared_mapping_code:\ndef far(x) «return x", "AOS121"
     ),
     "stop_when": Rule("go glue.json", '"GlueFramework": "ROS",', '"StopWhen": "«ok",', "AOS110"),
+    "monitor": Rule(
+        "go glue.json", '"GlueFramework": "ROS",', '"Monitor": "«battery", "GlueFramework": "ROS",', "AOS114"
+    ),
     "no mapping": Rule("go glue.json", '"Name": "go"', '"Name": "«goo"', "AOS114"),
     "local variables": Rule("go glue.json", '"oDoor.pose"', '"«oDoor.where"', "AOS110"),
 }

@@ -120,10 +120,10 @@ class _Monitor:
         self._received = asyncio.Event()
 
     async def listen(self, bus: Bus, keys: Keys) -> None:
-        """Evaluates the messages of its topics for ever."""
+        """Evaluates the messages of its topics for ever; meanwhile nobody else closes its worker."""
         topics = {keys.topic(topic): topic for topic in sorted(self._topics)}
         streams = [bus.listen(key, TopicMessage) for key in topics]
-        async with merged(*streams, queue_size=_QUEUE_SIZE) as messages:
+        async with self.evaluator.in_use, merged(*streams, queue_size=_QUEUE_SIZE) as messages:
             async with self._asking:
                 await self._begin()
             while True:

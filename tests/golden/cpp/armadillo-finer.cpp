@@ -1,5 +1,5 @@
 // Model of the project armadillo: 7 state variables, 5 skills.
-// Emitted by aos 0.1.0 from the documents of digest a5a984e9fa5c0573. Change the documents, not
+// Emitted by aos 0.1.0 from the documents of digest cb02365ca2445cd3. Change the documents, not
 // this file; `aos inspect BUNDLE --stage cpp` writes it anew. The #line directives give the documents' lines.
 // Names that begin with `aos_` are this file's own. `aos::blame::at(N)` notes that piece N of the documents
 // runs, so that a crash or a hang is told at its line.
