@@ -17,12 +17,13 @@ from pathlib import Path
 
 import msgspec
 
+from aos_deploy.program import cache_dir
 from aos_language.load import load_bundle
-from aos_protocol.messages import DecisionRecord
+from aos_protocol.messages import BeliefSummary, DecisionRecord
 from aos_runtime.journal import Journal
 from aos_solver.child.engine import Engine
 from aos_solver.mission.hot_plug import build_project
-from aos_solver.mission.memory import folded
+from aos_solver.mission.memory import MissionMemory, folded
 from aos_solver.mission.past import Evidence, Past, replayed
 
 BUNDLE = Path(__file__).parents[1] / "data" / "bundles" / "battery"
@@ -94,7 +95,7 @@ async def _judge(folder: Path, steps: int) -> int:
     ]
     observed = [record for record in records if record.outcome is not None]
     decided = {record.step: record for record in records if record.outcome is None}
-    beliefs = await _beliefs(memory, folder)
+    beliefs = await _beliefs(memory)
     in_time = by_bayes = heard = 0
     for record, belief in zip(observed, beliefs, strict=True):
         levels = sent[record.step]
@@ -110,11 +111,11 @@ async def _judge(folder: Path, steps: int) -> int:
     return int(len(observed) < steps or min(in_time, by_bayes) < len(observed))
 
 
-async def _beliefs(memory: object, folder: Path) -> list[object]:
+async def _beliefs(memory: MissionMemory) -> list[BeliefSummary]:
     """The posterior after each step, by another engine."""
     project = load_bundle(BUNDLE).project
     assert project is not None
-    built = await build_project(project, folder / "cache", lambda remark: None)
+    built = await build_project(project, cache_dir(), lambda remark: None)
     engine = await Engine.start(built, seed=1)
     past = Past()
     past.steps += [

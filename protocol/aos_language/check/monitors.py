@@ -63,7 +63,7 @@ def _as_skill(model: MonitorModel) -> SkillModel:
 
 
 def _check_form(mapping: AbstractionMapping, findings: Findings) -> None:
-    """What a monitor has: topics, and rules over them."""
+    """Reports what a monitor lacks, and what only a skill can have."""
     for variable in mapping.local_variables:
         if variable.source is not LocalSource.TOPIC:
             source = "parameters" if variable.source is LocalSource.PARAMETER else "result"

@@ -56,7 +56,7 @@ def _of_monitor(record: Record, monitor: Text) -> Activation:
         message = "a mapping is that of a monitor or calls a skill, not both"
         span = record.key_span("ModuleActivation")
         record.findings.error("AOS106", message, span, "Take one of the two out")
-        record.ignore("ModuleActivation")
+        _activation(record)
     return msgspec.structs.replace(NO_ACTIVATION, span=monitor.span)
 
 

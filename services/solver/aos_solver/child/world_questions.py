@@ -40,7 +40,7 @@ class WorldQuestions(Asking):
         return WorldStep(step.reward, step.response, step.ending, numbers, step.violations)
 
     async def monitor_world(self) -> dict[str, str]:
-        """What each monitor says of the hidden state, by the model."""
+        """Asks each monitor, by the model, what it says of the hidden state."""
         responses = {}
         for monitor in self.description.monitors:
             command = command_line("step_world", action=self._index_of_monitor(monitor))

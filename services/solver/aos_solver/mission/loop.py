@@ -348,5 +348,5 @@ class Mission:
 
 
 def _faults_of_monitors(outcome: Outcome) -> list[str]:
-    """What people are told of monitors that gave nothing."""
+    """Tells people of monitors that gave nothing."""
     return [f"the monitor {name} failed: {text}" for name, text in outcome.monitor_faults.items()]
