@@ -173,3 +173,16 @@ def test_the_draws_of_documents_are_found_with_their_numbers() -> None:
         (8, "its probability is computed, and no number of the document"),
         (9, "it is drawn in a loop"),
     ]
+
+
+def test_missions_are_explained_with_the_values_that_they_had(tmp_path: Path) -> None:
+    missions: list[RecordedMission] = []
+    for person in ("alice", "bob"):
+        setting = Setting(deploy="errand.yaml", simulations=500, set={"target": person})
+        out = tmp_path / person
+        asyncio.run(play_campaign(setting, range(1, 16), folder=DEPLOY, out=out, on_trial=lambda: None))
+        missions += read_missions(out)
+    assert {mission.mission_parameters["target"] for mission in missions} == {"alice", "bob"}
+    result = asyncio.run(calibrate(missions, [DEPLOY / "bundles" / "errand"]))
+    assert (result.missions, result.remarks) == (30, ())
+    assert result.steps == sum(len(mission.steps) for mission in missions)

@@ -39,6 +39,17 @@ def _not_proposed(estimates: Sequence[DrawEstimate]) -> Iterator[str]:
             )
 
 
+def _by_values(
+    missions: Sequence[RecordedMission],
+) -> Iterator[tuple[dict[str, str], list[RecordedMission]]]:
+    """The missions with the same values of mission parameters, in the order of the first of them."""
+    found: dict[frozenset[tuple[str, str]], list[RecordedMission]] = {}
+    for mission in missions:
+        found.setdefault(frozenset(mission.mission_parameters.items()), []).append(mission)
+    for alike in found.values():
+        yield alike[0].mission_parameters, alike
+
+
 class Calibration(msgspec.Struct, frozen=True):
     """The result of a calibration. `remarks` say which steps were not used, and `by_hand` what the patch
     leaves out."""
@@ -75,11 +86,13 @@ async def calibrate(
     built = await build_project(draws.keeping, cache_dir(), lambda remark: None)
     engine = await Engine.start(built, seed=1, keeps_belief=False)
     try:
-        layers = Layers(engine, [draw.variable for draw in draws.draws])
         lattices: list[Lattice] = []
-        for mission in missions:
-            lattices.append(await lattice_of(mission, layers))
-            on_mission()
+        for values, alike in _by_values(missions):
+            await engine.start_with(values)
+            layers = Layers(engine, [draw.variable for draw in draws.draws])
+            for mission in alike:
+                lattices.append(await lattice_of(mission, layers))
+                on_mission()
     finally:
         await engine.close()
     estimates = estimate(draws.draws, lattices, on_sweep)

@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 
 from aos_deploy.printing import from_here
+from aos_lab.trials.run_parameters import mission_parameters_of
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
@@ -30,12 +31,16 @@ class RecordedStep(msgspec.Struct, frozen=True):
 
 
 class RecordedMission(msgspec.Struct, frozen=True):
-    """`ends_early` says why later steps cannot be used. `seed` is 0 where nobody knows it."""
+    """`ends_early` says why later steps cannot be used. `seed` is 0 where nobody knows it.
+
+    `mission_parameters` are the values that it had.
+    """
 
     name: str
     steps: tuple[RecordedStep, ...]
     ends_early: str = ""
     seed: int = 0
+    mission_parameters: dict[str, str] = {}
 
 
 class _Kept(msgspec.Struct, frozen=True):
@@ -87,7 +92,9 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
             (action, response, {}) for action, response in zip(trial.actions, trial.responses, strict=True)
         ]
         yield msgspec.structs.replace(
-            _mission(f"{from_here(path.parent)}, seed {seed}", recorded, trial.states), seed=seed
+            _mission(f"{from_here(path.parent)}, seed {seed}", recorded, trial.states),
+            seed=seed,
+            mission_parameters=trial.mission_parameters,
         )
 
 
@@ -105,7 +112,8 @@ def _of_run(run: Path) -> RecordedMission:
                 (record.action, record.outcome.response if is_seen else "", record.outcome.numbers)
             )
     lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
-    return _mission(str(from_here(run)), recorded, lines)
+    mission = _mission(str(from_here(run)), recorded, lines)
+    return msgspec.structs.replace(mission, mission_parameters=mission_parameters_of(run))
 
 
 def _mission(

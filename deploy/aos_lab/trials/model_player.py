@@ -81,6 +81,7 @@ class ModelPlayer:
                 world = await Engine.start(self.world, seed=seed, keeps_belief=False)
                 engines.push_async_callback(world.close)
             run = await simulate_mission(engine, search, self.missions.limits, with_states=True, world=world)
+            parameters = engine.description.mission_parameters
         return Trial(
             seed=seed,
             ending=str(run.ending),
@@ -91,6 +92,7 @@ class ModelPlayer:
             world_ending=str(run.world_ending or ""),
             value=run.discounted_return,
             seconds=time.perf_counter() - start,
+            mission_parameters=parameters,
         )
 
 

@@ -20,6 +20,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     activation brought no observation. `states` are texts of the world's truth after each action, where it is
     known; one of a simulated world names its step. `world_ending` is how a model's world has ended, or empty.
     `value` is the discounted return, which only a model counts. A mission that broke has its `fault`.
+    `mission_parameters` are the values of all parts of mission parameters.
     """
 
     seed: int
@@ -32,6 +33,7 @@ class Trial(msgspec.Struct, frozen=True, kw_only=True):
     value: float | None = None
     seconds: float = 0.0
     fault: str = ""
+    mission_parameters: dict[str, str] = {}
 
     @property
     def steps(self) -> list[str]:

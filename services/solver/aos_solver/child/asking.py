@@ -100,13 +100,15 @@ class Asking:
     async def start_with(self, mission_values: Mapping[str, str]) -> None:
         """Has these values of mission parameters, and the defaults of all others, from now on.
 
-        The values are in their canonical spelling. Where they are other ones the child is started anew, on
-        the initial belief: all that was computed with the old ones is gone. Nothing is compiled.
+        The values are in their canonical spelling; those of parts that the model does not have are left out.
+        Where they are other ones the child is started anew, on the initial belief: all that was computed with
+        the old ones is gone. Nothing is compiled.
         """
-        if dict(mission_values) == self._built.mission_values:
+        built = self._built_with(mission_values)
+        if built.mission_values == self._built.mission_values:
             return
         async with self._asking:
-            self._built = msgspec.structs.replace(self._built, mission_values=dict(mission_values))
+            self._built = built
             self._changes = 0
             self._draws = BeliefDraws(self._seed)
             self._log = BeliefLog()
@@ -119,10 +121,15 @@ class Asking:
 
         The values are as in `start_with`.
         """
-        built = msgspec.structs.replace(self._built, mission_values=dict(mission_values))
-        other = await self.start(built, seed=seed, impossible_observation=self._policy)
+        other = await self.start(
+            self._built_with(mission_values), seed=seed, impossible_observation=self._policy
+        )
         other.on_progress = self.on_progress
         return other
+
+    def _built_with(self, mission_values: Mapping[str, str]) -> BuiltModel:
+        values = {name: text for name, text in mission_values.items() if name in self.parameters}
+        return msgspec.structs.replace(self._built, mission_values=values)
 
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
