@@ -24,9 +24,8 @@ __all__ = ["REPLAY_S", "RunningModel", "Successor", "Takeover", "distances"]
 REPLAY_S = 10.0
 """A replay that would take longer is given up."""
 
-_TELLING_STEPS = 3
-_TELLING_S = 0.5
-"""So many steps, or so much time, tell how long a replay takes."""
+_TELLING_S = 1.0
+"""The steps in so much time tell how long a replay takes. The first ones of an engine alone are slow."""
 
 _UNNOTICED_S = 0.02
 """A decision may wait so long for the last steps of a replay."""
@@ -166,7 +165,7 @@ class Successor:
             self._done += 1
             self._foreign += update.is_foreign
             all_s = self._mean_s * len(past)
-            is_told = self._done >= _TELLING_STEPS or self._spent_s >= _TELLING_S
+            is_told = self._spent_s >= _TELLING_S
             if update.is_impossible:
                 self._cannot_replay = (
                     f"step {self._done}, {step.action} -> {step.response}, is impossible in the new documents"
