@@ -3,6 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 LOCK := deploy/lock
 UPGRADE :=
+CHAOS :=
 COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header
 
@@ -39,8 +40,8 @@ lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.ven
 	$(COMPILE) --output-file $(LOCK)/dev.txt --extra sim --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
 	printf 'ziglang>=0.15\n' | $(COMPILE) --output-file $(LOCK)/compiler.txt -
 
-chaos:  ## kill and freeze processes of missions at random, and print what became of them
-	$(BIN)/python -m tests.chaos --missions 50
+chaos:  ## kill, freeze and fail processes of missions, and print what became of them
+	$(BIN)/python -m tests.chaos $(CHAOS)
 
 plug:  ## measure what changes and what happens while a mission runs
 	$(BIN)/python -m tests.plug

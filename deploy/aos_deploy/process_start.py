@@ -14,6 +14,7 @@ from aos_deploy.remote import check_ssh, remote_command
 from aos_deploy.run_directory import RunDirectory
 from aos_protocol.errors import DeployError
 from aos_runtime.children import PIPE, Child, Limits, guarded
+from aos_runtime.failpoints import reach
 from aos_runtime.service_settings import ServiceSettings
 
 __all__ = ["check_command", "start_process"]
@@ -21,6 +22,7 @@ __all__ = ["check_command", "start_process"]
 
 async def start_process(program: Program, base: ServiceSettings, run: RunDirectory) -> Child:
     """The process. `base` says robot, endpoint, run directory. DeployError AOS802 if it cannot be started."""
+    reach("up.start.before")
     own = msgspec.structs.replace(base, service=program.name)
     settings = run.write_settings(program.name, settings_of(program, own))
     environment = {"AOS_ENDPOINT": base.endpoint, "AOS_ROBOT": base.robot, "PYTHONUNBUFFERED": "1"}

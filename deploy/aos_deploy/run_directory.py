@@ -24,6 +24,7 @@ import msgspec
 
 from aos_protocol.errors import BusError, DeployError, StorageError
 from aos_protocol.messages import Fault
+from aos_runtime.failpoints import reach
 from aos_runtime.mission_folders import mission_folder
 from aos_runtime.service_settings import fault_path
 
@@ -191,7 +192,7 @@ class RunDirectory:
         """
         path = self.path / "run.json"
         is_known = path.exists()
-        _write_whole(path, _pretty(record))
+        _write_whole(path, _pretty(record), "up.record")
         if is_known:
             return
         link = self.path.with_name(f".{LATEST}-{self.path.name}")
@@ -209,11 +210,11 @@ class RunDirectory:
 
     def write_summary(self, summary: Summary) -> None:
         """All of it, or nothing and StorageError AOS701."""
-        _write_whole(self.path / "summary.json", _pretty(summary))
+        _write_whole(self.path / "summary.json", _pretty(summary), "up.summary")
 
     def write_summary_of_mission(self, number: int, summary: Summary) -> None:
         """All of it, or nothing and StorageError AOS701."""
-        _write_whole(mission_folder(self.path, number) / "summary.json", _pretty(summary))
+        _write_whole(mission_folder(self.path, number) / "summary.json", _pretty(summary), "up.summary")
 
     def read_summary(self, number: int = 0) -> Summary | None:
         """Returns the summary of the run, or of the mission of this number in a system that stays.
@@ -247,15 +248,17 @@ def _write_privately(path: Path, content: bytes) -> None:
         file.write(content)
 
 
-def _write_whole(path: Path, content: bytes) -> None:
-    """Writes beside the file and renames, so that nobody ever reads a part of it."""
+def _write_whole(path: Path, content: bytes, place: str) -> None:
+    """Writes beside the file and renames, so that nobody ever reads a part of it. `place` is a failpoint."""
     beside = path.with_name(f".{path.name}-{os.getpid()}")
     with _kept(path):
         try:
             beside.write_bytes(content)
+            reach(f"{place}.before")
             beside.replace(path)
         finally:
             beside.unlink(missing_ok=True)
+    reach(f"{place}.after")
 
 
 @contextmanager

@@ -31,6 +31,7 @@ from aos_protocol.messages import Cancel, Cancelled
 from aos_runtime.bus import Bus
 from aos_runtime.children import Child
 from aos_runtime.clock import Clock
+from aos_runtime.failpoints import reach
 from aos_runtime.guard import NOT_STARTED
 from aos_runtime.lifecycle import ROUTER_S, STORAGE_STATUS, ServiceSettings
 from aos_runtime.subscription import merged
@@ -205,6 +206,7 @@ class Supervisor:
         log = self._run.log(program.name)
         log_start = log.stat().st_size if log.exists() else 0
         running.child = await start_process(program, self._base, self._run)
+        reach("up.start.after")
         if program.is_own:
             running.seeking = self._beside(self._seek_ready(running, log_start))
 

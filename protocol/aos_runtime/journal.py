@@ -19,6 +19,7 @@ import msgspec
 
 from aos_protocol.errors import StorageError
 from aos_protocol.messages import Message
+from aos_runtime import failpoints
 from aos_runtime.clock import Clock, SystemClock
 
 if TYPE_CHECKING:
@@ -132,14 +133,17 @@ class Journal:
     def append(self, kind: str, payload: Message) -> int:
         """The row's number, once the row is on the disk. StorageError AOS701 if it could not be written."""
         text, stamp_ns = msgspec.json.encode(payload).decode(), self._clock.now_ns()
+        place = f"{self._path.stem.partition('-')[0]}.{kind}" if failpoints.is_armed else ""
         try:
+            failpoints.reach(f"{place}.before")
             cursor = self._connection.execute(
                 "INSERT INTO entries (stamp_ns, kind, payload, checksum) VALUES (?, ?, ?, ?)",
                 (stamp_ns, kind, text, _checksum(stamp_ns, kind, text)),
             )
-        except _REFUSALS as error:
+        except (*_REFUSALS, OSError) as error:
             raise _fault("AOS701", self._path, error) from error
         assert cursor.lastrowid is not None
+        failpoints.reach(f"{place}.after")
         return cursor.lastrowid
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import time
 from pathlib import Path
 from typing import Any
 
@@ -34,4 +35,4 @@ async def open_door(call: Any, door: str) -> None:
 
 def _note(what: str, call: Any) -> None:
     with Path(os.environ["AOS_MOTIONS"]).open("a") as motions:
-        motions.write(f"{what} {call.id}\n")
+        motions.write(f"{what} {call.id} {time.time()}\n")

@@ -39,6 +39,7 @@ from aos_protocol.messages import (
 from aos_runtime.asking import AWAY_S
 from aos_runtime.bus import Bus, Subscription
 from aos_runtime.clock import Clock
+from aos_runtime.failpoints import reach
 from aos_runtime.subscription import merged
 
 __all__ = ["Surroundings", "refused", "run_activation"]
@@ -326,8 +327,9 @@ class _Activation:
         """Returns the adapter's answer; the call is asked for again where the router has gone."""
         limit_s = call.deadline_s + _REPLY_GRACE_S
         while True:
+            reach("middleware.call.before")
             try:
-                return await self._bus.ask(
+                result = await self._bus.ask(
                     self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
                 )
             except (LostAnswerError, NobodyAnswersError):
@@ -337,6 +339,9 @@ class _Activation:
                 if not await self._around.served.is_back(path, AWAY_S):
                     raise
                 _log.info("%s is asked again, since the router was away", path)
+            else:
+                reach("middleware.call.after")
+                return result
 
     async def _cancel(self, reason: str) -> bool:
         """Has the skill stopped; whether its adapter says that it has."""

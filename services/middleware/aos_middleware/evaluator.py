@@ -38,6 +38,7 @@ from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import LocalSource
 from aos_protocol.errors import MappingError, StorageError
 from aos_runtime.children import PIPE, Child, Confinement, Limits, guarded
+from aos_runtime.failpoints import reach
 from aos_runtime.sandbox.places import library_folders, loader_of, python_folders
 
 __all__ = ["EvaluationLimits", "Evaluator", "MappingFault"]
@@ -169,6 +170,7 @@ class Evaluator:
             Limits(address_space_bytes=limits.address_space_bytes, file_bytes=limits.file_bytes),
             _confinement(),
         )
+        reach("middleware.worker.before")
         self._log_path.parent.mkdir(parents=True, exist_ok=True)
         with self._log_path.open("ab") as log:
             self._log_start_bytes = log.tell()

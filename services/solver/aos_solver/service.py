@@ -42,6 +42,7 @@ from aos_protocol.messages import (
     StopMission,
 )
 from aos_runtime.asking import ask_until_answered
+from aos_runtime.failpoints import reach
 from aos_runtime.lifecycle import Service
 from aos_runtime.reported_state import state_when
 from aos_runtime.served import served_paths
@@ -329,11 +330,13 @@ class _Solver:
             await self._await_mappings(revision.revision)
 
     async def _start_engine(self, built: BuiltModel) -> Engine:
+        reach("solver.engine.before")
         engine = await Engine.start(
             built,
             seed=self._settings.seed,
             impossible_observation=self._settings.impossible_observation,
         )
+        reach("solver.engine.after")
         engine.on_progress = self._report_planning
         return engine
 

@@ -1,0 +1,140 @@
+"""One mission that fails at a failpoint: a process dies or freezes there, or its disk is full."""
+
+from __future__ import annotations
+
+import queue
+import random
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from tests.chaos.judged import Disturbance, Report, judge
+from tests.chaos.up import Up, send, write_deploy_file
+
+from aos_deploy.run_end import account_of
+from aos_runtime.failpoints import EXIT_STATUS
+
+__all__ = ["FULL_WRITES", "failing", "full"]
+
+_STEPS = 5
+_FROZEN_S = 6.0
+_WRITES = {
+    "journal.begun": 1,
+    "journal.mission": 4,
+    "journal.decision": 4,
+    "journal.intended": 3,
+    "journal.outcome": 3,
+    "middleware.started": 2,
+    "middleware.ended": 2,
+    "adapter.started": 2,
+    "adapter.ended": 2,
+    "up.record": 1,
+    "up.summary": 1,
+}
+FULL_WRITES = tuple(
+    (f"{place}.before", time) for place, times in _WRITES.items() for time in range(1, times + 1)
+)
+"""The writes at which a disk is full: each place with the time when it is come to."""
+
+
+def failing(folder: Path, name: str, place: str, seed: int) -> Report:
+    """A mission of which one process is killed, exits or is frozen at a failpoint; it has to be completed.
+
+    An `aos-up` that dies is resumed, or started again where its run had not begun.
+    """
+    chance = random.Random(f"{place} {seed}")
+    action = chance.choice(("kill", "kill", "exit", "freeze"))
+    time_there = chance.randint(1, _times_reached(place))
+    report = Report(name)
+    write_deploy_file(folder, seed, _STEPS)
+    failed = folder / "failed"
+    environment = {"AOS_FAILPOINT": f"{place}:{action}:{time_there}", "AOS_FAILPOINT_DONE": str(failed)}
+    up = Up(folder, "tester.yaml", environment=environment)
+    pids: set[int] = set()
+    try:
+        while True:
+            pids |= _until_ended(up)
+            status: int | None = up.process.wait(30.0)
+            if status not in (-signal.SIGKILL, EXIT_STATUS):
+                break
+            if _is_over(folder):
+                status = None
+                break
+            up = Up(folder, *_to_go_on(folder))
+    except (queue.Empty, subprocess.TimeoutExpired):
+        report.faults.append("it hangs")
+        up.end()
+        return report
+    if not failed.exists():
+        report.faults.append(f"{place} was not reached for time {time_there}")
+    report.disturbances.append(Disturbance(f"{place} {action}"))
+    judge(folder, report, status, pids, allowed=("step_limit",))
+    return report
+
+
+def _times_reached(place: str) -> int:
+    """How often a mission surely comes to a failpoint in one process."""
+    once = ("journal.begun", "solver.engine", "up.record", "up.summary")
+    return 1 if place.startswith(once) else 2
+
+
+def _is_over(folder: Path) -> bool:
+    """Says whether the mission had ended when its aos-up died."""
+    run = folder / "runs" / "latest"
+    return run.exists() and account_of(run).verdict().ending == "step_limit"
+
+
+def _to_go_on(folder: Path) -> list[str]:
+    """The arguments for what a dead aos-up has left: a run to take up, or none."""
+    return ["--resume"] if (folder / "runs" / "latest").exists() else ["tester.yaml"]
+
+
+def _until_ended(up: Up) -> set[int]:
+    """Reads all events, and lets an aos-up that was frozen go on after a while; returns all pids seen."""
+    pids = {up.process.pid}
+    quiet_since_s = time.monotonic()
+    while True:
+        pids |= set(up.below())
+        try:
+            if up.next(quiet_s=_FROZEN_S) is None:
+                return pids
+            quiet_since_s = time.monotonic()
+        except queue.Empty:
+            send(up.process.pid, signal.SIGCONT)
+            if time.monotonic() - quiet_since_s > 90.0:
+                raise
+
+
+def full(folder: Path, name: str, place: str, time_there: int) -> Report:
+    """A mission whose disk is full at one write, and from then on at that place: it ends with AOS701."""
+    report = Report(name)
+    write_deploy_file(folder, 1, _STEPS)
+    failed = folder / "failed"
+    environment = {"AOS_FAILPOINT": f"{place}:full:{time_there}", "AOS_FAILPOINT_DONE": str(failed)}
+    up = Up(folder, "tester.yaml", environment=environment)
+    try:
+        pids = _until_ended(up)
+        status = up.process.wait(30.0)
+    except (queue.Empty, subprocess.TimeoutExpired):
+        report.faults.append("it hangs")
+        up.end()
+        return report
+    report.disturbances.append(Disturbance(f"{place} full"))
+    if not failed.exists():
+        report.faults.append(f"{place} was not reached for time {time_there}")
+        return report
+    told = up.told + (folder / "aos-up.log").read_text()
+    if "AOS701" not in told:
+        report.faults.append(f"it ended with exit code {status} without AOS701: {told[-500:]}")
+    motions = folder / "motions"
+    late = [
+        line
+        for line in (motions.read_text().splitlines() if motions.exists() else [])
+        if line.startswith("begun") and float(line.split()[2]) > failed.stat().st_mtime + 0.05
+    ]
+    if late:
+        report.faults.append(f"{len(late)} motions began after the disk was full")
+    if place != "up.summary.before" and (folder / "runs" / "latest").exists():
+        judge(folder, report, status, pids, allowed=("fault", "not_started", "step_limit", ""))
+    return report

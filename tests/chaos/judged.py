@@ -1,0 +1,88 @@
+"""The verdict on a mission that was disturbed: journal, exit code, motions, processes that are left."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+
+import msgspec
+from tests.chaos.up import BIN
+from tests.processes import is_running
+
+from aos_deploy.run_end import account_of
+
+__all__ = ["Disturbance", "Report", "judge", "tracebacks"]
+
+_LEFT_S = 15.0
+
+
+class Disturbance(msgspec.Struct):
+    """A disturbance of a kind, such as `solver killed`; the next decision came after `back_s`."""
+
+    kind: str
+    back_s: float | None = None
+
+
+class Report(msgspec.Struct):
+    """The outcome of a run. `faults` is empty where all went as promised; `name` runs it again."""
+
+    name: str
+    disturbances: list[Disturbance] = []
+    ending: str = ""
+    activations: int = 0
+    beliefs: int = 0
+    faults: list[str] = []
+
+
+def judge(
+    folder: Path, report: Report, status: int | None, pids: Iterable[int], allowed: Iterable[str]
+) -> None:
+    """Adds to the report's faults what breaks a promise. The ending has to be one of `allowed`.
+
+    Without a `status` aos-up has died after the end of the mission, and may have left no summary.
+    """
+    run = (folder / "runs" / "latest").resolve()
+    verdict = account_of(run).verdict()
+    report.ending = verdict.ending
+    if report.ending not in allowed:
+        report.faults.append(f"it ended as {report.ending} with exit code {status}: {verdict.remark}")
+    summary = run / "summary.json"
+    if status is not None and not summary.exists():
+        report.faults.append("there is no summary")
+    told = json.loads(summary.read_text())["exit_code"] if summary.exists() else verdict.exit_code
+    # A journal on a full disk has no end.
+    if (verdict.ending and told != verdict.exit_code) or status not in (None, told):
+        report.faults.append(
+            f"the exit code is {status}, {told} in the summary, {verdict.exit_code} by the journal"
+        )
+    check = subprocess.run([BIN / "aos", "check", run, "--json"], capture_output=True, text=True, check=False)
+    found = json.loads(check.stdout) if check.stdout else {"violations": [check.stderr], "replayed": {}}
+    report.faults += [f"aos check: {violation}" for violation in found["violations"]]
+    report.beliefs = found["replayed"].get("beliefs", 0)
+    report.faults += tracebacks(folder)
+    until_s = time.monotonic() + _LEFT_S
+    while (left := [pid for pid in pids if is_running(pid)]) and time.monotonic() < until_s:
+        time.sleep(0.05)
+    if left:
+        report.faults.append(f"{len(left)} processes are left")
+    motions = folder / "motions"
+    lines = motions.read_text().splitlines() if motions.exists() else []
+    begun = Counter(line.split()[1] for line in lines if line.startswith("begun"))
+    report.activations = len(begun)
+    report.faults += [f"{id} moved {count} times" for id, count in begun.items() if count > 1]
+
+
+def tracebacks(folder: Path) -> list[str]:
+    """The names of the logs that have a traceback, with its last line."""
+    found = []
+    for log in [folder / "aos-up.log", *folder.glob("runs/*/logs/*.log")]:
+        text = log.read_text(errors="replace") if log.exists() else ""
+        if "Traceback (most recent call last)" in text:
+            after = text.rsplit("Traceback (most recent call last)", 1)[1].splitlines()
+            last = next((line for line in after[1:] if line and not line.startswith(" ")), "")
+            found.append(f"a traceback in {log.name}: {last}")
+    return found
