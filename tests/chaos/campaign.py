@@ -70,7 +70,7 @@ def run_all(names: list[str], jobs: int, keep: Path | None) -> Iterator[Report]:
 
 
 def table(reports: list[Report]) -> str:
-    """What was disturbed, how often, and how soon the next decision came."""
+    """The table of disturbances: how often, and how soon the next decision came."""
     back_s: dict[str, list[float | None]] = defaultdict(list)
     for report in reports:
         for disturbance in report.disturbances:

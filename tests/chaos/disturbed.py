@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tests.chaos.judged import Disturbance, Report, judge
-from tests.chaos.up import KINDS, Up, send, write_deploy_file
+from tests.chaos.up import KINDS, Process, Up, send, write_deploy_file
 
 __all__ = ["cancelled", "disturbed"]
 
@@ -33,28 +33,28 @@ def disturbed(folder: Path, name: str, seed: int, how: str) -> Report:
     times = KILLS_OF_A_MISSION if how == "kills" else FREEZES_OF_A_MISSION
     report = Report(name)
     write_deploy_file(folder, seed, times * _STEPS_OF_A_DISTURBANCE, is_sampled=is_sampled)
-    pids: set[int] = set()
+    processes: set[Process] = set()
     up = Up(folder, "tester.yaml")
     try:
         for kind in _kinds(chance, times, is_sampled):
             for _ in range(chance.randint(1, 2)):
                 up.until_decision()
             time.sleep(chance.uniform(0.0, 0.15))
-            pids |= {up.process.pid, *up.below()}
+            processes |= up.processes()
             victims = up.of_kind(kind)
             if not victims or up.process.poll() is not None:
                 continue
             up = _disturb(
                 folder, up, kind, victims, 0.0 if how == "kills" else chance.choice((1.0, 6.0)), report
             )
-            pids |= {up.process.pid, *up.below()}
+            processes |= up.processes()
         _let_it_end(folder, up)
         status = up.process.wait(60.0)
     except (queue.Empty, subprocess.TimeoutExpired):
         report.faults.append("it hangs")
         up.end()
         return report
-    judge(folder, report, status, pids, allowed=("step_limit", "cancelled"))
+    judge(folder, report, status, processes, allowed=("step_limit", "cancelled"))
     return report
 
 

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from tests.chaos.judged import Disturbance, Report, judge
-from tests.chaos.up import Up, send, write_deploy_file
+from tests.chaos.up import Process, Up, send, write_deploy_file
 
 from aos_deploy.run_end import account_of
 from aos_runtime.failpoints import EXIT_STATUS
@@ -51,10 +51,10 @@ def failing(folder: Path, name: str, place: str, seed: int) -> Report:
     failed = folder / "failed"
     environment = {"AOS_FAILPOINT": f"{place}:{action}:{time_there}", "AOS_FAILPOINT_DONE": str(failed)}
     up = Up(folder, "tester.yaml", environment=environment)
-    pids: set[int] = set()
+    processes: set[Process] = set()
     try:
         while True:
-            pids |= _until_ended(up)
+            processes |= _until_ended(up)
             status: int | None = up.process.wait(30.0)
             if status not in (-signal.SIGKILL, EXIT_STATUS):
                 break
@@ -69,12 +69,12 @@ def failing(folder: Path, name: str, place: str, seed: int) -> Report:
     if not failed.exists():
         report.faults.append(f"{place} was not reached for time {time_there}")
     report.disturbances.append(Disturbance(f"{place} {action}"))
-    judge(folder, report, status, pids, allowed=("step_limit",))
+    judge(folder, report, status, processes, allowed=("step_limit",))
     return report
 
 
 def _times_reached(place: str) -> int:
-    """How often a mission surely comes to a failpoint in one process."""
+    """Returns how often a mission surely comes to a failpoint in one process."""
     once = ("journal.begun", "solver.engine", "up.record", "up.summary")
     return 1 if place.startswith(once) else 2
 
@@ -90,15 +90,15 @@ def _to_go_on(folder: Path) -> list[str]:
     return ["--resume"] if (folder / "runs" / "latest").exists() else ["tester.yaml"]
 
 
-def _until_ended(up: Up) -> set[int]:
-    """Reads all events, and lets an aos-up that was frozen go on after a while; returns all pids seen."""
-    pids = {up.process.pid}
+def _until_ended(up: Up) -> set[Process]:
+    """Reads all events, and lets an aos-up that was frozen go on after a while; returns all its processes."""
+    processes: set[Process] = set()
     quiet_since_s = time.monotonic()
     while True:
-        pids |= set(up.below())
+        processes |= up.processes()
         try:
             if up.next(quiet_s=_FROZEN_S) is None:
-                return pids
+                return processes
             quiet_since_s = time.monotonic()
         except queue.Empty:
             send(up.process.pid, signal.SIGCONT)
@@ -114,7 +114,7 @@ def full(folder: Path, name: str, place: str, time_there: int) -> Report:
     environment = {"AOS_FAILPOINT": f"{place}:full:{time_there}", "AOS_FAILPOINT_DONE": str(failed)}
     up = Up(folder, "tester.yaml", environment=environment)
     try:
-        pids = _until_ended(up)
+        processes = _until_ended(up)
         status = up.process.wait(30.0)
     except (queue.Empty, subprocess.TimeoutExpired):
         report.faults.append("it hangs")
@@ -136,5 +136,5 @@ def full(folder: Path, name: str, place: str, time_there: int) -> Report:
     if late:
         report.faults.append(f"{len(late)} motions began after the disk was full")
     if place != "up.summary.before" and (folder / "runs" / "latest").exists():
-        judge(folder, report, status, pids, allowed=("fault", "not_started", "step_limit", ""))
+        judge(folder, report, status, processes, allowed=("fault", "not_started", "step_limit", ""))
     return report

@@ -10,8 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import msgspec
-from tests.chaos.up import BIN
-from tests.processes import is_running
+from tests.chaos.up import BIN, Process
 
 from aos_deploy.run_end import account_of
 
@@ -39,7 +38,7 @@ class Report(msgspec.Struct):
 
 
 def judge(
-    folder: Path, report: Report, status: int | None, pids: Iterable[int], allowed: Iterable[str]
+    folder: Path, report: Report, status: int | None, processes: Iterable[Process], allowed: Iterable[str]
 ) -> None:
     """Adds to the report's faults what breaks a promise. The ending has to be one of `allowed`.
 
@@ -65,10 +64,10 @@ def judge(
     report.beliefs = found["replayed"].get("beliefs", 0)
     report.faults += tracebacks(folder)
     until_s = time.monotonic() + _LEFT_S
-    while (left := [pid for pid in pids if is_running(pid)]) and time.monotonic() < until_s:
+    while (left := [process for process in processes if process.is_left]) and time.monotonic() < until_s:
         time.sleep(0.05)
     if left:
-        report.faults.append(f"{len(left)} processes are left")
+        report.faults.append(f"left: {'; '.join(process.words[:300] for process in left)}")
     motions = folder / "motions"
     lines = motions.read_text().splitlines() if motions.exists() else []
     begun = Counter(line.split()[1] for line in lines if line.startswith("begun"))

@@ -13,10 +13,11 @@ import sys
 import threading
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
-from tests.processes import descendants
+from tests.processes import descendants, is_running
 
-__all__ = ["BIN", "KINDS", "Up", "compile_bundles", "send", "write_deploy_file"]
+__all__ = ["BIN", "KINDS", "Process", "Up", "compile_bundles", "send", "write_deploy_file"]
 
 _ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
@@ -52,13 +53,38 @@ bind:
 runs: runs
 """
 
+
+class Process(NamedTuple):
+    """A process, which is told from a later one of the same id by the time when it began."""
+
+    pid: int
+    begun: str
+    words: str
+
+    @classmethod
+    def of(cls, pid: int) -> Process | None:
+        try:
+            stat = Path(f"/proc/{pid}/stat").read_text()
+            words = Path(f"/proc/{pid}/cmdline").read_bytes()
+        except OSError:
+            return None
+        return cls(
+            pid, stat.rpartition(")")[2].split()[19], words.replace(b"\0", b" ").decode(errors="replace")
+        )
+
+    @property
+    def is_left(self) -> bool:
+        now = Process.of(self.pid)
+        return now is not None and now.begun == self.begun and is_running(self.pid)
+
+
 _SAMPLED = {
     "initial_belief:\n": (
         "state_variable: double hum\n\ninitial_belief:\nstate.hum = AOS.SampleUniform(0, 1);\n"
     ),
     "0.85 : 0.15": "0.7 + 0.2 * state.hum : 0.3 - 0.2 * state.hum",
 }
-"""What makes the tiger's belief one that cannot be enumerated: how well it is heard is a number."""
+"""The changes that make the tiger's belief one that cannot be enumerated: its loudness is a number."""
 
 QUIET_S = 90.0
 """A mission that tells nothing for so long hangs."""
@@ -145,6 +171,11 @@ class Up:
             return descendants(self.process.pid)
         except FileNotFoundError:
             return []
+
+    def processes(self) -> set[Process]:
+        """All processes of the run, as they are now."""
+        found = (Process.of(pid) for pid in (self.process.pid, *self.below()))
+        return {process for process in found if process is not None}
 
     def of_kind(self, kind: str) -> list[int]:
         """One process of a kind; of what runs behind a guard the process, not the guard."""
