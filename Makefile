@@ -7,7 +7,7 @@ CHAOS :=
 COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header
 
-.PHONY: help setup check quick test format promote docs lock newcomer chaos plug clean
+.PHONY: help setup check quick test format promote docs lock newcomer chaos plug hostile clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -45,6 +45,9 @@ chaos:  ## kill, freeze and fail processes of missions, and print what became of
 
 plug:  ## measure what changes and what happens while a mission runs
 	$(BIN)/python -m tests.plug
+
+hostile:  ## play hostile documents in lint, pushes and missions, and print what they were kept from
+	$(BIN)/python -m tests.hostile --times 50
 
 newcomer:  ## run README's two commands in a fresh clone, an empty home and without a compiler
 	tests/newcomer.sh

@@ -13,7 +13,9 @@ with the same status; with 127 if the command cannot be started.
 With a profile the command runs in a sandbox, and may use the files below the paths named and no others; see
 `sandbox.confine`. Where the kernel cannot do that, it does not run, unless its documents are trusted.
 
-If the guard itself is killed with SIGKILL, the command dies with it, but not what the command has started.
+What can start processes runs behind a keeper, a child of the guard that does this work, in a session of its
+own: if the guard is killed with SIGKILL, the keeper ends the command and all that it has started. Engines and
+workers start none, and die with their guard.
 Write command lines with `children.guarded`. The module imports little and no site packages: it starts in
 about 17 ms.
 """
@@ -27,6 +29,7 @@ import time
 
 from aos_runtime.parent import adopt_orphans, die_with_parent, request_death_signal
 from aos_runtime.sandbox.confine import ACCESS, Sandbox, become_confined
+from aos_runtime.sandbox.profiles import ALONE
 
 TYPE_CHECKING = False  # typing itself takes as long to import as everything else here.
 if TYPE_CHECKING:
@@ -57,6 +60,8 @@ def main(arguments: list[str]) -> NoReturn:
     signal.pthread_sigmask(signal.SIG_BLOCK, {*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
     die_with_parent(signal.SIGTERM)
     adopt_orphans()
+    if sandbox.profile not in ALONE:
+        _leave_to_keeper(grace_s)
     guard_pid = os.getpid()
     pid = os.fork()
     if pid == 0:
@@ -64,6 +69,25 @@ def main(arguments: list[str]) -> NoReturn:
     status = _wait(pid, grace_s)
     _end_descendants(grace_s)
     _end_like(status)
+
+
+def _leave_to_keeper(grace_s: float) -> None:
+    """Returns in the keeper. The guard passes its signals on to it, and ends as it ends."""
+    guard_pid = os.getpid()
+    keeper = os.fork()
+    if keeper == 0:
+        os.setsid()
+        request_death_signal(_AT_ONCE, guard_pid)
+        adopt_orphans()
+        return
+    while True:
+        ended, status = os.waitpid(keeper, os.WNOHANG)
+        if ended:
+            _end_descendants(grace_s)
+            _end_like(status)
+        received = signal.sigwait({*_STOP_SIGNALS, _AT_ONCE, signal.SIGCHLD})
+        if received != signal.SIGCHLD:
+            os.kill(keeper, received)
 
 
 def _parse(arguments: list[str]) -> tuple[float, int, dict[int, int], Sandbox, list[str]]:

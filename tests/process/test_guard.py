@@ -55,7 +55,7 @@ async def test_what_a_command_leaves_running_is_ended_with_it() -> None:
     child = await start(SLEEPERS.format(tail="read line"))
     await child.stdout.readline()
     below = descendants(child.pid)
-    assert len(below) == 3
+    assert len(below) == 4  # the keeper, the shell and two sleepers
     child.stdin.write(b"end\n")
     assert await child.wait() == 0
     await until_ended(below)
@@ -93,16 +93,17 @@ async def test_grandchildren_end_when_the_parent_is_killed() -> None:
     parent = await Child.start([sys.executable, "-c", START_GUARDED], stdout=PIPE)
     await parent.stdout.readline()
     below = descendants(parent.pid)
-    assert len(below) == 4
+    assert len(below) == 5  # the guard as well
     os.kill(parent.pid, signal.SIGKILL)
     await parent.wait()
     await until_ended(below)
 
 
-async def test_the_command_ends_when_the_guard_itself_is_killed() -> None:
-    child = await start("echo up; read line")
+async def test_all_that_a_command_started_ends_when_the_guard_itself_is_killed() -> None:
+    child = await start(SLEEPERS.format(tail="wait"))
     await child.stdout.readline()
     below = descendants(child.pid)
+    assert len(below) == 4
     os.kill(child.pid, signal.SIGKILL)
     await child.wait()
     await until_ended(below)

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hostile.system_call import system_call
+from hostile.cases import MODELS
 from models import built_text, engine_of
 from processes import HANG_S
 
@@ -21,18 +21,18 @@ ENVIRONMENT = """project: lamp
 horizon: 3
 discount: 0.9
 
-state_variable: int pressed
+state_variable: int count
 
 initial_belief:
-state.pressed = 0;
+state.count = 0;
 
 reward_code:
-if (state.pressed > 2) __isGoalState = true;
+if (state.count > 2) __isGoalState = true;
 """
 SKILL = """project: lamp
 
 dynamic_model:
-state__.pressed = state.pressed + 1;
+state__.count = state.count + 1;
 CODE
 __moduleResponse = clicked;
 """
@@ -52,17 +52,16 @@ def lamp(code: str) -> dict[str, str]:
 
 @needs_sandbox
 @pytest.mark.parametrize(
-    "code",
-    [
-        'auto f = &std::system; f("id");',
-        system_call("socket", 1, 1),
-        f"{system_call('getppid', result='parent')} {system_call('kill', 'parent', 9)}",
-    ],
-    ids=["a program", "a connection", "a signal"],
+    "what", ["reads a file", "lists a folder", "executes a program", "opens a TCP socket", "kills its guard"]
 )
-async def test_a_model_that_reaches_out_ends_and_its_line_is_told(code: str, cache_dir: Path) -> None:
+async def test_a_model_that_reaches_out_ends_and_its_line_is_told(
+    what: str, cache_dir: Path, tmp_path: Path
+) -> None:
+    secret = tmp_path / "secret"
+    secret.write_text("canary")
+    code = MODELS[what].replace("SECRET", str(secret)).replace("FOLDER", str(tmp_path))
     built = await built_text(lamp(code), cache_dir)
-    with pytest.raises(CodeFaultError, match="may not") as caught:
+    with pytest.raises(CodeFaultError, match="reaches for what models may not") as caught:
         async with engine_of(built) as engine:
             await engine.plan(seed=1, simulations=50)
     place = caught.value.diagnostics[0].span

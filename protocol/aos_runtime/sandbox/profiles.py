@@ -12,7 +12,7 @@ import os
 from aos_runtime.sandbox import system_calls as calls
 from aos_runtime.sandbox.seccomp import ALLOW, TRAP, Rule, assemble, fail_with
 
-__all__ = ["ENVIRONMENT", "PROFILES", "program_of"]
+__all__ = ["ALONE", "ENVIRONMENT", "program_of"]
 
 _REFUSED = fail_with(errno.EPERM)
 _ABSENT = fail_with(errno.ENOSYS)
@@ -20,7 +20,8 @@ _ABSENT = fail_with(errno.ENOSYS)
 _32_BITS = 0xFFFFFFFF
 _64_BITS = 0xFFFFFFFFFFFFFFFF
 
-PROFILES = ("compiler", "engine", "worker")
+ALONE = ("engine", "worker")
+"""The profiles of processes that start no others."""
 
 _LANGUAGE = ("LC_ALL", "LC_CTYPE", "LANG", "TZ", "LD_LIBRARY_PATH")
 _TOOLS = ("PATH", "TMPDIR", "CPATH", "C_INCLUDE_PATH", "CPLUS_INCLUDE_PATH", "LIBRARY_PATH", "COMPILER_PATH")

@@ -42,6 +42,8 @@ START_DEADLINE_S = 20.0
 EXIT_DEADLINE_S = 2.0
 HANG_STATUS = 71
 """A child whose document code ran too long ends with this status; known to watchdog.hpp."""
+REACHING_STATUS = 72
+"""A child whose document code reached for what it may not ends with this status; known to reaching.hpp."""
 HANG_PERIODS = 12
 """A call of document code may take this many tenths of a second of processor time."""
 
@@ -63,6 +65,9 @@ _REPORT_HINT = (
     "This is a mistake of AOS and not of the documents; please report it with the bundle, the command with "
     "its seed, and this message"
 )
+
+
+_REACHING = "this code reaches for what models may not: a file, a connection, another process"
 
 
 class _FaultAnswer(msgspec.Struct, frozen=True):
@@ -236,6 +241,8 @@ class EngineChild:
             return OverdueError(fault.message, diagnostics=fault.diagnostics)
         if status == HANG_STATUS and piece:
             return self.fault(EndlessCodeError.code, "this code does not come to an end", piece)
+        if status in (REACHING_STATUS, -signal.SIGSYS) and piece:
+            return self.fault(kind.code, _REACHING, piece)
         how = _status_text(status)
         if not piece:
             message = f"the engine ended outside of the documents' code ({how})"
@@ -252,8 +259,6 @@ class EngineChild:
 
 
 def _status_text(returncode: int) -> str:
-    if returncode == -signal.SIGSYS:
-        return "it asked the system for what models may not: files, connections, processes"
     if -returncode in (signal.SIGFPE, signal.SIGILL, signal.SIGTRAP):
         return f"signal {-returncode}, as for an integer that is divided by zero"
     return f"signal {-returncode}" if returncode < 0 else f"exit status {returncode}"

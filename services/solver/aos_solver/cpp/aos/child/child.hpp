@@ -20,6 +20,7 @@
 #include "aos/child/command.hpp"
 #include "aos/child/commands.hpp"
 #include "aos/child/faults.hpp"
+#include "aos/child/reaching.hpp"
 #include "aos/child/watchdog.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/mission_parameters.hpp"
@@ -74,6 +75,7 @@ int run_child(int argc, char** argv) {
   for (int place = 6; place < argc; ++place) detail::take_mission_value_of(argv[place]);
   detail::share_blame(std::atoi(argv[1]));
   watchdog::start(std::atoi(argv[5]));
+  reaching::start();
   std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
   detail::told = out;
   ::dup2(STDERR_FILENO, STDOUT_FILENO);

@@ -1,0 +1,249 @@
+"""One attempt: documents with hostile code in a command or a mission, and what came of it."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.hostile.cases import COMPILED, MAPPINGS, MODELS
+from tests.kept_cache import link_engines
+
+__all__ = ["WAYS", "Attempt", "Playground", "attempts"]
+
+WAYS = ("lint", "push", "mission")
+_TOLD_S = 15.0
+_HEARD_S = 8 * _TOLD_S
+_COMMAND_S = 240.0
+_LINES = {"model": "reach.sd:", "compiler": "reach.sd:", "mapping": "reach.am:10:"}
+"""The words that tell the place. Code that goes on for ever is told at its head, other code at its line."""
+_HARMLESS = ("prints 1 GB",)
+"""This is no fault: what is printed beyond the limit is dropped."""
+
+_ENVIRONMENT = """project: cell
+horizon: 2
+discount: 0.9
+
+state_variable: int count
+
+initial_belief:
+state.count = 0;
+
+reward_code:
+if (state.count >= 100000) { __reward = 10; __isGoalState = true; }
+"""
+_MODEL = """project: cell
+
+dynamic_model:
+state__.count = state.count + 1;
+CODE
+__moduleResponse = done;
+"""
+_MAPPING = """project: cell
+
+module_activation: skill
+path: /SKILL
+response: done
+response_rule: True
+local_variable: value
+from_ros_service_response: true
+code:
+CODE
+"""
+_DEPLOY = """aos: 1
+robot: cell
+bundles: [{bundles}]
+bus: {{listen: "tcp/127.0.0.1:0"}}
+mission: {{step_limit: 100000}}
+solver: {{simulations: 20}}
+bind: {{/step: {{python: "robot.py:act"}}, /reach: {{python: "robot.py:act"}}}}
+runs: runs
+"""
+_ROBOT = "def act(call):\n    return {}\n"
+_GOOD = "value = 1"
+
+
+class Attempt(NamedTuple):
+    """A case, played in one of the ways. `faults` are the promises that did not hold."""
+
+    kind: str
+    name: str
+    way: str
+    told_s: float | None
+    faults: tuple[str, ...]
+
+
+class Heard:
+    """A process and what it has said."""
+
+    def __init__(self, process: subprocess.Popen[bytes]) -> None:
+        self._process = process
+        self._said = b""
+
+    def listen(self, words: str, timeout_s: float) -> float | None:
+        """Returns when it has said the words; None if it ends, or the time does, before."""
+        assert self._process.stdout is not None
+        deadline_s = time.monotonic() + timeout_s
+        while words.encode() not in self._said:
+            ready, _, _ = select.select(
+                [self._process.stdout], [], [], max(0.0, deadline_s - time.monotonic())
+            )
+            text = os.read(self._process.stdout.fileno(), 65536) if ready else b""
+            if not text:
+                return None
+            self._said += text
+        return time.monotonic()
+
+    def end(self) -> str:
+        """Has it end by Ctrl-C if it has not, and returns all that it has said."""
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGINT)
+        rest, _ = self._process.communicate(timeout=_COMMAND_S)
+        return (self._said + rest).decode(errors="replace")
+
+
+class Playground:
+    """A folder with a secret, a cache of compiled models and the documents of one attempt after the other."""
+
+    def __init__(self, folder: Path, engines: Path) -> None:
+        self.folder = folder
+        self._bin = Path(sys.executable).parent
+        self._secret = folder / "home" / "secret"
+        self._canary = f"canary{secrets.token_hex(16)}"
+        self._secret.parent.mkdir()
+        self._secret.write_text(self._canary)
+        self._secret.chmod(0o600)
+        self._cache = folder / "cache"
+        link_engines(engines, self._cache)
+        self._environment = {
+            **os.environ,
+            "AOS_CACHE_DIR": str(self._cache),
+            "AOS_RUNNING_DIR": str(folder / "running"),
+            "AOS_CANARY": self._canary,
+        }
+
+    def play(self, kind: str, name: str, way: str) -> Attempt:
+        """The attempt. Every process that it started must have ended with it."""
+        code = {"model": MODELS, "compiler": COMPILED, "mapping": MAPPINGS}[kind][name]
+        code = code.replace("SECRET", str(self._secret)).replace("FOLDER", str(self._secret.parent))
+        place = self.folder / "documents"
+        bundle = self._write(place, kind, code, apart=way == "push")
+        started_s = time.monotonic()
+        self._before_s = 0.0
+        said, told_s = {"lint": self._lint, "push": self._push, "mission": self._mission}[way](
+            place, bundle, _LINES[kind]
+        )
+        told_s = None if told_s is None else told_s - started_s - self._before_s
+        return Attempt(kind, name, way, told_s, tuple(self._broken(kind, name, way, told_s, said)))
+
+    def _write(self, place: Path, kind: str, code: str, *, apart: bool) -> Path:
+        """Writes a deploy file, good documents, and the hostile ones: with the good ones, or `apart`."""
+        subprocess.run(["rm", "-rf", str(place)], check=True)
+        good = place / "good"
+        hostile = place / "hostile" if apart else good
+        good.mkdir(parents=True)
+        hostile.mkdir(exist_ok=True)
+        (place / "cell.yaml").write_text(_DEPLOY.format(bundles="good"))
+        (place / "robot.py").write_text(_ROBOT)
+        (good / "cell.ef").write_text(_ENVIRONMENT)
+        (good / "step.sd").write_text(_MODEL.replace("CODE\n", ""))
+        (good / "step.am").write_text(_MAPPING.replace("SKILL", "step").replace("CODE", _GOOD))
+        model, mapping = ("", code) if kind == "mapping" else (code, _GOOD)
+        (hostile / "reach.sd").write_text(_MODEL.replace("CODE", model))
+        (hostile / "reach.am").write_text(_MAPPING.replace("SKILL", "reach").replace("CODE", mapping))
+        if kind == "mapping" and not apart:
+            # Then the mission has no other skill to choose.
+            (good / "step.sd").unlink()
+            (good / "step.am").unlink()
+        return hostile
+
+    def _lint(self, place: Path, bundle: Path, line: str) -> tuple[str, float | None]:
+        words = [str(self._bin / "aos"), "lint", str(bundle)]
+        return self._listened(words, place, line)
+
+    def _mission(self, place: Path, bundle: Path, line: str) -> tuple[str, float | None]:
+        words = [str(self._bin / "aos-up"), "cell.yaml", "--plain"]
+        return self._listened(words, place, line)
+
+    def _push(self, place: Path, bundle: Path, line: str) -> tuple[str, float | None]:
+        """Pushes the hostile bundle into a mission that goes on; only the time from then on counts."""
+        started_s = time.monotonic()
+        mission = self._started([str(self._bin / "aos-up"), "cell.yaml", "--plain"], place)
+        mission.listen("step", _COMMAND_S)
+        self._before_s = time.monotonic() - started_s
+        push = [
+            str(self._bin / "aos"),
+            "bundle",
+            "push",
+            str(bundle),
+            "--run",
+            str(place / "runs" / "latest"),
+        ]
+        said, told_s = self._listened(push, place, line)
+        if told_s is None:
+            told_s = mission.listen(line, _HEARD_S)
+        return said + mission.end(), told_s
+
+    def _listened(self, words: list[str], place: Path, line: str) -> tuple[str, float | None]:
+        heard = self._started(words, place)
+        told_s = heard.listen(line, _HEARD_S)
+        return heard.end(), told_s
+
+    def _started(self, words: list[str], place: Path) -> Heard:
+        return Heard(
+            subprocess.Popen(
+                words, cwd=place, env=self._environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+            )
+        )
+
+    def _broken(self, kind: str, name: str, way: str, told_s: float | None, said: str) -> Iterator[str]:
+        """The promises that do not hold."""
+        if self._canary in said:
+            yield "the secret is in what was said"
+        found = [path for path in self._written() if self._canary.encode() in path.read_bytes()]
+        if found:
+            yield f"the secret is in {found[0].relative_to(self.folder)}"
+        if self._secret.read_text() != self._canary or self._secret.stat().st_mode & 0o777 != 0o600:
+            yield "the secret is another"
+        if list(self._secret.parent.iterdir()) != [self._secret]:
+            yield "something was written"
+        if left := _left_running():
+            yield f"{len(left)} processes run on: {'; '.join(left)}"
+        if told_s is None and name not in _HARMLESS and (kind, way) != ("mapping", "lint"):
+            yield f"the line was not told: {said[-400:]!r}"
+        elif told_s is not None and told_s > _TOLD_S:
+            yield f"the line was told after {told_s:.1f} s"
+
+    def _written(self) -> Iterator[Path]:
+        """Every file that the attempts have written, the engines apart, which were there before."""
+        for path in self.folder.rglob("*"):
+            if path != self._secret and path.is_file() and not path.is_symlink():
+                yield path
+
+
+def _left_running() -> list[str]:
+    """The command lines of what has become a child of this process, which adopts what others leave behind."""
+    while True:
+        try:
+            if os.waitpid(-1, os.WNOHANG)[0] == 0:
+                break
+        except ChildProcessError:
+            return []
+    listing = Path(f"/proc/self/task/{os.getpid()}/children").read_text()
+    commands = (Path(f"/proc/{pid}/cmdline").read_bytes() for pid in listing.split())
+    return [command.replace(b"\0", b" ").decode(errors="replace")[:200] for command in commands]
+
+
+def attempts(ways: tuple[str, ...] = WAYS) -> Iterator[tuple[str, str, str]]:
+    """Every case in every way, as `play` takes it. Linting runs no mappings, and is tried all the same."""
+    for kind, cases in (("model", MODELS), ("compiler", COMPILED), ("mapping", MAPPINGS)):
+        for name in cases:
+            for way in ways:
+                yield kind, name, way
