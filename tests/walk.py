@@ -3,13 +3,15 @@
     python -m tests.walk        with AOS installed from its wheel; some minutes, most of it for compilers
 
 $AOS_CACHE_DIR names models that are compiled already, else there are none.
-A comment before a block says what it is: `run`, `file: PATH`, `run in the background`, `run while it looks`.
+A comment before a block says what it is: `run`, `file: PATH`, `run in the background`, `run while it looks`,
+`run when the mission has ended`.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -67,14 +69,20 @@ class Walk:
             self._write(step.kind.removeprefix("file: "), step.text)
         elif step.kind == "run in the background":
             self._start(step.text.strip())
+        elif step.kind == "run while it looks":
+            self._until_line("step  1: look  [")
+            self._run_all(step.text)
+            (self._folder / "pushed").touch()
+        elif step.kind == "run when the mission has ended":
+            self._until_line("`aos mission start` begins the next")
+            self._run_all(step.text)
+            self._finish()
         else:
-            if self._background is not None:
-                self._until_line("step  1: look  [")
-            for line in step.text.strip().splitlines():
-                self._run(line)
-            if self._background is not None:
-                (self._folder / "pushed").touch()
-                self._finish()
+            self._run_all(step.text)
+
+    def _run_all(self, text: str) -> None:
+        for line in text.strip().splitlines():
+            self._run(line)
 
     def _write(self, name: str, text: str) -> None:
         if name.endswith(".yaml"):
@@ -112,19 +120,21 @@ class Walk:
         )
         self.said[line] = ""
 
-    def _until_line(self, beginning: str) -> None:
+    def _until_line(self, part: str) -> None:
         for line in self._lines():
-            if line.startswith(beginning):
+            if part in line:
                 return
-        raise AssertionError(f"it ended before any {beginning!r}:\n{self._last_said}")
+        raise AssertionError(f"it ended before any {part!r}:\n{self._last_said}")
 
     def _finish(self) -> None:
+        """Ctrl-C in the first terminal."""
         assert self._background is not None
+        self._background.send_signal(signal.SIGINT)
         for _ in self._lines():
             pass
         self._background.communicate(timeout=PATIENCE_S)
         if (status := self._background.returncode) != 0:
-            raise AssertionError(f"the mission ended with {status}:\n{self._last_said}")
+            raise AssertionError(f"the system ended with {status}:\n{self._last_said}")
         self._background = None
 
     def _lines(self) -> Iterator[str]:

@@ -4,6 +4,8 @@ All skills that are bound to it share one hidden true state, drawn from the init
 seed and stepped by the model, as `aos simulate` does it. A call answers with the observation itself. The
 truth of each step is in `<run>/<adapter>.jsonl`; the planner is not told. A process that starts again plays
 the steps of that file once more, and so comes to the same state. With the option `faults` some calls fail.
+
+In a system that stays each mission has such a file in its folder. Its world is as `played_worlds.py` says.
 """
 
 from __future__ import annotations
@@ -16,10 +18,12 @@ from typing import Any
 import msgspec
 
 from aos_deploy.played_faults import FAILED_CALL, LOST_RESULT, NO_ANSWER, PlayedFaults
-from aos_protocol.documents import MissionValue
+from aos_deploy.played_worlds import PlayedStep, PlayedWorld, bring_to, steps_in, worlds_of
+from aos_protocol.documents import MissionValue, Project
 from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.adapters import Call, Host, Observed
+from aos_runtime.mission_folders import number_of
 from aos_solver.child.engine import Engine
 from aos_solver.mission.hot_plug import build_project
 
@@ -28,24 +32,11 @@ __all__ = ["ModelAdapter", "PlayedStep"]
 _log = logging.getLogger("aos.model")
 
 
-class PlayedStep(msgspec.Struct, frozen=True):
-    """One line of the file: what was done, what came of it, and the state after it as text.
-
-    Its `fault` is what the mission was told in place of the response.
-    """
-
-    action: str
-    response: str
-    reward: float
-    ending: str
-    state: str
-    fault: str = ""
-
-
 class _World(msgspec.Struct, frozen=True):
     """A running model, and the number of each of its actions by skill and parameters."""
 
     engine: Engine
+    project: Project
     names: tuple[str, ...]
     skills: dict[str, list[tuple[dict[str, Any], int]]]
 
@@ -63,22 +54,21 @@ class ModelAdapter:
             host.options.get("mission_values", ()), tuple[MissionValue, ...]
         )
         self._faults = PlayedFaults(host.options.get("faults", {}))
-        self._played: list[str] = []
+        self._worlds = [PlayedWorld(self._file, host.seed, self._mission_values)]
+        self._mission = ""
         self._world: _World | None = None
         self._following: asyncio.Task[None] | None = None
         self._changing = asyncio.Lock()
 
     async def start(self) -> None:
         """Documents come after everything has started; a model takes its time to be compiled."""
-        if self._file.exists():
-            lines = self._file.read_bytes().splitlines()
-            steps = [msgspec.json.decode(line, type=PlayedStep) for line in lines]
-            self._played = [step.action for step in steps if step.fault != FAILED_CALL]
+        self._worlds = [msgspec.structs.replace(self._worlds[0], played=steps_in(self._file))]
         self._following = asyncio.create_task(self._follow())
 
     async def call(self, call: Call) -> Observed:
         """A step of the hidden state; SkillError where a fault was drawn for it."""
-        fault = self._faults.drawn(call.skill, self._host.seed, call.id.step)
+        await self._turn_to(call.id.mission)
+        fault = self._faults.drawn(call.skill, self._worlds[-1].seed, call.id.step)
         # A step takes far less than its cancellation could: it is done or not begun.
         observed = await asyncio.shield(self._step(call, fault))
         if fault == FAILED_CALL:
@@ -95,6 +85,29 @@ class ModelAdapter:
             await asyncio.wait({self._following})
         if self._world is not None:
             await self._world.engine.close()
+
+    async def _turn_to(self, mission: str) -> None:
+        """Turns to the world of another mission, in a system that stays."""
+        place = number_of(mission)
+        if mission == self._mission or place is None or place[0] != self._host.run_dir.name:
+            return
+        entries = (await self._host.missions()).entries
+        async with self._changing:
+            self._worlds = worlds_of(
+                entries, place[1], self._host.run_dir, self._host.name, self._mission_values
+            )
+            if self._world is not None:
+                self._world = await self._brought(self._world.engine, self._world.project)
+            self._mission = mission
+
+    async def _brought(self, engine: Engine, project: Project) -> _World:
+        """The world to which the missions have come, with the actions that the mission's values give it."""
+        await bring_to(engine, project, self._worlds, self._cache_dir)
+        actions = engine.description.actions
+        world = _World(engine, project, tuple(action.name for action in actions), {})
+        for index, action in enumerate(actions):
+            world.skills.setdefault(action.skill, []).append((action.parameters, index))
+        return world
 
     async def _step(self, call: Call, fault: str) -> Observed:
         async with self._changing:
@@ -113,8 +126,9 @@ class ModelAdapter:
                 played = PlayedStep(name, step.response, step.reward, step.ending, state, fault)
                 numbers = step.numbers
                 monitors = await world.engine.monitor_world()
-                self._played.append(name)
-        with self._file.open("ab") as file:
+                now = self._worlds[-1]
+                self._worlds[-1] = msgspec.structs.replace(now, played=(*now.played, name))
+        with self._worlds[-1].file.open("ab") as file:
             file.write(msgspec.json.encode(played) + b"\n")
         return Observed(played.response, numbers, monitors)
 
@@ -130,16 +144,8 @@ class ModelAdapter:
         project = msgspec.structs.replace(revision.project, mission_values=self._mission_values)
         built = await build_project(project, self._cache_dir, lambda remark: _log.info("%s", remark))
         engine = await Engine.start(built, seed=self._host.seed, keeps_belief=False)
-        world = _World(engine, tuple(action.name for action in engine.description.actions), {})
-        for index, action in enumerate(engine.description.actions):
-            world.skills.setdefault(action.skill, []).append((action.parameters, index))
         async with self._changing:
-            await engine.reset_world(self._host.seed)
-            for name in self._played:
-                if name in world.names:
-                    await engine.step_world(world.names.index(name))
-                    await engine.monitor_world()
-            outdated, self._world = self._world, world
+            outdated, self._world = self._world, await self._brought(engine, revision.project)
         if outdated is not None:
             await outdated.engine.close()
         paths = {"/" + skill.mapping.activation.path.strip("/") for skill in revision.project.skills}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -14,11 +15,11 @@ from aos_deploy.run_directory import RunDirectory, Summary, SystemSummary
 from aos_deploy.run_end import settled
 from aos_deploy.supervisor import Supervisor
 from aos_deploy.verdict import Account, Verdict
-from aos_protocol.errors import AosError, StorageError
+from aos_protocol.errors import AosError, MissionRunsError, StorageError
 from aos_protocol.messages import MissionEntry, MissionState, StartMission
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import make_folder_of_missions, mission_folder
-from aos_solver.mission.logbook import JOURNAL, entries_of
+from aos_solver.mission.logbook import JOURNAL, entries_of, entry_of
 
 __all__ = ["SystemRun"]
 
@@ -39,7 +40,9 @@ class SystemRun(MissionRun):
 
     async def _ask_to_start(self, supervisor: Supervisor, start: StartMission) -> None:
         if self._taken_up is None or not self._taken_up.has_begun:
-            await super()._ask_to_start(supervisor, StartMission(request=self._run.path.name))
+            # Somebody else may have been quicker, as soon as the services could be asked.
+            with suppress(MissionRunsError):
+                await super()._ask_to_start(supervisor, StartMission(request=self._run.path.name))
 
     def _take(self, event: Event) -> None:
         if isinstance(event, MissionState) and event.mission != self._mission:
@@ -48,12 +51,12 @@ class SystemRun(MissionRun):
 
     def _take_end(self, state: MissionState) -> None:
         """Keeps the summary of a mission that has ended, once."""
-        for entry in entries_of(self._run.path):
-            if entry.mission == state.mission and self._run.read_summary(entry.number) is None:
-                summary = self._keep(entry, was_interrupted=False)
-                took = f"{summary.steps} steps in {summary.duration_s:.1f} s"
-                what = f"{entry.mission}: {summary.ending} after {took}"
-                self._report(Told(f"{what}; `aos mission start` begins the next, Ctrl-C stops the system"))
+        entry = entry_of(self._run.path, state.mission)
+        if entry is None or self._run.read_summary(entry.number) is not None:
+            return
+        summary = self._keep(entry, was_interrupted=False)
+        what = f"{entry.mission}: {summary.ending} after {summary.steps} steps in {summary.duration_s:.1f} s"
+        self._report(Told(f"{what}; `aos mission start` begins the next, Ctrl-C stops the system"))
 
     def _keep(self, entry: MissionEntry, *, was_interrupted: bool) -> Summary:
         """Writes the summary of a mission; what ended it from outside goes into its journal."""

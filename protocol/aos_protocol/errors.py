@@ -10,6 +10,7 @@ compares no codes:
       PlanningError   AOS3xx  no decision, impossible observation
       MappingError    AOS4xx  an abstraction mapping raised, or no rule matched
       SkillError      AOS5xx  a skill is unknown, refused, timed out, lost
+                      MissionRunsError
       BusError        AOS6xx  no answer, late answer, malformed message:
                       LateAnswerError, NobodyAnswersError, LostAnswerError
       StorageError    AOS7xx  journal or catalogue
@@ -35,6 +36,7 @@ __all__ = [
     "LateAnswerError",
     "LostAnswerError",
     "MappingError",
+    "MissionRunsError",
     "ModelError",
     "NobodyAnswersError",
     "PlanningError",
@@ -222,6 +224,12 @@ class SkillError(AosError):
     code = "AOS502"
 
 
+class MissionRunsError(SkillError):
+    """A mission runs already, so that another one cannot begin."""
+
+    code = "AOS515"
+
+
 class BusError(AosError):
     code = "AOS601"
 
@@ -281,6 +289,7 @@ _SITUATIONS: dict[str, type[AosError]] = {
     "AOS216": EngineDefectError,
     "AOS217": EngineDefectError,
     "AOS220": IntractableError,
+    "AOS515": MissionRunsError,
     "AOS601": LateAnswerError,
     "AOS604": NobodyAnswersError,
     "AOS607": LostAnswerError,

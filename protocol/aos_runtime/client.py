@@ -11,7 +11,7 @@ import logging
 import uuid
 from collections.abc import AsyncIterator, Iterable, Mapping
 from contextlib import asynccontextmanager
-from typing import Any
+from typing import Any, Literal
 
 from aos_protocol.errors import (
     BusError,
@@ -85,7 +85,7 @@ class AosClient:
     async def start_mission(
         self,
         *,
-        belief: str = "initial",
+        belief: Literal["initial", "keep"] = "initial",
         given: Iterable[str] = (),
         idle: int = 0,
         values: Mapping[str, str] | None = None,

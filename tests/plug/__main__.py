@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from . import monitored, stopping, takeovers
+from . import missions, monitored, stopping, takeovers
 
 
 class Part(NamedTuple):
@@ -26,6 +26,7 @@ class Part(NamedTuple):
 
 PARTS: Mapping[str, Part] = {
     "stopping": Part("skills that are stopped while they run", stopping.add_options, stopping.measure),
+    "missions": Part("missions one after the other", missions.add_options, missions.measure),
     "truth": Part("beliefs of new documents", takeovers.add_truth_options, takeovers.measure_truth),
     "shelf": Part("the shelf of models", takeovers.add_shelf_options, takeovers.measure_shelf),
     "pushes": Part("pushes into missions", takeovers.add_push_options, takeovers.measure_pushes),

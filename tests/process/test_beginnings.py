@@ -13,8 +13,13 @@ from aos_protocol.errors import AosError, PlanningError
 from aos_protocol.messages import StartMission
 from aos_solver.child.answers import ExportedBelief
 from aos_solver.child.engine import Engine
+from aos_solver.child.search import Search
 from aos_solver.mission.beginning import begin_with
 from aos_solver.mission.conditions import built_with_conditions
+from aos_solver.mission.logbook import Logbooks
+from aos_solver.mission.succession import Succession
+from aos_solver.mission.takeover import RunningModel
+from aos_solver.mission.terms import Terms
 
 WALK = {
     "walk.ef": """\
@@ -158,3 +163,20 @@ async def test_a_condition_that_faults_is_told_at_its_place(cache_dir: Path) -> 
     async with engine_of(built) as engine:
         with pytest.raises(AosError, match="--given:1:1"):
             await engine.condition(0.01)
+
+
+async def test_a_belief_is_kept_from_a_mission_before(cache_dir: Path, tmp_path: Path) -> None:
+    def terms(name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
+        return Terms(name=name, epoch=epoch, search=Search(simulations=1, seed=seed))
+
+    async def documents(revision: int) -> Project:
+        return project()
+
+    succession = Succession(Logbooks(tmp_path, 1, stay=True), terms, documents, cache_dir)
+    async with engine_of(await built_text(WALK, cache_dir)) as engine:
+        with pytest.raises(PlanningError, match="there is no mission before this one") as refused:
+            await succession.next(RunningModel(1, engine), StartMission("keep"), None)
+        assert refused.value.code == "AOS516"
+        begun = await succession.next(RunningModel(1, engine), StartMission(), None)
+        assert await distribution(begun.engine) == await distribution(engine)
+        await begun.engine.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import queue
@@ -19,6 +20,7 @@ from processes import HANG_S, kill
 
 from aos_deploy.history_check.files import violations_of_run
 from aos_protocol.errors import SkillError
+from aos_protocol.messages import BundleReport, PushBundle
 from aos_runtime.client import AosClient
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folder
@@ -41,8 +43,8 @@ from pathlib import Path
 SLOW = Path(__file__).with_name("slow")
 
 async def listen(call):
-    if SLOW.exists():
-        await asyncio.Event().wait()
+    while SLOW.exists():
+        await asyncio.sleep(0.05)
     return {"loudest": "left"}
 
 async def open_door(call, door):
@@ -119,6 +121,7 @@ class System:
 def up(root: Path, folder: Path, cache_dir: Path, *options: str) -> Iterator[System]:
     environment = {**os.environ, "AOS_CACHE_DIR": str(cache_dir), "AOS_RUNNING_DIR": str(folder / "running")}
     (folder / "tiger.yaml").write_text(DEPLOY.format(root=root))
+    (folder / "errand.yaml").write_text(ERRAND.format(root=root))
     (folder / "robot.py").write_text(ROBOT)
     command = [BIN / "aos-up", *(options or ("tiger.yaml", "--stay")), "--json"]
     pipes = {"stdout": subprocess.PIPE, "stderr": None}
@@ -128,6 +131,18 @@ def up(root: Path, folder: Path, cache_dir: Path, *options: str) -> Iterator[Sys
             yield system
         finally:
             process.kill()
+
+
+ERRAND = """\
+aos: 1
+robot: errand
+bundles: [{root}/deploy/bundles/errand]
+bus: {{listen: "tcp/127.0.0.1:0"}}
+mission: {{goal_probability: 0.95, set: {{target: alice}}}}
+solver: {{simulations: 2000}}
+stay: true
+bind: {{"*": model}}
+"""
 
 
 @pytest.fixture
@@ -216,4 +231,49 @@ async def test_a_solver_killed_between_missions_or_in_one_that_kept_its_belief_h
         assert again.run == run
         assert again.interrupt() == 0
     assert again.beliefs(2)[0] == again.beliefs(1)[-1]
+    assert violations_of_run(run) == []
+
+
+def test_a_skill_that_is_removed_while_it_runs_ends_first_and_the_last_one_stays(stays: System) -> None:
+    stays.be_slow(True)
+    stays.until("mission", phase="acting", step=1)
+    removed = stays.aos("bundle", "rm", "tiger", "listen")
+    assert removed[0] == 0, removed
+    stays.be_slow(False)
+    stays.until("mission", phase="ended")
+    code, said, _ = stays.aos("bundle", "rm", "tiger", "open")
+    assert code == 1, said
+    records = stays.aos("decisions", "--json")[1].splitlines()
+    observed = [record for record in map(json.loads, records) if record.get("outcome")]
+    assert observed[0]["outcome"]["response"] == "tiger_left"
+    assert {record["skill"] for record in observed[1:]} == {"open"}
+    assert stays.interrupt() == 0
+
+
+async def test_the_next_mission_has_other_parameters_and_newer_documents(
+    root: Path, cache_dir: Path, tmp_path: Path
+) -> None:
+    files = {path.name: path.read_bytes() for path in (root / "deploy/bundles/errand").iterdir()}
+    files["look.sd"] = files["look.sd"].replace(b"__reward = -1;", b"__reward = -2;")
+    with up(root, tmp_path, cache_dir, "errand.yaml") as system:
+        system.until("mission", phase="ended")
+        code, _, error = system.aos("mission", "start", "--set", "target=bod")
+        assert code == 1
+        assert "error[AOS146]: target cannot be 'bod': it is one of alice, bob. Did you mean `bob`?" in error
+        async with AosClient.connect(system.record["endpoint"], "errand") as aos:
+            # A push beside the start, so that it comes before the first decision or after it.
+            push = aos.bus.ask(aos.keys.push_bundle, PushBundle(files), BundleReport, timeout_s=HANG_S)
+            state, report = await asyncio.gather(aos.start_mission(values={"target": "bob"}), push)
+            assert report.is_accepted, report.diagnostics
+            entry = await aos.until_ended(state.mission)
+            assert (entry.ending, entry.values) == ("goal", {"target": "bob"})
+            state = await aos.start_mission()
+            assert state.revision == report.revision
+            assert (await aos.until_ended(state.mission)).ending == "goal"
+        run = system.run
+        assert system.interrupt() == 0
+    with Journal.read(mission_folder(run, 2) / "journal.db") as journal:
+        actions = {json.loads(row.payload)["action"] for row in journal.walk("decision")}
+    assert "give(to=bob)" in actions
+    assert "give(to=alice)" not in actions
     assert violations_of_run(run) == []

@@ -21,7 +21,7 @@ def walk(cache_dir: Path, tmp_path_factory: pytest.TempPathFactory) -> Walk:
 def test_the_page_has_all_of_the_way() -> None:
     kinds = [step.kind for step in steps_of()]
     assert {kind for kind in kinds if not kind.startswith("file: ")} == {
-        "run", "run in the background", "run while it looks",
+        "run", "run in the background", "run while it looks", "run when the mission has ended",
     }  # fmt: skip
     commands = " ".join(step.text for step in steps_of() if step.kind.startswith("run"))
     for command in (
@@ -33,6 +33,7 @@ def test_the_page_has_all_of_the_way() -> None:
         "decisions",
         "runs",
         "bundle push",
+        "mission start",
     ):
         assert f"aos {command}" in commands
 
@@ -50,6 +51,13 @@ def test_the_mission_without_a_robot_reaches_its_goal_and_can_be_read(walk: Walk
 
 
 def test_the_skill_that_was_pushed_is_used_at_the_next_decision(walk: Walk) -> None:
-    assert "fetch revision 1, added look, take" in walk.said["aos-up fetch-robot.yaml"]
+    assert "fetch revision 1, added look, take" in walk.said["aos-up fetch-robot.yaml --stay"]
     assert "revision 2, added ask" in walk.said["aos bundle push fetch"]
-    assert "step  2: ask  [ask " in walk.said["aos-up fetch-robot.yaml"]
+    assert "step  2: ask  [ask " in walk.said["aos-up fetch-robot.yaml --stay"]
+
+
+def test_the_robot_has_a_second_task_without_a_restart(walk: Walk) -> None:
+    assert ": goal after " in walk.said["aos mission start --wait"]
+    first, second = walk.said["aos mission list"].splitlines()
+    assert first.startswith("goal")
+    assert second.startswith("goal")

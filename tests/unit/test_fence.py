@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import msgspec
 import pytest
 
 from aos_protocol.errors import SkillError
@@ -75,3 +76,24 @@ def test_a_cancellation_of_an_older_solver_is_stale_and_one_by_hand_never() -> N
     assert fence.is_stale(Cancel("late", ActivationId("m", 1), epoch=1))
     assert not fence.is_stale(Cancel("late", ActivationId("m", 1), epoch=2))
     assert not fence.is_stale(Cancel("enough"))
+
+
+def of_mission(number: int, step: int = 1) -> Activate:
+    """A request of a mission of a system that stays."""
+    return Activate(ActivationId(f"20260101T000000Z-tiger-{number}", step), "pick", {}, 5.0)
+
+
+async def test_a_mission_that_another_one_has_followed_moves_nothing_any_more() -> None:
+    fence = a_fence(solver_is_at=1)
+    fence.note(of_mission(9))
+    fence.note(of_mission(10))
+    assert await code_of(fence, of_mission(9, step=2)) == "AOS506"
+    assert await code_of(fence, of_mission(10, step=2)) == ""
+    assert await code_of(fence, of_mission(11)) == ""
+    assert await code_of(fence, a_request(1)) == "", "missions of others are no business of this system's"
+
+
+async def test_a_new_mission_has_epochs_of_its_own() -> None:
+    fence = a_fence(solver_is_at=1)
+    fence.note(msgspec.structs.replace(of_mission(1), epoch=4))
+    assert await code_of(fence, of_mission(2)) == ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +18,7 @@ from aos_protocol.errors import AosError, StorageError
 from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionBegun, ModelAdopted
 from aos_registry.catalogue import Catalogue
 from aos_runtime.journal import Journal
+from aos_runtime.mission_folders import mission_folders
 from aos_solver.child.engine import Engine
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, Failures
@@ -42,23 +44,31 @@ class _Record(NamedTuple):
 
 
 async def replayed(run: Path, on_progress: Callable[[str], None]) -> Replay:
-    """Replays the journal of a run that is over, up to the first change of its model.
+    """Replays the journals of a run that is over, each up to the first change of its model.
 
     A run that cannot be replayed, or not to its end, has the reason as the remark.
     """
     replay = Replay()
-    try:
-        await _replay(run, replay, on_progress)
-    except (AosError, OSError, msgspec.MsgspecError) as error:
-        replay.remark = str(error)
+    remarks: Counter[str] = Counter()
+    folders = [str((folder / JOURNAL).relative_to(run)) for folder in mission_folders(run).values()]
+    for file in folders or [JOURNAL]:
+        replay.remark = ""
+        try:
+            await _replay(run, file, replay, on_progress)
+        except (AosError, OSError, msgspec.MsgspecError) as error:
+            replay.remark = str(error)
+        remarks[replay.remark] += 1
+    if folders:
+        texts = (f"{number} of {len(folders)} missions: {text}" for text, number in remarks.items() if text)
+        replay.remark = "; ".join(texts)
     return replay
 
 
-async def _replay(run: Path, replay: Replay, on_progress: Callable[[str], None]) -> None:
+async def _replay(run: Path, file: str, replay: Replay, on_progress: Callable[[str], None]) -> None:
     settings = msgspec.json.decode((run / "settings" / "solver.json").read_bytes(), type=Settings)
     begun: MissionBegun | None = None
     records: list[_Record] = []
-    for row, said in _rows(run / JOURNAL):
+    for row, said in _rows(run / file):
         if isinstance(said, DecisionRecord):
             records.append(_Record(row, said))
         elif begun is None:
@@ -71,7 +81,7 @@ async def _replay(run: Path, replay: Replay, on_progress: Callable[[str], None])
         return
     start = begun.start
     if start is not None and (start.belief != "initial" or start.idle or start.given):
-        replay.remark = "it begins with the belief of the mission before it"
+        replay.remark = "it begins with another belief than the initial one"
         return
     project = _project(run, settings, begun.revision)
     if emitted_model(msgspec.structs.replace(project, mission_values=())).digest != begun.model_digest:
@@ -83,12 +93,14 @@ async def _replay(run: Path, replay: Replay, on_progress: Callable[[str], None])
     )
     try:
         await engine.start_with(begun.mission_parameters)
-        await _compare(engine, settings, records, replay)
+        await _compare(engine, settings, records, replay, file)
     finally:
         await engine.close()
 
 
-async def _compare(engine: Engine, settings: Settings, records: list[_Record], replay: Replay) -> None:
+async def _compare(
+    engine: Engine, settings: Settings, records: list[_Record], replay: Replay, file: str
+) -> None:
     failures = Failures(msgspec.convert(settings, FailureRules, from_attributes=True))
     limits = msgspec.convert(settings, MissionLimits, from_attributes=True)
     belief = await engine.summary()
@@ -99,7 +111,7 @@ async def _compare(engine: Engine, settings: Settings, records: list[_Record], r
         if record.belief.digest and belief.digest:
             replay.compared += 1
             if record.belief.digest != belief.digest:
-                replay.violations.append(Violation("replay", JOURNAL, row, _text(record, belief)))
+                replay.violations.append(Violation("replay", file, row, _text(record, belief)))
 
 
 def _text(record: DecisionRecord, belief: BeliefSummary) -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
+
+import msgspec
 
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
@@ -57,9 +59,9 @@ class StartMission(Message, frozen=True):
     the deploy file's. One `request` begins one mission, however often it is asked for.
     """
 
-    belief: str = "initial"
+    belief: Literal["initial", "keep"] = "initial"
     given: tuple[str, ...] = ()
-    idle: int = 0
+    idle: Annotated[int, msgspec.Meta(ge=0, le=10_000)] = 0
     values: dict[str, str] = {}
     request: str = ""
 

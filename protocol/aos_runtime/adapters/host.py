@@ -22,6 +22,8 @@ from aos_protocol.keys import Serving
 from aos_protocol.messages import (
     Cancel,
     Cancelled,
+    Missions,
+    MissionsQuery,
     ProjectQuery,
     ProjectRevision,
     SkillCall,
@@ -36,6 +38,7 @@ from aos_runtime.adapters.expressions import translated
 from aos_runtime.adapters.ledger import Ledger
 from aos_runtime.adapters.sendable import sendable
 from aos_runtime.adapters.settings import AdapterSettings, Binding
+from aos_runtime.asking import ask_until_answered
 from aos_runtime.fence import Fence, epoch_of_solver
 from aos_runtime.lifecycle import Service
 from aos_runtime.older_python import timeout
@@ -214,6 +217,18 @@ class Host:
                 if revision.project.name == name and revision.revision > newest:
                     newest = revision.revision
                     yield revision
+
+    async def missions(self) -> Missions:
+        """The missions of the system so far; BusError where the solver stays away."""
+        bus, keys = self._service.bus, self._service.keys
+        return await ask_until_answered(
+            bus,
+            keys.missions,
+            MissionsQuery(),
+            Missions,
+            server=keys.live("solver"),
+            timeout_s=_ASK_TIMEOUT_S,
+        )
 
     # --- the process ---------------------------------------------------------------------------------
 

@@ -16,7 +16,7 @@ from typing import TypeVar
 import msgspec
 
 from aos_protocol.documents import Project
-from aos_protocol.errors import AosError, BusError, SkillError
+from aos_protocol.errors import AosError, BusError, MissionRunsError
 from aos_protocol.messages import (
     Activate,
     Cancel,
@@ -167,9 +167,8 @@ class _Solver:
             if self._settings.stay:
                 await self._begin_next(start)
             elif start.request:
-                raise SkillError(
+                raise MissionRunsError(
                     f"the system of {self._books.name} has one mission",
-                    code="AOS515",
                     hint="Start the system with `aos-up --stay`",
                 )
             elif self._mission is None and not self._has_ended:
@@ -194,9 +193,9 @@ class _Solver:
             return self._mission.state.phase != "ended"
         return self._is_interrupted
 
-    def _busy(self) -> SkillError:
+    def _busy(self) -> AosError:
         hint = "Wait for its end, or end it with `aos mission stop`"
-        return SkillError(f"the mission {self._books.name} runs", code="AOS515", hint=hint)
+        return MissionRunsError(f"the mission {self._books.name} runs", hint=hint)
 
     async def _begin_only(self) -> None:
         """Begins the only mission of a system that ends with it, or takes it up."""
@@ -205,11 +204,23 @@ class _Solver:
 
     async def _begin_next(self, start: StartMission) -> None:
         """Begins the next mission of a system that stays; nothing has changed where that fails."""
+        await self._first_model()
+        await self._until_accepted_documents_are_ready()
         running = await self._succession.model(self._shelf, await self._first_model(), start, self._mission)
         begun = await self._succession.next(running, start, self._mission)
         running = RunningModel(running.revision, begun.engine)
         await self._shelf.turn_to(running, self._succession.values(start))
         self._begin(self._books.open_next(), running, start, begun.past)
+
+    async def _until_accepted_documents_are_ready(self) -> None:
+        """Waits for what the registry has accepted before the start of a mission, here and in the
+        middleware."""
+        await self._make_current()
+        await self._shelf.made()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(MAPPING_DEADLINE_S):
+                while self._shelf.is_unmapped:
+                    await self.until_changed(1.0)
 
     async def _go_on(self) -> None:
         """Takes up the mission that had begun when the solver before this one ended."""

@@ -315,9 +315,13 @@ class Conditioned(msgspec.Struct, frozen=True):
 
 
 class WorldStart(msgspec.Struct, frozen=True):
-    """The hidden state of a new simulated world; `ending` is empty, `goal`, `failure` or `over`."""
+    """The hidden state of a new simulated world; `ending` is empty, `goal`, `failure` or `over`.
+
+    `conditions` has a bit for each condition of the model that holds in the state: see `conditions.py`.
+    """
 
     ending: str
+    conditions: int = 0
 
 
 class WorldState(msgspec.Struct, frozen=True):

@@ -245,6 +245,16 @@ class ModelShelf:
             self.kept = self._running.engine.description.mission_parameters
             return self._running
 
+    async def made(self) -> None:
+        """Returns when no revision that was announced is being made any more."""
+        async with self._building:
+            pass
+
+    @property
+    def is_unmapped(self) -> bool:
+        """Says whether the model that may take over waits for the middleware alone."""
+        return self._ready is not None and not self._is_mapped(self._ready.model.revision)
+
     async def newest(self, running: RunningModel, past: Past) -> Takeover | None:
         """The successor of the running model, with its belief; None where none is ready on both sides.
 

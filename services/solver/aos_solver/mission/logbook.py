@@ -14,10 +14,11 @@ from aos_runtime.mission_folders import (
     mission_folder,
     mission_folders,
     mission_name,
+    number_of,
 )
 from aos_solver.mission.memory import BEGUN, MissionMemory, folded
 
-__all__ = ["JOURNAL", "Logbook", "Logbooks", "entries_of"]
+__all__ = ["JOURNAL", "Logbook", "Logbooks", "entries_of", "entry_of"]
 
 JOURNAL = "journal.db"
 
@@ -138,6 +139,14 @@ def entries_of(run: Path) -> tuple[MissionEntry, ...]:
     if not folders:
         return tuple(_entry(run / JOURNAL, 0))
     return tuple(entry for number, folder in folders.items() for entry in _entry(folder / JOURNAL, number))
+
+
+def entry_of(run: Path, mission: str) -> MissionEntry | None:
+    """The mission of this name in the folder of a run; None if it has not begun there."""
+    place = number_of(mission)
+    if place is None or place[0] != run.name:
+        return None
+    return next(iter(_entry(mission_folder(run, place[1]) / JOURNAL, place[1])), None)
 
 
 def _entry(path: Path, number: int) -> list[MissionEntry]:

@@ -34,7 +34,11 @@ class WorldCommands {
     const std::vector<double> none;
     draws.start(none, random_);
     Model::begin(hidden_, command.number<int>("idle"), draws);
-    json.begin_object().member("ending", ending_text(Model::ending(hidden_))).end_object();
+    json.begin_object().member("ending", ending_text(Model::ending(hidden_)));
+    if (Model::constraint_count() > 0) {
+      json.member("conditions", std::uint64_t{Model::violations(hidden_, hidden_, 0)});
+    }
+    json.end_object();
   }
 
   void step(JsonWriter& json, const Command& command) {
