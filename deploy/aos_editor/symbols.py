@@ -10,7 +10,14 @@ from pathlib import Path
 import msgspec
 
 from aos_language.assembly import Assembly, assemble
-from aos_language.check.blocks import DYNAMIC, Block, environment_blocks, skill_blocks
+from aos_language.check.blocks import (
+    DYNAMIC,
+    MONITOR,
+    Block,
+    assignment_blocks,
+    environment_blocks,
+    skill_blocks,
+)
 from aos_language.check.model_code import read_block
 from aos_language.check.scope import STATE_COPIES, Scope
 from aos_language.cpp.keywords import CPP_KEYWORDS, SPECIAL_NAMES
@@ -179,17 +186,22 @@ def _declarations(assembly: Assembly) -> Iterator[Occurrence]:
 
 
 def _blocks(assembly: Assembly) -> Iterator[tuple[str, Block]]:
-    """All model code, with the skill it belongs to."""
-    if assembly.environment is not None:
-        yield from (("", block) for block in environment_blocks(assembly.environment))
+    """All model code, with the skill or the monitor it belongs to."""
+    if (environment := assembly.environment) is not None:
+        others = msgspec.structs.replace(environment, monitors=())
+        yield from (("", block) for block in environment_blocks(others))
+        for monitor in environment.monitors:
+            yield from ((monitor.name, block) for block in assignment_blocks(MONITOR, monitor.code))
     for model in assembly.models.values():
         yield from ((model.name, block) for block in skill_blocks(model))
 
 
 def _code(assembly: Assembly, scope: Scope) -> Iterator[Occurrence]:
+    monitors = {mapping.monitor: mapping for mapping in assembly.monitors.values()}
     for skill, block in _blocks(assembly):
-        mapping = assembly.mappings.get(skill)
-        responses = {rule.response for rule in mapping.rules} if mapping and block.role is DYNAMIC else set()
+        mapping = monitors.get(skill) if block.role is MONITOR else assembly.mappings.get(skill)
+        is_telling = mapping is not None and block.role in (DYNAMIC, MONITOR)
+        responses = {rule.response for rule in mapping.rules} if mapping and is_telling else set()
         yield from _BlockNames(skill, block, scope, responses).occurrences()
 
 
@@ -280,14 +292,15 @@ class _BlockNames:
 
 
 def _mappings(assembly: Assembly, scope: Scope) -> Iterator[Occurrence]:
-    for mapping in assembly.mappings.values():
+    for mapping in (*assembly.mappings.values(), *assembly.monitors.values()):
         if mapping.is_derived:
             # It stands nowhere. What gives a response first is where its name is looked for.
             for rule in mapping.rules:
                 yield Occurrence(Symbol(SymbolKind.RESPONSE, rule.response, mapping.name), rule.span, True)
             continue
+        owner = mapping.monitor or mapping.name
         for rule in mapping.rules:
-            yield Occurrence(Symbol(SymbolKind.RESPONSE, rule.response, mapping.name), rule.span, True)
+            yield Occurrence(Symbol(SymbolKind.RESPONSE, rule.response, owner), rule.span, True)
             for assignment in rule.assignments:
                 prefix = "state." if assignment.path.startswith("state.") else ""
                 name = assignment.path.removeprefix(prefix).split(".")[0]
@@ -309,7 +322,7 @@ def _python(mapping: AbstractionMapping) -> Iterator[Occurrence]:
     codes = (variable.code for variable in mapping.local_variables)
     fields = (field.value for field in mapping.activation.fields)
     names = {variable.name for variable in mapping.local_variables}
-    for snippet in (*conditions, *codes, *fields):
+    for snippet in (*conditions, *codes, *fields, mapping.stop_when):
         for number, line in enumerate(snippet.code.split("\n") if snippet is not None else (), start=1):
             for match in re.finditer(r"(?<![\w.\"'])[A-Za-z_]\w*(?![\"'])", line.partition("#")[0]):
                 if match.group() in names and snippet is not None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from aos_editor.symbols import read_bundle
 from aos_language.convert import Dialect, convert, without_origins
 from aos_language.load import load_files, read_bundle_files
 from aos_protocol.documents import Project
@@ -81,6 +82,30 @@ def test_a_monitor_without_rules_or_topics_says_what_it_lacks() -> None:
         "1:1 the monitor battery listens to no topic",
         "1:1 the monitor battery has no response rules",
     ]
+
+
+def test_a_skill_that_says_nothing_of_being_stopped_is_told_where_a_monitor_may_stop_it() -> None:
+    go = (
+        BATTERY["go.am"]
+        .replace("__skill_status == 'stopped'", "there == 2")
+        .replace("response_rule: True", "response_rule: not there")
+    )
+    told = findings(go_am=(BATTERY["go.am"], go))
+    assert told == ["warning AOS116 battery.am:7:12 no rule says what is observed where this stops go"]
+
+
+def test_an_editor_knows_the_names_in_both_halves(tmp_path: Path) -> None:
+    for name, text in BATTERY.items():
+        (tmp_path / name).write_text(text)
+    places: dict[str, list[str]] = {}
+    for occurrence in read_bundle(tmp_path, {}).occurrences:
+        symbol = occurrence.symbol
+        places.setdefault(f"{symbol.kind.value} {symbol.owner} {symbol.name}", []).append(
+            str(occurrence.span)
+        )
+    assert places["response battery low"] == ["battery.am:3:11", "drive.ef:26:66", "drive.ef:27:54"]
+    assert "drive.ef:26:11" in places["state variable  charge"]
+    assert "battery.am:7:12" in places["local variable battery level"]
 
 
 def test_two_mappings_of_one_monitor_and_one_called_like_a_skill_are_refused() -> None:

@@ -6,10 +6,10 @@ from aos_language.assembly import Assembly
 from aos_language.check.mapping_code import check_mapping
 from aos_language.check.responses import check_responses
 from aos_language.check.scope import Scope
-from aos_language.check.stop_when import check_stop_when
+from aos_language.check.stop_when import check_stop_when, tells_of_stops
 from aos_language.check.unused import check_unused_locals
 from aos_language.findings import Findings
-from aos_protocol.documents import AbstractionMapping, LocalSource, MonitorModel, SkillModel
+from aos_protocol.documents import AbstractionMapping, LocalSource, MonitorModel, SkillModel, Snippet
 
 __all__ = ["check_monitors"]
 
@@ -37,11 +37,24 @@ def check_monitors(assembly: Assembly, scope: Scope, findings: Findings, *, is_w
             otherwise = f"Add `monitor: {name}` with the code that gives its response from `state`"
             findings.unknown(name, models, message, span, otherwise, code="AOS114")
         first.setdefault(name, mapping)
+        if is_whole and mapping.stop_when is not None:
+            _check_stopped(mapping.stop_when, assembly, findings)
     for name in models if is_whole else ():
         if name not in first:
             hint = f"Add {name}.am with `monitor: {name}`, or take the model out"
             message = f"the monitor {name} has no abstraction mapping"
             findings.error("AOS114", message, models[name].span, hint)
+
+
+def _check_stopped(stop_when: Snippet, assembly: Assembly, findings: Findings) -> None:
+    """Warns where it can stop skills whose mappings say nothing of a stop."""
+    silent = sorted(name for name, mapping in assembly.mappings.items() if not tells_of_stops(mapping))
+    if silent:
+        message = f"no rule says what is observed where this stops {', '.join(silent)}"
+        hint = (
+            "Give the mapping a rule for `__skill_status == 'stopped'`: else nobody knows what the skill did"
+        )
+        findings.warning("AOS116", message, stop_when.span, hint)
 
 
 def _models(assembly: Assembly, findings: Findings) -> dict[str, MonitorModel]:

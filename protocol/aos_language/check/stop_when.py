@@ -12,7 +12,7 @@ from aos_language.findings import Findings
 from aos_protocol.diagnostics import Severity
 from aos_protocol.documents import AbstractionMapping, LocalSource, SkillModel, Snippet
 
-__all__ = ["check_stop_when"]
+__all__ = ["check_stop_when", "tells_of_stops"]
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _NO_TRUTH = (
@@ -107,19 +107,20 @@ def _heard(mapping: AbstractionMapping, tree: ast.AST) -> bool:
 
 
 def _check_told(mapping: AbstractionMapping, snippet: Snippet, findings: Findings) -> None:
-    """Warns where all rules look at the result alone: after a stop there is none, and its variables are
-    None."""
-    if mapping.response_variable or not mapping.rules:
-        return
-    of_result = {v.name for v in mapping.local_variables if v.source is LocalSource.SERVICE_RESPONSE}
-    words = {
-        word
-        for rule in mapping.rules
-        if rule.condition is not None
-        for word in _WORD.findall(rule.condition.code)
-    }
-    others = {v.name for v in mapping.local_variables} - of_result
-    if not words & (others | {"__skill_status", "__skill_error"}) and words & of_result:
+    if not tells_of_stops(mapping):
         message = f"no rule of {mapping.name} says what is observed when `stop_when` has stopped the skill"
         hint = "Begin the rules with one for `__skill_status == 'stopped'`: there is no result then"
         findings.warning("AOS116", message, snippet.span, hint)
+
+
+def tells_of_stops(mapping: AbstractionMapping) -> bool:
+    """Returns whether a rule may hold for a skill that was stopped, with None for what the result gives."""
+    if mapping.response_variable or not mapping.rules:
+        return True
+    of_result = {v.name for v in mapping.local_variables if v.source is LocalSource.SERVICE_RESPONSE}
+    others = {v.name for v in mapping.local_variables} - of_result | {"__skill_status", "__skill_error"}
+    for rule in mapping.rules:
+        words = set(_WORD.findall(rule.condition.code)) if rule.condition is not None else set()
+        if words & others or not words & of_result:
+            return True
+    return False
