@@ -8,6 +8,7 @@ from aos_deploy.constraints import constrained
 from aos_deploy.deploy_file import Deployment
 from aos_deploy.mission_values import with_values
 from aos_language.load import load_files, read_bundle_files
+from aos_language.mission_parameters import declared_values, parameter_leaves
 from aos_language.reading.files import skills_of_files
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.documents import Project
@@ -26,11 +27,11 @@ def files_of_bundle(bundle: Path, leave_out: tuple[str, ...]) -> dict[str, bytes
     return {name: data for name, data in files.items() if skills.get(name) not in leave_out}
 
 
-def project_of(deployment: Deployment) -> Project:
+def project_of(deployment: Deployment, *, plays_world: bool = False) -> Project:
     """Reads the project that all bundles make together, with the mission's constraints and values.
 
     DocumentError with all that is wrong with the documents, DeployError AOS801 with what is wrong with the
-    constraints and what is set.
+    constraints and what is set. Documents that only play the world need not have every mission parameter.
     """
     files: dict[str, bytes] = {}
     for bundle in deployment.bundles:
@@ -43,7 +44,10 @@ def project_of(deployment: Deployment) -> Project:
             diagnostics=loaded.diagnostics,
         )
     project = constrained(loaded.project, deployment.constraints, [deployment.path])
-    return with_values(project, deployment.mission_values, [deployment.path])
+    values = deployment.mission_values
+    if plays_world:
+        values = declared_values(values, parameter_leaves(project.environment))
+    return with_values(project, values, [deployment.path])
 
 
 def check_mission_of(deployment: Deployment) -> None:

@@ -24,6 +24,7 @@ __all__ = [
     "OPTION",
     "ParameterLeaf",
     "checked_values",
+    "declared_values",
     "mission_value_of_option",
     "parameter_leaves",
     "usable_values",
@@ -114,6 +115,14 @@ def mission_value_of_option(text: str) -> MissionValue:
         hint = f"Write it as {OPTION} target=alice"
         raise DocumentError(f"{text!r} sets no mission parameter", code="AOS146", hint=hint)
     return MissionValue(name.strip(), value, Span(OPTION, 1, 1))
+
+
+def declared_values(
+    values: Iterable[MissionValue], leaves: Mapping[str, ParameterLeaf]
+) -> tuple[MissionValue, ...]:
+    """Those of parts that are declared, for documents that are not the ones that the values are set for."""
+    paths = {_path(name) for name in leaves}
+    return tuple(value for value in values if _path(value.name) in paths)
 
 
 def checked_values(

@@ -260,6 +260,16 @@ def test_a_deploy_file_sets_parts_by_mappings(deploy_file: Path) -> None:
     }
 
 
+def test_documents_that_only_play_the_world_need_not_have_a_parameter(deploy_file: Path) -> None:
+    documents = deploy_file.with_name("home") / "home.ef"
+    documents.write_text(documents.read_text().replace("target", "whom"))
+    deployment = read_deploy_file(deploy_file)
+    with pytest.raises(DeployError):
+        project_of(deployment)
+    names = [value.name for value in project_of(deployment, plays_world=True).mission_values]
+    assert names == ["dock.x_m", "dock.near", "wanted.bob"]
+
+
 @pytest.mark.parametrize(
     ("before", "after", "code", "place"),
     [

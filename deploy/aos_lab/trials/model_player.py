@@ -46,7 +46,7 @@ class ModelMissions(msgspec.Struct, frozen=True):
             step_limit=mission.step_limit,
             stop_below_value=mission.stop_below_value,
         )
-        played = project_of(world) if world is not None else None
+        played = project_of(world, plays_world=True) if world is not None else None
         return cls(project_of(deployment), limits, _search(deployment), played)
 
 
