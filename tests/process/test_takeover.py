@@ -6,6 +6,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
+import msgspec
 import pytest
 from hall import HALL, changed, looked, marginal, past_of, with_bell
 from models import built_text, engine_of
@@ -37,6 +38,22 @@ async def taken(
         takeover = await successor.take_over(running, past)
     assert takeover is not None
     return takeover, engine
+
+
+PURR = """project: hall
+monitor: purr
+response: ringing
+response_rule: is_ringing
+response: silent
+response_rule: True
+
+local_variable: is_ringing
+topic: /bell
+message_type: Bell
+type: bool
+code:
+return __input.is_ringing
+"""
 
 
 class SlowClock(SystemClock):
@@ -106,6 +123,17 @@ async def test_an_impossible_past_is_met_by_projection_which_keeps_what_both_hav
         for is_wet in wet
         for bell in "01"
     }
+
+
+async def test_what_a_monitor_said_may_be_impossible_too(cache_dir: Path) -> None:
+    files = with_bell("state.has_bell = false;")
+    files["hall.ef"] += "monitor: purr\ncode:\n__moduleResponse = state.has_bell ? ringing : silent;\n"
+    files["purr.am"] = PURR
+    heard = msgspec.structs.replace(looked("above"), monitors={"purr": "ringing"})
+    takeover, engine = await taken(files, cache_dir, past_of(looked("below"), heard), SystemClock())
+    await engine.close()
+    assert takeover.row.by == "projection"
+    assert takeover.row.why == "what a monitor said after step 2 is impossible in the new documents"
 
 
 async def test_a_projected_variable_follows_those_that_never_change(cache_dir: Path) -> None:

@@ -129,7 +129,8 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
     With numbers P is a density, in units of the numbers. `has_other_numbers` says that the model reports no
     such numbers with that response, so that the response counted alone. `uncorrected` is why the local
     variables of the outcome did not correct the belief. `remark` tells people of both. `is_foreign` says that
-    the model has no such action or response, so that only time passed.
+    the model has no such action or response, so that only time passed. `excludes_monitor` says that no state
+    explains what a monitor said.
     """
 
     log_probability: float
@@ -140,6 +141,7 @@ class BeliefUpdate(msgspec.Struct, frozen=True):
     uncorrected: EngineFault | None = None
     remark: str = ""
     is_foreign: bool = False
+    excludes_monitor: bool = False
 
     @property
     def probability(self) -> float:

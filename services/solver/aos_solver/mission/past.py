@@ -111,7 +111,8 @@ async def updated(
         if engine.has_monitored(monitor, response):
             seen = await engine.update_by_monitor(monitor, response, refuted_below)
             remark = f"the model excludes that {monitor} says {response}" if seen.is_impossible else ""
-            update = msgspec.structs.replace(update, summary=seen.summary)
+            excludes = update.excludes_monitor or seen.is_impossible
+            update = msgspec.structs.replace(update, summary=seen.summary, excludes_monitor=excludes)
         else:
             remark = f"the model has no monitor {monitor} that says {response}"
         if remark:

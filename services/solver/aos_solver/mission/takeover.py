@@ -166,7 +166,11 @@ class Successor:
             self._foreign += update.is_foreign
             all_s = self._mean_s * len(past)
             is_told = self._spent_s >= _TELLING_S
-            if update.is_impossible:
+            if update.excludes_monitor:
+                self._cannot_replay = (
+                    f"what a monitor said after step {self._done} is impossible in the new documents"
+                )
+            elif update.is_impossible:
                 self._cannot_replay = (
                     f"step {self._done}, {step.action} -> {step.response}, is impossible in the new documents"
                 )
