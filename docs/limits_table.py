@@ -205,6 +205,14 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "middleware waits for topic messages sent during a call, after its end",
             "aos_middleware.activation.CATCH_UP_S", "s", "it goes on without",
         ),
+        Row(
+            "an adapter's word that a skill has stopped which its mapping or a monitor stops",
+            "aos_middleware.stopping.STOP_S", "s", "it is asked again",
+        ),
+        Row(
+            "an activation waits for new monitors to be at work",
+            "aos_middleware.monitors.LISTEN_S", "s", "it begins without",
+        ),
         Row("topic messages that wait", "aos_middleware.activation._QUEUE_SIZE", "", "the oldest are lost"),
         Row(
             "topic messages an adapter has not sent",

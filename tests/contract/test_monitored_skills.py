@@ -137,3 +137,22 @@ async def test_a_skill_that_is_played_brings_the_responses_of_monitors_that_its_
     await monitored(system)
     outcome = await sensed(system, 1, response="heard")
     assert (outcome.response, outcome.monitors) == ("heard", {"battery": "low"})
+
+
+async def test_a_monitor_is_exchanged_by_a_push_and_goes_with_it(system: System) -> None:
+    await monitored(system)
+
+    async def answer(_: SkillCall) -> dict[str, Any]:
+        system.adapter.publish("/battery", {"level": 0.5})
+        return {}
+
+    await system.adapter.serve("/sense", answer)
+    assert (await system.activate("sense", 1)).monitors == {"battery": "fine"}
+    project = system.registry.current.project
+    other = mapping_of(BATTERY.replace("response: fine", "response: half"), "battery.am")
+    for step, monitors in ((2, (other,)), (3, ()), (4, (other,))):
+        system.registry.announce(msgspec.structs.replace(project, monitors=monitors))
+        await system.state(system.registry.current.revision)
+        outcome = await system.activate("sense", step)
+        assert outcome.status == "observed"
+        assert outcome.monitors == ({"battery": "half"} if monitors else {})

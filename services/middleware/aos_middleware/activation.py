@@ -101,7 +101,7 @@ async def run_activation(
     fault: AosError | None = None
     status = "observed"
     activation = _Activation(request, evaluator, around, is_taken_up)
-    around.monitors.begin(activation.stop)
+    await around.monitors.begin(activation.stop)
     told = Monitored({}, {})
     try:
         observation = await activation.run()

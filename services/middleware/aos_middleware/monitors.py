@@ -22,6 +22,9 @@ from aos_runtime.subscription import merged
 
 __all__ = ["Monitored", "Monitors"]
 
+LISTEN_S = 5.0
+"""An activation waits this long for new monitors to be at work."""
+
 _BATCH = 256
 _QUEUE_SIZE = 4096
 
@@ -41,35 +44,46 @@ class Monitors:
     def __init__(self, bus: Bus, keys: Keys) -> None:
         self._bus = bus
         self._keys = keys
-        self._wanted: dict[str, Evaluator] = {}
         self._running: dict[str, _Monitor] = {}
+        self._leaving: list[_Monitor] = []
         self._has_changed = asyncio.Event()
         self._stops: list[Stop] = []
 
     def follow(self, evaluators: Mapping[str, Evaluator]) -> None:
         """These are the monitors from now on, by name."""
-        self._wanted = dict(evaluators)
+        for name, monitor in list(self._running.items()):
+            if evaluators.get(name) is not monitor.evaluator:
+                self._leaving.append(self._running.pop(name))
+        for name, evaluator in evaluators.items():
+            if name not in self._running:
+                self._running[name] = _Monitor(name, evaluator, self._on_stop)
         self._has_changed.set()
 
     async def run(self) -> None:
-        """Keeps the monitors running that are wanted."""
-        listening: dict[str, asyncio.Task[None]] = {}
+        """Keeps the monitors listening that are wanted."""
+        listening: dict[_Monitor, asyncio.Task[None]] = {}
         async with asyncio.TaskGroup() as tasks:
             while True:
                 self._has_changed.clear()
-                for name, monitor in list(self._running.items()):
-                    if self._wanted.get(name) is not monitor.evaluator:
-                        listening.pop(name).cancel()
-                        del self._running[name]
-                for name, evaluator in self._wanted.items():
-                    if name not in self._running:
-                        monitor = self._running[name] = _Monitor(name, evaluator, self._on_stop)
-                        listening[name] = tasks.create_task(monitor.listen(self._bus, self._keys))
+                for monitor in self._leaving:
+                    if monitor in listening:
+                        listening.pop(monitor).cancel()
+                self._leaving.clear()
+                for monitor in self._running.values():
+                    if monitor not in listening:
+                        listening[monitor] = tasks.create_task(monitor.listen(self._bus, self._keys))
                 await self._has_changed.wait()
 
-    def begin(self, stop: Stop) -> None:
-        """An activation begins. It is stopped where a monitor has said so that no outcome has told of."""
+    async def begin(self, stop: Stop) -> None:
+        """Returns when all monitors listen: an activation begins. It is stopped where a monitor has said so
+        and no outcome has told of it."""
         self._stops.append(stop)
+        try:
+            async with asyncio.timeout(LISTEN_S):
+                for monitor in list(self._running.values()):
+                    await monitor.listens.wait()
+        except TimeoutError:
+            _log.warning("the monitors do not listen yet")
         for monitor in self._running.values():
             if monitor.has_risen:
                 stop.ask(monitor.name)
@@ -101,12 +115,14 @@ class Monitors:
 
 
 class _Monitor:
-    """One monitor. `has_risen` says that its `stop_when` became true since its last response."""
+    """One monitor. `has_risen` says that its `stop_when` became true since its last response, and `listens`
+    that it is at work."""
 
     def __init__(self, name: str, evaluator: Evaluator, on_stop: Callable[[str], None]) -> None:
         self.name = name
         self.evaluator = evaluator
         self.has_risen = False
+        self.listens = asyncio.Event()
         self._on_stop = on_stop
         self._topics = {
             variable.topic
@@ -126,6 +142,7 @@ class _Monitor:
         async with self.evaluator.in_use, merged(*streams, queue_size=_QUEUE_SIZE) as messages:
             async with self._asking:
                 await self._begin()
+            self.listens.set()
             while True:
                 batch = await _next_batch(messages)
                 async with self._asking:
