@@ -132,6 +132,7 @@ class Bus:
         question = Question(key, reply, timeout_s, on_stray)
         hears_strays = on_stray is not None
         self._check_open()
+        router = self.router
         self._session.get(
             key,
             question.replies,
@@ -146,7 +147,7 @@ class Bus:
         try:
             with suppress(TimeoutError):
                 async with timeout(timeout_s if hears_strays else timeout_s + _LATE_S):
-                    await self._wait_while_served(watch, question.settled)
+                    await self._wait_while_served(watch, question.settled, router)
         finally:
             question.settled.cancel()
             if not self._is_closed:
@@ -246,12 +247,20 @@ class Bus:
     @property
     def is_routed(self) -> bool:
         """Says whether a router is there. The session finds back to one that is started again by itself."""
-        return not self._is_closed and bool(self._session.info.routers_zid())
+        return bool(self.router)
 
-    async def has_lost_router(self) -> bool:
-        """Says of a question whose answer was lost whether the router has gone, and not who was asked."""
+    @property
+    def router(self) -> str:
+        """The name of the router that is there, empty if none is; each start of a router has another name."""
+        return "" if self._is_closed else " ".join(str(zid) for zid in self._session.info.routers_zid())
+
+    async def has_lost_router(self, router: str) -> bool:
+        """Says of a question whose answer was lost whether the router has gone, and not who was asked.
+
+        `router` is the name of the one that was there when the question was asked.
+        """
         await asyncio.sleep(_LINK_S)  # The session hears of its link a moment later.
-        return not self.is_routed
+        return not self.is_routed or self.router != router
 
     def _check_open(self) -> None:
         if self._is_closed:
@@ -288,16 +297,20 @@ class Bus:
         return True
 
     async def _wait_while_served(
-        self, watch: ServerWatch, answer: asyncio.Future[tuple[bool, bytes] | None]
+        self, watch: ServerWatch, answer: asyncio.Future[tuple[bool, bytes] | None], router: str
     ) -> None:
-        """Returns when `answer` is there; it is settled as lost once nobody serves its key."""
+        """Returns when `answer` is there; it is settled as lost once nobody serves its key, or once the
+        router that has the question is gone: the next one knows nothing of it."""
         is_served = True
         while is_served:
             ends: set[asyncio.Future[Any]] = {answer, watch.has_left}
             await asyncio.wait(ends, timeout=_UNANSWERED_S, return_when=asyncio.FIRST_COMPLETED)
             if answer.done():
                 return
-            is_served = not watch.has_left.done() and (not await self._has_gone_round() or watch.is_served)
+            has_other_router = self.router not in ("", router)
+            is_served = not (watch.has_left.done() or has_other_router) and (
+                not await self._has_gone_round() or watch.is_served
+            )
         # An answer that was under way when its giver left comes first.
         await asyncio.wait({answer}, timeout=_UNANSWERED_S)
         if not answer.done():

@@ -315,6 +315,19 @@ def test_the_page_has_each_rule(root: Path) -> None:
     assert all(f"| `{name}` | {sentence} |" in page for name, sentence in RULES.items())
 
 
+def test_a_journal_that_had_no_space_for_its_end_agrees_with_a_summary_that_tells_it() -> None:
+    history = History()
+    del history.journal[-1]
+    account = Account()
+    for entry in history.journal:
+        if isinstance(entry.payload, DecisionRecord | MissionState):
+            account.take(entry.payload)
+    history.summary = replace(account.verdict(), ending="fault", exit_code=7)
+    assert history.broken_rules() == set()
+    history.summary = replace(history.summary, actions=("stay",))
+    assert history.broken_rules() == {"verdict"}
+
+
 def test_a_removed_row_is_caught() -> None:
     history = History()
     found = violations(MISSION, [row for row in rows(history.journal) if row.seq != 4])

@@ -20,7 +20,7 @@ RULES = {
     "ends": "what ends was started before, and ends once",
     "hold": "nothing starts while the mission holds",
     "over": "nothing follows the end of the mission",
-    "verdict": "the summary has the verdict of the journal",
+    "verdict": "the summary has the verdict of the journal, as far as that goes",
 }
 """Each rule by its name."""
 

@@ -327,13 +327,14 @@ class _Activation:
         """Returns the adapter's answer; the call is asked for again where the router has gone."""
         limit_s = call.deadline_s + _REPLY_GRACE_S
         while True:
+            router = self._bus.router
             reach("middleware.call.before")
             try:
                 result = await self._bus.ask(
                     self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
                 )
             except (LostAnswerError, NobodyAnswersError):
-                if not await self._bus.has_lost_router():
+                if not await self._bus.has_lost_router(router):
                     raise
                 self._has_missed = True
                 if not await self._around.served.is_back(path, AWAY_S):
