@@ -182,7 +182,19 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
         Row(
             "solver waits for the middleware to generate the mappings before the first step",
-            "aos_solver.service.MAPPING_DEADLINE_S", "s", "ending `fault`",
+            "aos_solver.mapping_watch.MAPPING_DEADLINE_S", "s", "ending `fault`",
+        ),
+        Row(
+            "a mission is waited for that is to begin, with documents that are still compiled",
+            "aos_runtime.client.START_TIMEOUT_S", "s", "AOS601",
+        ),
+        Row(
+            "a mission is waited for that is stopped",
+            "aos_runtime.client.STOP_TIMEOUT_S", "s", "AOS601",
+        ),
+        Row(
+            "conditions with which a mission begins",
+            "aos_solver.mission.conditions.MAX_CONDITIONS", "", "AOS142",
         ),
         Row(
             "registry asks the solver whether documents can be used (this compiles)",

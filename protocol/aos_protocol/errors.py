@@ -85,7 +85,7 @@ CODES: dict[str, str] = {
     "AOS139": "no ending is a goal",
     "AOS140": "a parameter that the abstraction mapping does not pass on",
     "AOS141": "a default that sets another variable",
-    "AOS142": "a constraint that cannot be used",
+    "AOS142": "a constraint, or what is given at the start of a mission, cannot be used",
     "AOS143": "a variable of model code that is read without a value",
     "AOS145": "shared code that is no constant, function, enum or name of a type",
     "AOS146": "a mission parameter that the documents do not have, or a value that it cannot have",

@@ -16,17 +16,13 @@ from typing import TypeVar
 import msgspec
 
 from aos_protocol.documents import Project
-from aos_protocol.errors import AosError, BusError, MissionRunsError
+from aos_protocol.errors import AosError, MissionRunsError
 from aos_protocol.messages import (
     Activate,
-    Cancel,
-    Cancelled,
     CheckModel,
     DecisionRecord,
     History,
     HistoryQuery,
-    MappingQuery,
-    MappingState,
     Message,
     MissionBegun,
     MissionQuery,
@@ -44,13 +40,11 @@ from aos_protocol.messages import (
 from aos_runtime.asking import ask_until_answered
 from aos_runtime.failpoints import reach
 from aos_runtime.lifecycle import Service
-from aos_runtime.reported_state import state_when
-from aos_runtime.served import served_paths
-from aos_runtime.subscription import merged
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import Progress
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
+from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
 from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.history import history_page
@@ -64,6 +58,7 @@ from aos_solver.mission.takeover import RunningModel, Takeover
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 from aos_solver.settings import Settings
+from aos_solver.stopping import until_stopped
 
 __all__ = ["serve"]
 
@@ -72,9 +67,6 @@ log = logging.getLogger(__name__)
 T = TypeVar("T")
 
 ASK_TIMEOUT_S = 5.0
-MAPPING_DEADLINE_S = 20.0
-CANCEL_AGAIN_S = 0.2
-"""A mission that is stopped cancels again after this time: what it asked for may not have begun before."""
 ACTIVATION_MARGIN_S = 5.0
 """An answer may take this much longer than the activation itself."""
 
@@ -103,18 +95,19 @@ class _Solver:
         self._books = Logbooks(Path(settings.run_dir), settings.seed, stay=settings.stay)
         if self._books.newest is not None and self._books.newest.memory.has_ended:
             self._books.newest.forget_steps()
+        self._changed = asyncio.Event()
+        self._mappings = MappingWatch(service.bus, service.keys, self._changed.set)
         self._shelf = ModelShelf(
             Path(settings.cache_dir),
             self._report_progress,
             self._start_engine,
-            lambda revision: revision in self._mapped,
+            self._mappings.is_mapped,
             settings.constraints,
             settings.mission_values,
         )
-        self._shelf.on_ready = lambda: self._changed.set()
+        self._shelf.on_ready = self._changed.set
         if self._books.newest is not None and not self._books.newest.memory.has_ended:
             self._shelf.kept = self._books.newest.memory.mission_parameters
-        self._mapped: tuple[int, ...] = ()
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()
@@ -122,9 +115,6 @@ class _Solver:
         self._succession = Succession(
             self._books, self._terms, self._documents, Path(settings.cache_dir), settings.mission_values
         )
-        self._changed = asyncio.Event()
-        self.unavailable: dict[str, str] = {}
-        self.announced: dict[str, int] = {}
 
     async def run(self) -> None:
         bus, keys = self._bus, self._keys
@@ -141,7 +131,7 @@ class _Solver:
             if self._is_interrupted:
                 tasks.create_task(self._go_on())  # It goes on without being told.
             tasks.create_task(self._run_missions())
-            tasks.create_task(self._follow_mappings())
+            tasks.create_task(self._mappings.follow())
             async for _, revision in announced:
                 if revision.project.name == self._settings.project:
                     tasks.create_task(self._make(revision))
@@ -265,21 +255,8 @@ class _Solver:
             return self._state()
         mission.stop(stop.reason)
         self._changed.set()
-        while mission.state.phase != "ended":
-            await self._cancel(mission, stop.reason)
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(CANCEL_AGAIN_S):
-                    await self._ended.wait()
+        await until_stopped(mission, stop.reason, self._ended, self._bus, self._keys)
         return mission.state
-
-    async def _cancel(self, mission: Mission, reason: str) -> None:
-        """Cancels what the mission has asked for, whoever serves it: what has begun meanwhile too."""
-        if mission.activation is None:
-            return
-        cancel = Cancel(reason, mission.activation, mission.state.epoch)
-        for path in await served_paths(self._bus, self._keys):
-            with contextlib.suppress(AosError):
-                await self._bus.ask(self._keys.cancel(path), cancel, Cancelled, timeout_s=ASK_TIMEOUT_S)
 
     async def _answer_missions(self, _: MissionsQuery, __: str) -> Missions:
         return Missions(await asyncio.to_thread(self._books.entries), self._settings.stay)
@@ -338,7 +315,7 @@ class _Solver:
         """Builds a revision, and asks whether the middleware has it: what it told may be lost."""
         await self._shelf.make(revision)
         if self._mission is not None:
-            await self._await_mappings(revision.revision)
+            await self._mappings.until_dealt_with(revision.revision)
 
     async def _start_engine(self, built: BuiltModel) -> Engine:
         reach("solver.engine.before")
@@ -361,11 +338,6 @@ class _Solver:
         )
         return answer.project
 
-    async def _ask_mapping_state(self) -> MappingState:
-        return await self._bus.ask(
-            self._keys.mapping_state, MappingQuery(), MappingState, timeout_s=ASK_TIMEOUT_S
-        )
-
     def _report_progress(self, remark: str) -> None:
         log.info("%s", remark)
         if self._mission is None:
@@ -387,7 +359,7 @@ class _Solver:
             self._started.clear()
             mission = self._mission
             assert mission is not None
-            await self._await_mappings(mission.state.revision)
+            await self._mappings.until_dealt_with(mission.state.revision)
             state = await mission.run()
             self._ended.set()
             log.info("the mission ended: %s, %s", state.ending, state.remark)
@@ -407,39 +379,13 @@ class _Solver:
             hold_s=self._settings.hold_s,
         )
 
-    async def _await_mappings(self, revision: int) -> None:
-        """Waits until the middleware has dealt with a revision. After the deadline activations tell of it."""
-        try:
-            state = await state_when(
-                self._bus,
-                self._keys.mapping_state,
-                MappingQuery(),
-                MappingState,
-                lambda state: max(state.revision, state.refused) >= revision,
-                timeout_s=MAPPING_DEADLINE_S,
-            )
-            self._take_mapping_state(state)
-        except AosError as error:
-            log.warning("the middleware has no mappings of revision %d: %s", revision, error)
+    @property
+    def unavailable(self) -> dict[str, str]:
+        return self._mappings.unavailable
 
-    async def _follow_mappings(self) -> None:
-        """Follows which skills can be run, as the middleware tells it."""
-        told = self._bus.listen(self._keys.mapping_state, MappingState)
-        async with merged(told, self._bus.presence(self._keys.live("middleware"))) as events:
-            async for _, event in events:
-                if isinstance(event, MappingState):
-                    self._take_mapping_state(event)
-                elif event:
-                    # What it told while it, or the router, was away is lost.
-                    with contextlib.suppress(BusError):
-                        self._take_mapping_state(await self._ask_mapping_state())
-
-    def _take_mapping_state(self, state: MappingState) -> None:
-        if state.unavailable != self.unavailable:
-            log.info("unavailable skills: %s", state.unavailable or "none")
-        self.unavailable, self.announced = state.unavailable, state.announced
-        self._mapped = state.revisions
-        self._changed.set()
+    @property
+    def announced(self) -> dict[str, int]:
+        return self._mappings.announced
 
     async def until_changed(self, timeout_s: float) -> None:
         self._changed.clear()

@@ -1,0 +1,38 @@
+"""The end of a mission that somebody stops: what moves for it is cancelled, until it has ended."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+
+from aos_protocol.errors import AosError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import Cancel, Cancelled
+from aos_runtime.bus import Bus
+from aos_runtime.served import served_paths
+from aos_solver.mission.loop import Mission
+
+__all__ = ["until_stopped"]
+
+CANCEL_AGAIN_S = 0.2
+"""A mission that is stopped cancels again after this time: what it asked for may not have begun before."""
+CANCEL_TIMEOUT_S = 5.0
+
+
+async def until_stopped(mission: Mission, reason: str, ended: asyncio.Event, bus: Bus, keys: Keys) -> None:
+    """Returns when a mission that was told to stop has ended, which `ended` tells."""
+    while mission.state.phase != "ended":
+        await _cancel(mission, reason, bus, keys)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(CANCEL_AGAIN_S):
+                await ended.wait()
+
+
+async def _cancel(mission: Mission, reason: str, bus: Bus, keys: Keys) -> None:
+    """Cancels what the mission has asked for, whoever serves it."""
+    if mission.activation is None:
+        return
+    cancel = Cancel(reason, mission.activation, mission.state.epoch)
+    for path in await served_paths(bus, keys):
+        with suppress(AosError):
+            await bus.ask(keys.cancel(path), cancel, Cancelled, timeout_s=CANCEL_TIMEOUT_S)
