@@ -39,6 +39,10 @@ def test_a_json_mapping_with_every_construct_is_generated_as_stored() -> None:
     compare(EXPECTED / "valves", EXPECTED / "valves")
 
 
+def test_the_mapping_of_a_monitor_is_generated_as_stored() -> None:
+    compare(EXPECTED.parents[1] / "data" / "bundles" / "battery", EXPECTED / "battery")
+
+
 def test_generating_twice_gives_the_same_bytes(bundles: Path) -> None:
     first, second = (emit_project(project_in(bundles / "armadillo-finer")) for _ in range(2))
     assert first == second
