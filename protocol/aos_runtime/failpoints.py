@@ -2,7 +2,7 @@
 
 `AOS_FAILPOINT=NAME:ACTION` or `NAME:ACTION:TIME` in the environment arms one; the process fails when it comes
 there for that time, the first without a number. Actions: `kill` (SIGKILL), `exit` (an exit without any
-cleaning up), `freeze` (SIGSTOP), and `full`: the disk is full at this write and all later ones of the place.
+cleaning up), `freeze` (SIGSTOP), and `full`: the disk is full at this write and for the process from then on.
 `AOS_FAILPOINT_DONE` may name a file that is made when the process fails; where it is there, nothing fails
 any more, so that a process that is started again goes on.
 
@@ -53,6 +53,8 @@ FAILPOINTS = {
 }
 """Each place with what the process is about."""
 
+_NO_WRITES = {"up.start.before", "solver.engine.before", "middleware.worker.before", "middleware.call.before"}
+
 _armed = os.environ.get("AOS_FAILPOINT", "")
 _done = os.environ.get("AOS_FAILPOINT_DONE", "")
 _times = 0
@@ -70,13 +72,11 @@ def reach(name: str) -> None:
 def _reach(name: str) -> None:
     global _times
     place, action, time = (*_armed.split(":"), "1")[:3]
-    if place != name:
-        return
-    _times += 1
-    if action == "full" and _times >= int(time):
+    _times += place == name
+    if action == "full" and _times >= int(time) and name.endswith(".before") and name not in _NO_WRITES:
         _is_first()
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    if _times != int(time) or not _is_first():
+    if place != name or _times != int(time) or not _is_first():
         return
     if action == "kill":
         os.kill(os.getpid(), signal.SIGKILL)
