@@ -1,0 +1,26 @@
+"""Missions that fail at a failpoint are completed: a share of `make chaos`."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from processes import HANG_S
+
+RUNS = ("failpoint:journal.intended.after:1", "full:middleware.started.before:1")
+
+
+def test_missions_keep_what_is_promised(root: Path, cache_dir: Path) -> None:
+    ran = subprocess.run(
+        [sys.executable, "-m", "tests.chaos", "--again", *RUNS],
+        cwd=root,
+        env=os.environ | {"AOS_CACHE_DIR": str(cache_dir)},
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
+        check=False,
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert f"{len(RUNS)} of {len(RUNS)} runs kept what is promised" in ran.stdout
