@@ -8,7 +8,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from tests.hostile.attempt import WAYS, Attempt, Playground, attempts
+from tests.hostile.attempt import TOLD_S, WAYS, Attempt, Playground, attempts
 
 from aos_deploy.program import cache_dir
 from aos_runtime.parent import adopt_orphans
@@ -44,8 +44,13 @@ def _summary(played: list[Attempt]) -> str:
     kinds = Counter(attempt.kind for attempt in played)
     counted = ", ".join(f"{count} of {kind}s" for kind, count in kinds.items())
     broken = sum(bool(attempt.faults) for attempt in played)
-    last_s = max((attempt.told_s for attempt in played if attempt.told_s is not None), default=0.0)
-    return f"{counted}: {broken} broke a promise; the last was told after {last_s:.1f} s"
+    told_s = [attempt.told_s for attempt in played if attempt.told_s is not None]
+    early = sum(one_s <= TOLD_S for one_s in told_s)
+    last_s = max(told_s, default=0.0)
+    return (
+        f"{counted}: {broken} broke a promise; {early} of {len(told_s)} were told within {TOLD_S:g} s, "
+        f"the last after {last_s:.1f} s"
+    )
 
 
 if __name__ == "__main__":

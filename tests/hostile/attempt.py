@@ -16,14 +16,16 @@ from typing import NamedTuple
 from tests.hostile.cases import COMPILED, MAPPINGS, MODELS
 from tests.kept_cache import link_engines
 
-__all__ = ["WAYS", "Attempt", "Playground", "attempts"]
+__all__ = ["TOLD_S", "WAYS", "Attempt", "Playground", "attempts"]
 
 WAYS = ("lint", "push", "mission")
-_TOLD_S = 15.0
-_HEARD_S = 8 * _TOLD_S
+TOLD_S = 15.0
+"""The time within which a place is to be told on a machine that does nothing else."""
+_HEARD_S = 8 * TOLD_S
 _COMMAND_S = 240.0
 _LINES = {"model": "reach.sd:", "compiler": "reach.sd:", "mapping": "reach.am:10:"}
 """The words that tell the place. Code that goes on for ever is told at its head, other code at its line."""
+_DID_NOT_END = "(it did not end when it was told to)"
 _HARMLESS = ("prints 1 GB",)
 """This is no fault: what is printed beyond the limit is dropped."""
 
@@ -105,7 +107,12 @@ class Heard:
         """Has it end by Ctrl-C if it has not, and returns all that it has said."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
-        rest, _ = self._process.communicate(timeout=_COMMAND_S)
+        try:
+            rest, _ = self._process.communicate(timeout=_COMMAND_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            rest, _ = self._process.communicate()
+            rest += f"\n{_DID_NOT_END}".encode()
         return (self._said + rest).decode(errors="replace")
 
 
@@ -205,6 +212,8 @@ class Playground:
 
     def _broken(self, kind: str, name: str, way: str, told_s: float | None, said: str) -> Iterator[str]:
         """The promises that do not hold."""
+        if _DID_NOT_END in said:
+            yield "the command did not end when it was told to"
         if self._canary in said:
             yield "the secret is in what was said"
         found = [path for path in self._written() if self._canary.encode() in path.read_bytes()]
@@ -218,8 +227,6 @@ class Playground:
             yield f"{len(left)} processes run on: {'; '.join(left)}"
         if told_s is None and name not in _HARMLESS and (kind, way) != ("mapping", "lint"):
             yield f"the line was not told: {said[-400:]!r}"
-        elif told_s is not None and told_s > _TOLD_S:
-            yield f"the line was told after {told_s:.1f} s"
 
     def _written(self) -> Iterator[Path]:
         """Every file that the attempts have written, the engines apart, which were there before."""

@@ -76,10 +76,7 @@ async def run_compiler(
     }  # What a compiler that is killed leaves goes with it.
     environment["CCACHE_DISABLE"] = "1"  # Its cache is one of the folders that a compiler may not write in.
     if cache is not None:
-        environment |= {
-            "ZIG_GLOBAL_CACHE_DIR": str(cache),
-            "ZIG_LOCAL_CACHE_DIR": str(directory / ".zig-cache"),
-        }
+        environment |= {"ZIG_GLOBAL_CACHE_DIR": str(cache), "ZIG_LOCAL_CACHE_DIR": str(cache)}
     child = await Child.start(
         guarded(command, limits, confinement),
         cwd=directory,
