@@ -15,6 +15,8 @@ __all__ = ["state_when"]
 M = TypeVar("M", bound=Message)
 
 _QUESTION_S = 5.0
+_AGAIN_S = 1.0
+"""A service that has told nothing for so long is asked again."""
 
 _IS_AWAY = (NobodyAnswersError, LostAnswerError, LateAnswerError)
 """An asker gets these errors from a service that starts, stops or is busy: it tells its state when it has
@@ -31,16 +33,22 @@ async def state_when(
     """
     try:
         async with timeout(timeout_s), bus.listen(key, kind) as states:
-            try:
-                state = await bus.ask(key, question, kind, timeout_s=min(timeout_s, _QUESTION_S))
-            except _IS_AWAY:
-                pass
-            else:
-                if holds(state):
-                    return state
-            async for _, state in states:
-                if holds(state):
-                    return state
+            while True:
+                try:
+                    state = await bus.ask(key, question, kind, timeout_s=min(timeout_s, _QUESTION_S))
+                except _IS_AWAY:
+                    pass
+                else:
+                    if holds(state):
+                        return state
+                try:
+                    async with timeout(_AGAIN_S):
+                        async for _, state in states:
+                            if holds(state):
+                                return state
+                except TimeoutError:
+                    continue  # What it told while the router was away is lost.
+                break
     except TimeoutError:
         raise LateAnswerError(f"what is awaited on {key} did not come in {timeout_s:g} s") from None
     raise BusError(f"{bus.sender} has left the bus", code="AOS605")

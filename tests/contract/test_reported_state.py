@@ -98,3 +98,15 @@ async def test_a_refusal_of_the_question_is_told(bus: Bus, keys: Keys) -> None:
     await bus.answer(keys.mapping_state, MappingQuery, refuse)
     with pytest.raises(BusError, match="of another version"):
         await revision_from(bus, keys, 1)
+
+
+async def test_what_was_told_while_the_router_was_away_is_asked_for_again(
+    bus: Bus, keys: Keys, teller: Teller
+) -> None:
+    """A mission waited for its whole deadline, 20 s, for mappings that were there long since."""
+    await teller.serve()
+    async with asyncio.TaskGroup() as tasks:
+        awaited = tasks.create_task(revision_from(bus, keys, 3, timeout_s=600.0))
+        await teller.was_asked.wait()
+        teller.state = MappingState(3, ())  # Nobody hears of it.
+    assert awaited.result() == 3
