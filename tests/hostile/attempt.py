@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 import secrets
-import select
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -83,37 +83,43 @@ class Attempt(NamedTuple):
 
 
 class Heard:
-    """A process and what it has said."""
+    """A process and what it has said. A thread reads all the time, so that it never waits for a reader."""
 
     def __init__(self, process: subprocess.Popen[bytes]) -> None:
         self._process = process
         self._said = b""
+        self._news = threading.Condition()
+        self._has_ended = False
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
 
     def listen(self, words: str, timeout_s: float) -> float | None:
         """Returns when it has said the words; None if it ends, or the time does, before."""
-        assert self._process.stdout is not None
-        deadline_s = time.monotonic() + timeout_s
-        while words.encode() not in self._said:
-            ready, _, _ = select.select(
-                [self._process.stdout], [], [], max(0.0, deadline_s - time.monotonic())
-            )
-            text = os.read(self._process.stdout.fileno(), 65536) if ready else b""
-            if not text:
-                return None
-            self._said += text
-        return time.monotonic()
+        with self._news:
+            self._news.wait_for(lambda: self._has_ended or words.encode() in self._said, timeout_s)
+            return time.monotonic() if words.encode() in self._said else None
 
     def end(self) -> str:
         """Has it end by Ctrl-C if it has not, and returns all that it has said."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
         try:
-            rest, _ = self._process.communicate(timeout=_COMMAND_S)
+            self._process.wait(timeout=_COMMAND_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
-            rest, _ = self._process.communicate()
-            rest += f"\n{_DID_NOT_END}".encode()
-        return (self._said + rest).decode(errors="replace")
+            self._said += f"\n{_DID_NOT_END}".encode()
+        self._reader.join(timeout=_COMMAND_S)
+        return self._said.decode(errors="replace")
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        while text := os.read(self._process.stdout.fileno(), 65536):
+            with self._news:
+                self._said += text
+                self._news.notify_all()
+        with self._news:
+            self._has_ended = True
+            self._news.notify_all()
 
 
 class Playground:

@@ -69,11 +69,11 @@ COMPILED: dict[str, str] = {
         "static_assert(spin() >= 0);"
     ),
     "expands without end": (
-        "auto grow = []<int N>(auto self, std::integral_constant<int, N>) -> int { "
-        "if constexpr (N > 30) return N; else "
-        "return self(self, std::integral_constant<int, N + 1>{}) + "
-        "self(self, std::integral_constant<int, N + 1>{}) * 2; }; "
-        "state__.count = grow(grow, std::integral_constant<int, 0>{});"
+        "auto grow = []<int N, int K>(auto self, std::integral_constant<int, N>, "
+        "std::integral_constant<int, K>) -> int { if constexpr (N == 0) return K; else "
+        "return self(self, std::integral_constant<int, N - 1>{}, std::integral_constant<int, 2 * K>{}) + "
+        "self(self, std::integral_constant<int, N - 1>{}, std::integral_constant<int, 2 * K + 1>{}); }; "
+        "state__.count = grow(grow, std::integral_constant<int, 24>{}, std::integral_constant<int, 0>{});"
     ),
 }
 """Code of a dynamic model that attacks the compiler, or through it."""
