@@ -44,6 +44,9 @@ B = TypeVar("B", BeliefSummary, BeliefUpdate, Conditioned)
 
 ANSWER_DEADLINE_S = 30.0
 
+_KILLED_TIMES = 4
+"""A child may be killed so often over one question, also while it is started anew."""
+
 _FIRST_MONITOR = 1 << 24
 
 
@@ -203,23 +206,30 @@ class Asking:
 
     async def _ask(self, command: str, kind: type[A], *, deadline_s: float = ANSWER_DEADLINE_S) -> A:
         async with self._asking:
-            if self._child is None or not self._child.is_running:
-                await self._restart_child()
-            assert self._child is not None
-            try:
-                return await self._child.ask(command, kind, deadline_s, self.on_progress)
-            except KilledError as error:
-                log.warning("asking again: %s", error)
-                await self._restart_child()
-                return await self._child.ask(command, kind, deadline_s, self.on_progress)
-            except OverdueError:
-                raise
-            except asyncio.CancelledError:
-                # Its answer would be taken for that of the next question.
-                await self._drop_child()
-                raise
-            except AosError as error:
-                raise await self._at_its_statement(error, self._changes, [*self._world, command]) from None
+            for again in range(_KILLED_TIMES + 1):
+                try:
+                    return await self._asked(command, kind, deadline_s)
+                except KilledError as error:
+                    if again == _KILLED_TIMES:
+                        raise
+                    log.warning("asking again: %s", error)
+            raise AssertionError
+
+    async def _asked(self, command: str, kind: type[A], deadline_s: float) -> A:
+        """The answer of the child, or of another one that is started with the same belief."""
+        if self._child is None or not self._child.is_running:
+            await self._restart_child()
+        assert self._child is not None
+        try:
+            return await self._child.ask(command, kind, deadline_s, self.on_progress)
+        except (KilledError, OverdueError):
+            raise
+        except asyncio.CancelledError:
+            # Its answer would be taken for that of the next question.
+            await self._drop_child()
+            raise
+        except AosError as error:
+            raise await self._at_its_statement(error, self._changes, [*self._world, command]) from None
 
     async def _at_its_statement(self, fault: AosError, changes: int, commands: Sequence[str]) -> AosError:
         """The fault at its statement, if a replay of the commands finds it after so many changes."""
