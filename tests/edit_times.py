@@ -29,8 +29,8 @@ from aos_deploy.program import cache_dir
 from aos_language.load import load_bundle
 from aos_solver.building.build import build, build_engine
 from aos_solver.building.compiler import find_compiler
+from aos_solver.building.project_build import emitted_model
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import emitted_model
 
 ROOT = Path(__file__).resolve().parents[1]
 STAGES = ("read", "emit", "find compiler", "build", "start engine", "decide")

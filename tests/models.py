@@ -8,8 +8,8 @@ from pathlib import Path
 
 from aos_language.load import load_bundle, load_files
 from aos_solver.building.build import BuiltModel
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, ImpossiblePolicy
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["built_bundle", "built_bundles", "built_text", "engine_of"]
 

@@ -23,8 +23,8 @@ from aos_deploy.program import cache_dir
 from aos_language.load import LoadedBundle, load_bundle
 from aos_protocol.diagnostics import has_errors
 from aos_protocol.errors import AosError
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["Played", "bundles_in", "play_bundle"]
 

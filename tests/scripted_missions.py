@@ -12,9 +12,9 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules
-from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 __all__ = ["Clock", "Robot", "Surroundings", "jammed", "observed", "run_mission", "timed_out"]

@@ -16,8 +16,8 @@ from aos_protocol.diagnostics import Severity, render
 from aos_protocol.documents import Constraint, MissionValue
 from aos_protocol.errors import DocumentError, ModelError
 from aos_solver.building.build import BuildKind
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["engine_of_bundle"]
 

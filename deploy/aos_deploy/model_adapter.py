@@ -24,8 +24,8 @@ from aos_protocol.errors import AosError, SkillError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.adapters import Call, Host, Observed
 from aos_runtime.mission_folders import number_of
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["ModelAdapter", "PlayedStep"]
 

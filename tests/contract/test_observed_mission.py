@@ -39,9 +39,9 @@ from aos_runtime.reported_state import state_when
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 STOCK = {

@@ -10,12 +10,13 @@ import msgspec
 
 from aos_language.load import load_files
 from aos_protocol.messages import Activate, Fault, MissionState, Outcome
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.hot_plug import RunningModel, build_project
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.ports import QuietPorts
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 from .jobs import Job

@@ -21,8 +21,8 @@ from aos_lab.bench.rows import this_machine
 from aos_language.load import load_bundle
 from aos_protocol.errors import AosError
 from aos_solver.building.build import BuiltModel
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, Planner
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["Cost", "costs_of", "examine_budgets"]
 

@@ -15,9 +15,9 @@ from aos_language.load import load_bundle
 from aos_runtime.children import Confinement, Limits, guarded
 from aos_runtime.sandbox.places import library_folders, loader_of
 from aos_solver.building.build import BuiltModel
+from aos_solver.building.project_build import build_project
 from aos_solver.child import engine_child
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import build_project
 
 BUNDLE = Path(__file__).resolve().parents[2] / "deploy" / "bundles" / "turtlebot"
 CHILDREN = 100

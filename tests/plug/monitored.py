@@ -21,8 +21,8 @@ from aos_deploy.program import cache_dir
 from aos_language.load import load_bundle
 from aos_protocol.messages import BeliefSummary, DecisionRecord
 from aos_runtime.journal import Journal
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import build_project
 from aos_solver.mission.memory import MissionMemory, folded
 from aos_solver.mission.past import Evidence, Past, replayed
 

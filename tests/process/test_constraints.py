@@ -21,12 +21,13 @@ from aos_lab.trials.intervals import interval_of_share
 from aos_protocol.documents import Project
 from aos_protocol.messages import Activate, Outcome
 from aos_solver.building.build import BuiltModel
+from aos_solver.building.project_build import build_project, emitted_model
 from aos_solver.child.engine import Engine, Planner
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import Ending, MissionLimits
-from aos_solver.mission.hot_plug import RunningModel, build_project, emitted_model
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 HOB = {

@@ -19,7 +19,8 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
 from aos_solver.child.engine_child import EngineChild, EngineStart
 from aos_solver.child.printed import PRINT_LIMIT_BYTES
-from aos_solver.mission.hot_plug import ModelShelf, RunningModel
+from aos_solver.mission.model_shelf import ModelShelf
+from aos_solver.mission.takeover import RunningModel
 
 LAMP = {
     "lamp.ef": """project: lamp

@@ -21,9 +21,9 @@ from aos_deploy.commands import documents
 from aos_language import load
 from aos_protocol.errors import ModelError
 from aos_solver.building import build as building
+from aos_solver.building import project_build
 from aos_solver.building.compiler import find_compiler
 from aos_solver.child import replay
-from aos_solver.mission import hot_plug
 
 HALL = """project: hall
 horizon: 4
@@ -237,8 +237,8 @@ def test_documents_are_read_and_lowered_once(
 
     counted(load, "load_files")
     counted(documents, "load_files")
-    counted(hot_plug, "lower")
-    counted(hot_plug, "emit")
+    counted(project_build, "lower")
+    counted(project_build, "emit")
     assert linted(app, hall("state__.place = state.place + 1;  // once")) == {}
     assert calls == {"load_files": 1, "lower": 1, "emit": 1}
 

@@ -23,8 +23,9 @@ from aos_protocol.errors import DocumentError, PlanningError
 from aos_protocol.messages import MissionBegun, ProjectRevision
 from aos_runtime.journal import Journal
 from aos_solver.building.build import BuiltModel
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import ModelShelf, build_project
+from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Past
 
 BIN = Path(sys.executable).parent

@@ -15,7 +15,7 @@ from aos_protocol.messages import BeliefSummary, ProjectRevision
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.answers import ExportedBeliefs
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import ModelShelf
+from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Evidence, Past, updated
 from aos_solver.mission.takeover import RunningModel
 

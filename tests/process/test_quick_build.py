@@ -9,9 +9,9 @@ import pytest
 from scripted_models import bundle_project, lowered
 
 from aos_solver.building.build import BuiltModel, build
+from aos_solver.building.project_build import emitted_model
 from aos_solver.child.answers import BeliefUpdate, Plan
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import emitted_model
 
 
 async def test_both_builds_decide_alike_and_the_thorough_one_is_taken_where_it_is_there(

@@ -17,9 +17,9 @@ from aos_runtime.journal import Journal
 from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
-from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import BEGUN
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.settings import Settings
 

@@ -25,9 +25,9 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, SkillRule
-from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import BEGUN, MissionMemory, folded
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 
 RULES = FailureRules(skills={"listen": SkillRule(on_failure="retry", retries=1)})

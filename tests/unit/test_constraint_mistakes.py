@@ -11,8 +11,8 @@ from aos_deploy.constraints import constraint_of_option
 from aos_deploy.deploy_file import read_deploy_file
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import DeployError
+from aos_solver.building.project_build import lowered
 from aos_solver.emission.program import Program
-from aos_solver.mission.hot_plug import lowered
 
 HEAD = "aos: 1\nrobot: armadillo\nbundles: [{bundle}]\nmission:\n  constraints:\n"
 

@@ -115,7 +115,7 @@ def _model_findings(files: Mapping[str, bytes], path: Path, project: Project) ->
 
     from aos_deploy.program import cache_dir
     from aos_deploy.reachability import reachability_findings
-    from aos_solver.mission.hot_plug import build_project, lowered
+    from aos_solver.building.project_build import build_project, lowered
 
     async def findings() -> tuple[Diagnostic, ...]:
         built = await build_project(project, cache_dir(), tell)

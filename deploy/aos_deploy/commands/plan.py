@@ -27,10 +27,10 @@ from aos_solver.child.search import Search
 from aos_solver.mission.choosing import Choice, Chooser
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import Failures
-from aos_solver.mission.hot_plug import RunningModel
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.simulation import SimulatedRun, simulate_mission
+from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
 

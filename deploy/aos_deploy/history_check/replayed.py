@@ -19,10 +19,10 @@ from aos_protocol.messages import BeliefSummary, DecisionRecord, MissionBegun, M
 from aos_registry.catalogue import Catalogue
 from aos_runtime.journal import Journal
 from aos_runtime.mission_folders import mission_folders
+from aos_solver.building.project_build import build_project, emitted_model
 from aos_solver.child.engine import Engine
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.failures import FailureRules, Failures
-from aos_solver.mission.hot_plug import build_project, emitted_model
 from aos_solver.mission.memory import BEGUN
 from aos_solver.mission.past import evidence_of, updated
 from aos_solver.settings import Settings

@@ -23,8 +23,8 @@ from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError
 from aos_runtime.distribution import pip_install
 from aos_solver.building.compiler import find_compiler
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine, Planner, Stepping
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["METRICS", "Effort", "Suite"]
 

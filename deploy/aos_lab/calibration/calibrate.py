@@ -17,8 +17,8 @@ from aos_lab.calibration.patch import patch_of
 from aos_lab.calibration.records import RecordedMission
 from aos_language.load import load_files
 from aos_protocol.errors import DocumentError
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["Calibration", "calibrate"]
 

@@ -16,8 +16,8 @@ from aos_lab.gym.number_columns import NumberColumns, Numbers
 from aos_language.load import load_bundle
 from aos_protocol.diagnostics import Span
 from aos_protocol.errors import DocumentError
+from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
-from aos_solver.mission.hot_plug import build_project
 
 __all__ = ["ENDINGS", "TEXT_BYTES", "HiddenWorlds", "Steps", "as_bytes"]
 

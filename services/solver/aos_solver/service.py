@@ -48,10 +48,10 @@ from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
 from aos_solver.mission.endings import Ending, MissionLimits
 from aos_solver.mission.failures import FailureRules
 from aos_solver.mission.history import history_page
-from aos_solver.mission.hot_plug import ModelShelf
 from aos_solver.mission.logbook import Logbook, Logbooks
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import BEGUN, MissionMemory
+from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Past
 from aos_solver.mission.succession import Succession
 from aos_solver.mission.takeover import RunningModel, Takeover
@@ -107,7 +107,7 @@ class _Solver:
         )
         self._shelf.on_ready = self._changed.set
         if self._books.newest is not None and not self._books.newest.memory.has_ended:
-            self._shelf.kept = self._books.newest.memory.mission_parameters
+            self._shelf.values.kept = self._books.newest.memory.mission_parameters
         self._mission: Mission | None = None
         self._starting = asyncio.Lock()
         self._started = asyncio.Event()

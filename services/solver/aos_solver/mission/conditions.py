@@ -18,7 +18,7 @@ from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import Constraint, Project, Snippet
 from aos_protocol.errors import AosError, DocumentError, ModelError
 from aos_solver.building.build import BuiltModel
-from aos_solver.mission.hot_plug import build_project
+from aos_solver.building.project_build import build_project
 
 __all__ = ["OPTION", "built_with_conditions"]
 

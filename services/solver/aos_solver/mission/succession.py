@@ -22,10 +22,10 @@ from aos_solver.child.answers import ExportedBeliefs
 from aos_solver.child.engine import Engine
 from aos_solver.mission.beginning import begin_with
 from aos_solver.mission.conditions import built_with_conditions
-from aos_solver.mission.hot_plug import ModelShelf
 from aos_solver.mission.logbook import Logbooks
 from aos_solver.mission.loop import Mission
 from aos_solver.mission.memory import MissionMemory, PastStep
+from aos_solver.mission.model_shelf import ModelShelf
 from aos_solver.mission.past import Beginning, Past
 from aos_solver.mission.ports import QuietPorts
 from aos_solver.mission.takeover import RunningModel

@@ -1,11 +1,10 @@
-"""Models in the making: from a project revision to a running engine, while a mission goes on.
+"""The shelf of models: from a project revision to a running engine, while a mission goes on.
 
 A revision is built and started in the background, and replays the mission's past there where it needs that.
 At a decision boundary the mission takes the newest model that is ready on both sides, here and in the
 middleware, and the belief moves over (takeover.py). No decision waits for a model.
 
-A mission uses a quick build at once. A thorough build is made meanwhile for the next start: within a mission
-it would win less than is lost with the search tree, which does not move over.
+A mission uses a quick build at once. A thorough one is made meanwhile, for the next start.
 """
 
 from __future__ import annotations
@@ -13,78 +12,29 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Awaitable, Callable, Mapping
-from functools import lru_cache
 from pathlib import Path
 
 import msgspec
 
-from aos_language.findings import Findings
-from aos_language.mission_parameters import ParameterLeaf, checked_values, usable_values
-from aos_protocol.diagnostics import Diagnostic, Severity, Span, has_errors
+from aos_language.mission_parameters import ParameterLeaf, usable_values
+from aos_protocol.diagnostics import Diagnostic, Severity, Span
 from aos_protocol.documents import Constraint, MissionValue, Project
-from aos_protocol.errors import AosError, ModelError
+from aos_protocol.errors import AosError
 from aos_protocol.messages import ProjectRevision
 from aos_runtime.clock import Clock, SystemClock
-from aos_solver.building.build import BuildKind, BuiltModel, build
+from aos_solver.building.build import BuiltModel
+from aos_solver.building.project_build import build_project
+from aos_solver.building.thorough_builds import ThoroughBuilds
 from aos_solver.child.engine import Engine
-from aos_solver.emission.emit import EmittedModel, emit
-from aos_solver.emission.lower import lower
-from aos_solver.emission.program import Program
+from aos_solver.mission.mission_values import NOWHERE, MissionValues
 from aos_solver.mission.past import Past
 from aos_solver.mission.takeover import RunningModel, Successor, Takeover
 
-__all__ = ["ModelShelf", "RunningModel", "build_project", "emitted_model", "lowered"]
+__all__ = ["ModelShelf"]
 
 log = logging.getLogger(__name__)
 
 SYSTEM_CLOCK = SystemClock()
-
-_LAST = 19
-"""The niceness of what nobody waits for: of all that wants a processor it is served last."""
-
-_UNHURRIED_DEADLINE_S = 1800.0
-
-_NOWHERE = Span("the documents")
-
-
-async def build_project(
-    project: Project,
-    cache_dir: Path,
-    on_progress: Callable[[str], None],
-    *,
-    kind: BuildKind = "quick",
-) -> BuiltModel:
-    """Lower, emit and compile; ModelError with all diagnostics if the documents have mistakes.
-
-    Engines get the project's mission values when they are started: another value compiles nothing.
-    DocumentError AOS146 for a value that no parameter can have.
-    """
-    emitted = emitted_model(msgspec.structs.replace(project, mission_values=()))
-    values = usable_values(project.mission_values, emitted.parameters)
-    built = await build(emitted, cache_dir=cache_dir, on_progress=on_progress, kind=kind)
-    return msgspec.structs.replace(built, mission_values=values)
-
-
-@lru_cache(maxsize=8)
-def lowered(project: Project) -> tuple[Program | None, tuple[Diagnostic, ...]]:
-    """Lowers a project and remembers the result: whoever checks documents builds them as well."""
-    return lower(project)
-
-
-@lru_cache(maxsize=8)
-def emitted_model(project: Project) -> EmittedModel:
-    """The C++ of a project; ModelError as from `build_project`.
-
-    The result is remembered: documents are checked before they are used, and a change may be taken back.
-    """
-    program, diagnostics = lowered(project)
-    if program is None or has_errors(diagnostics):
-        raise ModelError(
-            f"the documents of {project.name} have mistakes",
-            hint="Mend the places named above",
-            diagnostics=tuple(diagnostics),
-        )
-    return emit(program)
 
 
 class ModelShelf:
@@ -114,9 +64,7 @@ class ModelShelf:
         self._start_engine = start_engine
         self._is_mapped = is_mapped
         self._constraints = constraints
-        self._mission_values = mission_values
-        self.kept: Mapping[str, str] = {}
-        """The values with which the mission began: whatever newer documents give by default, they stay."""
+        self.values = MissionValues(mission_values)
         self._clock = clock
         self._running: RunningModel | None = None
         self._past = Past()
@@ -125,7 +73,7 @@ class ModelShelf:
         self._shelf = asyncio.Condition()
         self._newest_revision = 0
         self._building = asyncio.Lock()
-        self._thorough: set[asyncio.Task[None]] = set()
+        self._thorough = ThoroughBuilds(cache_dir)
         self._ending: set[asyncio.Task[None]] = set()
         self._is_closed = False
         self.on_ready: Callable[[], None] = lambda: None
@@ -160,11 +108,9 @@ class ModelShelf:
         except BaseException:
             await successor.close()
             raise
-        self._end_thorough_builds()
+        self._thorough.end()
         if not self._is_closed:
-            build_task = asyncio.create_task(self._build_thoroughly(built.emitted))
-            self._thorough.add(build_task)
-            build_task.add_done_callback(self._thorough.discard)
+            self._thorough.begin(built.emitted)
 
     async def _refuse(self, revision: ProjectRevision, error: AosError) -> None:
         log.warning("revision %d is not used: %s", revision.revision, error)
@@ -179,17 +125,7 @@ class ModelShelf:
         return msgspec.structs.replace(built, mission_values=values)
 
     def _values_in(self, leaves: Mapping[str, ParameterLeaf], span: Span | None = None) -> dict[str, str]:
-        """The mission's values for a model.
-
-        DocumentError AOS146 where it cannot have one, at `span` or else where it was set. A parameter that
-        nobody has set may be gone from newer documents. Before the first mission more documents may come: the
-        values that do not fit are told when it begins.
-        """
-        kept = (MissionValue(name, text, _NOWHERE) for name, text in self.kept.items() if name in leaves)
-        values = [msgspec.structs.replace(v, span=span or v.span) for v in (*kept, *self._mission_values)]
-        if self._running is None:
-            return checked_values(values, leaves, Findings())
-        return usable_values(values, leaves)
+        return self.values.in_model(leaves, span, is_first=self._running is None)
 
     async def _put(self, successor: Successor) -> None:
         """Puts a model on the shelf, in place of one that nobody has taken; its replay goes on there."""
@@ -213,26 +149,6 @@ class ModelShelf:
         self._ending.add(task)
         task.add_done_callback(self._ending.discard)
 
-    async def _build_thoroughly(self, emitted: EmittedModel) -> None:
-        """Builds into the cache. Nobody waits for it: all other work goes first, and a fault is logged."""
-        try:
-            await build(
-                emitted,
-                cache_dir=self._cache_dir,
-                kind="thorough",
-                niceness=_LAST,
-                deadline_s=_UNHURRIED_DEADLINE_S,
-            )
-        except AosError as error:
-            log.warning("%s was not built thoroughly: %s", emitted.project, error)
-        except Exception:
-            log.exception("%s was not built thoroughly", emitted.project)
-
-    def _end_thorough_builds(self) -> None:
-        """Has them end. Nobody waits for that before the end: what is served last ends late, too."""
-        for task in self._thorough:
-            task.cancel()
-
     async def first(self) -> RunningModel:
         """The first model that runs; raises what kept it from running."""
         async with self._shelf:
@@ -240,9 +156,9 @@ class ModelShelf:
             if self._ready is None:
                 assert self._fault is not None
                 raise self._fault
-            usable_values(self._mission_values, self._ready.model.engine.parameters)
+            usable_values(self.values.given, self._ready.model.engine.parameters)
             self._running, self._ready = self._ready.model, None
-            self.kept = self._running.engine.description.mission_parameters
+            self.values.kept = self._running.engine.description.mission_parameters
             return self._running
 
     async def made(self) -> None:
@@ -318,8 +234,8 @@ class ModelShelf:
         """
         async with self._shelf:
             before, self._running = self._running, model
-            self._mission_values = mission_values
-            self.kept = model.engine.description.mission_parameters
+            self.values.given = mission_values
+            self.values.kept = model.engine.description.mission_parameters
             if before is not None and before.engine is not model.engine:
                 self._end(before.engine)
             if self._ready is None:
@@ -327,7 +243,7 @@ class ModelShelf:
             await self._ready.end_following()
             engine = self._ready.model.engine
             try:
-                await engine.start_with(self._values_in(engine.parameters, _NOWHERE))
+                await engine.start_with(self._values_in(engine.parameters, NOWHERE))
             except AosError as error:
                 log.warning("revision %d is not used: %s", self._ready.model.revision, error)
                 self._end(self._ready)
@@ -357,7 +273,7 @@ class ModelShelf:
     async def close(self) -> None:
         """Ends what is being built, and all engines."""
         self._is_closed = True
-        self._end_thorough_builds()
+        self._thorough.end()
         async with self._shelf:
             unused, self._ready = self._ready, None
             running, self._running = self._running, None
@@ -368,5 +284,5 @@ class ModelShelf:
 
     async def settled(self) -> None:
         """Returns once all engines have ended that nobody asks any more."""
-        while ending := self._ending | (self._thorough if self._is_closed else set()):
+        while ending := self._ending | (self._thorough.tasks if self._is_closed else set()):
             await asyncio.wait(ending)

@@ -1,0 +1,57 @@
+"""Thorough builds of models that run: into the cache, for the next start, while a mission uses a quick build.
+
+Within a mission a thorough build would win less than is lost with the search tree, which does not move over.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from pathlib import Path
+
+from aos_protocol.errors import AosError
+from aos_solver.building.build import build
+from aos_solver.emission.emit import EmittedModel
+
+__all__ = ["ThoroughBuilds"]
+
+log = logging.getLogger(__name__)
+
+_LAST = 19
+"""The niceness of what nobody waits for: of all that wants a processor it is served last."""
+
+_UNHURRIED_DEADLINE_S = 1800.0
+
+
+class ThoroughBuilds:
+    """Builds beside everything else; `tasks` are the builds that have not ended."""
+
+    def __init__(self, cache_dir: Path) -> None:
+        self._cache_dir = cache_dir
+        self.tasks: set[asyncio.Task[None]] = set()
+
+    def begin(self, emitted: EmittedModel) -> None:
+        """Begins a build."""
+        build_task = asyncio.create_task(self._build(emitted))
+        self.tasks.add(build_task)
+        build_task.add_done_callback(self.tasks.discard)
+
+    def end(self) -> None:
+        """Has them end. Nobody waits for that before the end: what is served last ends late, too."""
+        for task in self.tasks:
+            task.cancel()
+
+    async def _build(self, emitted: EmittedModel) -> None:
+        """Builds into the cache. Nobody waits for it: all other work goes first, and a fault is logged."""
+        try:
+            await build(
+                emitted,
+                cache_dir=self._cache_dir,
+                kind="thorough",
+                niceness=_LAST,
+                deadline_s=_UNHURRIED_DEADLINE_S,
+            )
+        except AosError as error:
+            log.warning("%s was not built thoroughly: %s", emitted.project, error)
+        except Exception:
+            log.exception("%s was not built thoroughly", emitted.project)
