@@ -215,7 +215,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
         Row(
             "middleware waits for topic messages sent during a call, after its end",
-            "aos_middleware.activation.CATCH_UP_S", "s", "it goes on without",
+            "aos_middleware.heard_topics.CATCH_UP_S", "s", "it goes on without",
         ),
         Row(
             "an adapter's word that a skill has stopped which its mapping or a monitor stops",
@@ -225,7 +225,7 @@ LIMITS: dict[str, tuple[Row, ...]] = {
             "an activation waits for new monitors to be at work",
             "aos_middleware.monitors.LISTEN_S", "s", "it begins without",
         ),
-        Row("topic messages that wait", "aos_middleware.activation._QUEUE_SIZE", "", "the oldest are lost"),
+        Row("topic messages that wait", "aos_middleware.heard_topics.QUEUE_SIZE", "", "the oldest are lost"),
         Row(
             "topic messages an adapter has not sent",
             "aos_runtime.adapters.host.MAX_UNSENT_MESSAGES", "", "the oldest are lost",

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import msgspec
 
-from aos_middleware.activation import Surroundings, refused, run_activation
+from aos_middleware.activation import refused, run_activation
 from aos_middleware.emit import EmittedMapping
 from aos_middleware.evaluator import EvaluationLimits, Evaluator
 from aos_middleware.ledger import OutcomeLedger
@@ -22,6 +22,7 @@ from aos_middleware.monitors import Monitors
 from aos_middleware.motion_gate import MotionGate
 from aos_middleware.served_paths import ServedPaths
 from aos_middleware.settings import Settings
+from aos_middleware.surroundings import Surroundings
 from aos_protocol.errors import AosError, BusError, SkillError
 from aos_protocol.messages import (
     Activate,

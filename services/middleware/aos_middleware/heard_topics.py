@@ -1,0 +1,97 @@
+"""The topics of one activation: each message that was sent before its call ended is evaluated, in order."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from typing import Any
+
+from aos_middleware.evaluator import Evaluator
+from aos_middleware.stopping import Stop
+from aos_middleware.surroundings import Surroundings
+from aos_protocol.documents import LocalSource
+from aos_protocol.errors import AosError
+from aos_protocol.messages import SkillResult, TopicMessage
+from aos_runtime.bus import Subscription
+
+__all__ = ["QUEUE_SIZE", "HeardTopics"]
+
+CATCH_UP_S = 0.5
+"""An activation waits so long, after the call, for topic messages that were sent during it."""
+
+QUEUE_SIZE = 4096
+_BATCH = 256
+
+_log = logging.getLogger("aos.middleware")
+
+
+class HeardTopics:
+    """The topics that a mapping reads, by the `keys` to listen to.
+
+    `fault` is why no message is evaluated any more; None while they are.
+    """
+
+    def __init__(self, skill: str, evaluator: Evaluator, around: Surroundings, stop: Stop) -> None:
+        self.fault: AosError | None = None
+        self._skill = skill
+        self._evaluator = evaluator
+        self._around = around
+        self._published_before = around.published
+        self._stop = stop
+        self._topic_of = {
+            around.keys.topic(variable.topic): variable.topic
+            for variable in evaluator.emitted.mapping.local_variables
+            if variable.source is LocalSource.TOPIC
+        }
+        self._last_numbers: dict[str, int] = {}
+        self._has_received = asyncio.Event()
+
+    @property
+    def keys(self) -> list[str]:
+        return sorted(self._topic_of)
+
+    async def take(self, messages: Subscription[tuple[str, TopicMessage]]) -> None:
+        """Evaluates topic messages until the stream is closed and empty."""
+        async for first in messages:
+            batch = [first]
+            while messages.has_items and len(batch) < _BATCH:
+                batch.append(await anext(messages))
+            await self._evaluate([(self._topic_of[key], message.fields) for key, message in batch])
+            for key, message in batch:
+                self._last_numbers[key] = message.number
+            self._has_received.set()
+
+    async def _evaluate(self, messages: list[tuple[str, dict[str, Any]]]) -> None:
+        """Hands messages over to mapping code, and has the skill stopped where one of them says so."""
+        while messages and self.fault is None:
+            try:
+                taken = await self._evaluator.take(messages)
+            except AosError as error:
+                self.fault = error
+                _log.warning("%s goes on, but its mapping failed: %s", self._skill, error)
+                return
+            if taken.stops:
+                self._stop.ask(self._skill)
+            messages = messages[max(taken.messages, 1) :]
+
+    async def catch_up(self, result: SkillResult) -> None:
+        """Waits until every message that the adapter had sent when the call ended has been evaluated."""
+        published = {path.strip("/"): number for path, number in result.published.items()}
+        # An unchanged number: the topic was silent, and there is nothing to wait for.
+        before = self._published_before
+        spoken = {topic: number for topic, number in published.items() if number != before.get(topic, 0)}
+        before.update(published)
+        sent = {
+            key: spoken[topic.strip("/")]
+            for key, topic in self._topic_of.items()
+            if topic.strip("/") in spoken
+        }
+        try:
+            async with asyncio.timeout(CATCH_UP_S):
+                while any(self._last_numbers.get(key, 0) < number for key, number in sent.items()):
+                    self._has_received.clear()
+                    await self._has_received.wait()
+        except TimeoutError:
+            for key, number in sent.items():
+                _log.info("%s: message %d did not come, seen %d", key, number, self._last_numbers.get(key, 0))
+        await self._around.monitors.catch_up(spoken, CATCH_UP_S)

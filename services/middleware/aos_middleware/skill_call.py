@@ -1,0 +1,154 @@
+"""The call of one activation: when it may go out, how it ends, and what is known where nobody answers.
+
+A call is asked for again where the router has gone, and cancelled where it is late.
+"""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+from aos_middleware.motion_gate import GONE_S
+from aos_middleware.served_paths import no_adapter
+from aos_middleware.stopping import Stop
+from aos_middleware.surroundings import Surroundings
+from aos_protocol.documents import Activation
+from aos_protocol.errors import AosError, LateAnswerError, LostAnswerError, NobodyAnswersError, SkillError
+from aos_protocol.messages import Activate, Cancel, Cancelled, SkillCall, SkillResult, Stray
+from aos_runtime.asking import AWAY_S
+from aos_runtime.failpoints import reach
+
+__all__ = ["Call"]
+
+_REPLY_GRACE_S = 0.2
+_CANCEL_S = 0.25
+"""An activation that is late waits so long for word that its skill has stopped; the next one waits on."""
+
+_log = logging.getLogger("aos.middleware")
+
+
+class Call:
+    """One call of a skill. The time of its activation begins when this is made.
+
+    `was_called` says that the skill may have begun, `has_lost_router` that messages may have been lost since.
+    """
+
+    def __init__(self, request: Activate, activation: Activation, around: Surroundings, stop: Stop) -> None:
+        self.was_called = False
+        self.has_lost_router = False
+        self._request = request
+        self._path = activation.path
+        self._max_duration_s = activation.max_duration_s
+        self._around = around
+        self._bus, self._keys, self._clock = around.bus, around.keys, around.clock
+        self._stop = stop
+        self._ends_at_s = self._clock.monotonic_s() + request.deadline_s
+
+    async def run(self, fields: dict[str, Any]) -> SkillResult:
+        """Calls the skill once nothing else moves, and returns its result.
+
+        SkillError where it cannot be called, has failed, is late or was lost.
+        """
+        path = self._path
+        if self._around.served.announced(path):
+            # After the router, its clients are back within a moment.
+            await self._around.served.is_back(path, GONE_S)
+        if fault := self._around.served.fault(path):
+            raise fault
+        with self._around.gate.passing(path):
+            await self._around.gate.confirm()
+            self._stop.let_out()
+            return await self._call_path(path, fields)
+
+    async def _call_path(self, path: str, fields: dict[str, Any]) -> SkillResult:
+        """The answer to the call; there is doubt whether it has ended unless the adapter says that it has."""
+        request = self._request
+        self.was_called = True
+        started_s = self._clock.monotonic_s()
+        limit_s = max(self._ends_at_s - started_s, 0.0)
+        if self._max_duration_s is not None:
+            limit_s = min(limit_s, self._max_duration_s)
+        call = SkillCall(request.id, path, fields, limit_s, request.skill, request.parameters, request.epoch)
+        has_ended = False
+        try:
+            result = await self._answer(path, call)
+            has_ended = result.id == request.id
+        except LateAnswerError as error:
+            has_ended = await self._cancel(f"{request.skill} did not end within {limit_s:g} s")
+            raise _timed_out(path, limit_s) from error
+        except LostAnswerError as error:
+            raise _lost_adapter(path, self._clock.monotonic_s() - started_s) from error
+        except NobodyAnswersError as error:
+            # One that ends at once may have begun before its receipt went out.
+            after_s = self._clock.monotonic_s() - started_s
+            was_there = await self._around.served.has_left(path, GONE_S)
+            raise (_lost_adapter(path, after_s) if was_there else no_adapter(path)) from error
+        except SkillError as error:
+            has_ended = error.status != "unknown"
+            raise
+        finally:
+            if not has_ended:
+                self._around.gate.doubt(request, path)
+        if not has_ended:
+            self._note_stray("foreign", result)
+            raise SkillError(
+                f"the adapter of {path} answered for {result.id}, not for {request.id}",
+                code="AOS504",
+                hint="Mend the adapter: a result has the id of its call",
+            )
+        return result
+
+    async def _answer(self, path: str, call: SkillCall) -> SkillResult:
+        """Returns the adapter's answer; the call is asked for again where the router has gone."""
+        limit_s = call.deadline_s + _REPLY_GRACE_S
+        while True:
+            router = self._bus.router
+            reach("middleware.call.before")
+            try:
+                result = await self._bus.ask(
+                    self._keys.call(path), call, SkillResult, timeout_s=limit_s, on_stray=self._note_stray
+                )
+            except (LostAnswerError, NobodyAnswersError):
+                if not await self._bus.has_lost_router(router):
+                    raise
+                self.has_lost_router = True
+                if not await self._around.served.is_back(path, AWAY_S):
+                    raise
+                _log.info("%s is asked again, since the router was away", path)
+            else:
+                reach("middleware.call.after")
+                return result
+
+    async def _cancel(self, reason: str) -> bool:
+        """Has the skill stopped; whether its adapter says that it has."""
+        cancel = Cancel(reason, self._request.id, self._request.epoch)
+        key = self._keys.cancel(self._path)
+        try:
+            await self._bus.ask(key, cancel, Cancelled, timeout_s=_CANCEL_S)
+        except AosError as error:
+            _log.warning("%s, and nobody says that it has stopped: %s", reason, error)
+            return False
+        return True
+
+    def _note_stray(self, kind: str, reply: SkillResult | AosError) -> None:
+        """A reply that is not used is kept for people."""
+        path, request = self._path, self._request
+        text = str(reply) if isinstance(reply, AosError) else f"a result for {reply.id}"
+        _log.warning("%s: a %s reply for %s is not used: %s", path, kind, request.id, text)
+        self._around.on_stray(Stray(request.id, path, kind, text))
+
+
+def _timed_out(path: str, limit_s: float) -> SkillError:
+    return SkillError(
+        f"the skill at {path} did not answer within {limit_s:g} s",
+        code="AOS503",
+        hint="See the skill's log; its time is the mapping's `max_duration` or the mission's limit",
+    )
+
+
+def _lost_adapter(path: str, after_s: float) -> SkillError:
+    return SkillError(
+        f"the adapter of {path} was lost {after_s:.1f} s after it was called",
+        code="AOS504",
+        hint="Whether the skill did its work is not known",
+    )
