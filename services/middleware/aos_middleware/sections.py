@@ -234,7 +234,7 @@ class Sections:
         lines = self.marks.expression("return ", code, "", 1)
         summary = "The skill is stopped as soon as this is True; it is asked after each message."
         if self._mapping.monitor:
-            summary = "What runs is stopped when this becomes True; it is asked after each message."
+            summary = "The skill that runs is stopped when this becomes True; it is asked after each message."
         return Function("stop_when", self._reads([code]), summary, tuple(lines))
 
     # --- the module's names --------------------------------------------------------------------------

@@ -16,7 +16,7 @@ def level_from_topic(__input):
 
 
 def stop_when(level):
-    """What runs is stopped when this becomes True; it is asked after each message."""
+    """The skill that runs is stopped when this becomes True; it is asked after each message."""
     return level < 0.1
 
 
