@@ -8,7 +8,6 @@ move before anything moves.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import msgspec
 
@@ -29,6 +28,7 @@ from aos_solver.mission.failures import Failures
 from aos_solver.mission.memory import MissionMemory, Pending
 from aos_solver.mission.past import Past, evidence_of, replayed, updated
 from aos_solver.mission.ports import Ports
+from aos_solver.mission.reports import Reports
 from aos_solver.mission.risk import RiskBudget
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
@@ -59,10 +59,9 @@ class Mission:
         """`memory` is what the mission has behind it, which has not ended. `before` is the past of the belief
         that it begins with, where that is not the initial one.
         """
-        self.state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
+        state = MissionState(terms.name, "waiting", 0, 0.0, revision=model.revision, epoch=terms.epoch)
+        self._reports = Reports(state, ports, memory)
         self._memory = memory
-        self._sequence = memory.sequence
-        self._goal_probability = memory.goal_probability
         self._terms = terms
         self._model = model
         self._ports = ports
@@ -74,12 +73,17 @@ class Mission:
         self._budget = RiskBudget(model.engine.bounds)
         self._chooser = Chooser(terms, self._failures, ports, self._budget)
 
+    @property
+    def state(self) -> MissionState:
+        """The newest state that was told."""
+        return self._reports.state
+
     async def run(self) -> MissionState:
         """Decide and act until the mission ends; machine faults end it as `fault` with their text."""
         try:
             await self.run_or_raise()
         except AosError as error:
-            self._end(Ending.FAULT, str(error))
+            self._reports.end(Ending.FAULT, str(error))
         return self.state
 
     def resume(self) -> None:
@@ -113,13 +117,13 @@ class Mission:
             if choice is None:
                 continue
             if isinstance(choice, Ended):
-                return self._end(choice.ending, choice.remark)
+                return self._reports.end(choice.ending, choice.remark)
             decision = self._decide(choice)
             self._move_to("acting", decision.step, remark=decision.action)
             await self._terms.search.ponder(self._model.engine, decision.step, choice.plan.index)
             if self._is_stopped() or not await self._finish(decision, await self._act(decision)):
                 return
-        self._end(ending, remark_of(ending, self.belief, self._terms.limits))
+        self._reports.end(ending, remark_of(ending, self.belief, self._terms.limits))
 
     async def _take_up(self) -> bool:
         """Brings the mission to where the memory ends, and the step that is not over to its end.
@@ -136,7 +140,7 @@ class Mission:
             self._budget.take_up(decision.constraints)
             self._take_failure(decision, observed, update, self._s_of(observed_ns))
             self.belief = update.summary
-            self.state = msgspec.structs.replace(self.state, step=decision.step)
+            self._reports.stand_at(decision.step)
         if memory.pending is not None and self._can_finish(memory.pending):
             decision, intention, outcome = memory.pending
             self._budget.take_up(decision.constraints)
@@ -156,14 +160,14 @@ class Mission:
     def _goes_on(self) -> bool:
         """Ends the mission where its failures call for that."""
         if self._failures.to_end:
-            self._end(Ending.SKILLS_FAILED, self._failures.to_end)
+            self._reports.end(Ending.SKILLS_FAILED, self._failures.to_end)
             return False
         return not self._is_stopped()
 
     def _is_stopped(self) -> bool:
         """Ends the mission where somebody wants that."""
         if self._to_stop:
-            self._end(Ending.CANCELLED, self._to_stop)
+            self._reports.end(Ending.CANCELLED, self._to_stop)
         return bool(self._to_stop)
 
     def _can_finish(self, pending: Pending) -> bool:
@@ -226,41 +230,13 @@ class Mission:
 
     def _decide(self, choice: Choice) -> DecisionRecord:
         """The record of a decision, which spends what the action risks."""
-        plan, step = choice.plan, self.state.step + 1
+        risks, index = choice.risks, choice.plan.index
         actions = self._model.engine.description.actions
-        chosen = actions[plan.index]
         listed = [number for number, action in enumerate(actions) if action.skill not in choice.set_aside]
-        spent = self._budget.spend(choice.risks, plan.index, listed) if choice.risks is not None else ()
-        record = DecisionRecord(
-            sequence=self._sequence,
-            stamp_ns=self._ports.clock.now_ns(),
-            mission=self.state.mission,
-            epoch=self._terms.epoch,
-            step=step,
-            action=chosen.name,
-            skill=chosen.skill,
-            parameters=chosen.parameters,
-            model_digest=self._model.digest,
-            revision=self._model.revision,
-            seed=self._terms.search.seed_of(step),
-            simulations=plan.simulations,
-            horizon=plan.horizon,
-            planning_s=plan.seconds,
-            preparation_s=plan.preparation_s,
-            actions=plan.actions,
-            predicted=plan.predicted,
-            belief=self.belief,
-            planner=plan.planner,
-            why=plan.why,
-            threads=plan.threads,
-            constraints=spent,
-            set_aside=choice.set_aside,
-            is_cautious=choice.is_cautious,
-            adopted=self._adopted,
-        )
-        self._adopted = None
-        self._publish(record)
-        return record
+        spent = self._budget.spend(risks, index, listed) if risks is not None else ()
+        seed = self._terms.search.seed_of(self.state.step + 1)
+        adopted, self._adopted = self._adopted, None
+        return self._reports.decided(choice, self._model, self.belief, seed, spent, adopted)
 
     async def _act(self, decision: DecisionRecord, intention: Activate | None = None) -> Outcome:
         """The outcome of a decision's activation; what was intended before is asked for as it was."""
@@ -293,20 +269,7 @@ class Mission:
         self.past.steps.append(evidence)
         update_s = self._ports.clock.monotonic_s() - before_s
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
-        record = msgspec.structs.replace(
-            decision,
-            sequence=self._sequence,
-            stamp_ns=self._ports.clock.now_ns(),
-            epoch=self._terms.epoch,
-            belief=update.summary,
-            outcome=outcome,
-            surprise=update.surprise,
-            update_s=update_s,
-            adopted=None,
-            is_impossible=update.is_impossible,
-            remark="; ".join(text for text in (update.remark, remark, *_faults_of_monitors(outcome)) if text),
-        )
-        self._publish(record)
+        self._reports.observed(decision, outcome, update, update_s, remark)
         self.belief = update.summary
 
     def _take_failure(
@@ -321,32 +284,5 @@ class Mission:
             announced=self._ports.announced,
         )
 
-    def _publish(self, record: DecisionRecord) -> None:
-        self._ports.journal("decision", record)
-        self._sequence = record.sequence + 1
-        self._goal_probability = record.belief.goal_probability
-        self._ports.publish_record(record)
-
     def _move_to(self, phase: str, step: int, *, remark: str = "") -> None:
-        self._change_state(
-            phase=phase,
-            step=step,
-            goal_probability=self.belief.goal_probability,
-            remark=remark,
-            revision=self._model.revision,
-        )
-
-    def _end(self, ending: Ending, remark: str) -> None:
-        self._change_state(
-            phase="ended", ending=ending.value, remark=remark, goal_probability=self._goal_probability
-        )
-
-    def _change_state(self, **changes: Any) -> None:
-        self.state = msgspec.structs.replace(self.state, **changes)
-        self._ports.journal("mission", self.state)
-        self._ports.publish_state(self.state)
-
-
-def _faults_of_monitors(outcome: Outcome) -> list[str]:
-    """Tells people of monitors that gave nothing."""
-    return [f"the monitor {name} failed: {text}" for name, text in outcome.monitor_faults.items()]
+        self._reports.move_to(phase, step, self._model, self.belief, remark)

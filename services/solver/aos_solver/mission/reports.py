@@ -1,0 +1,133 @@
+"""The reports of a mission: states, decisions and outcomes, each in the journal before anybody hears it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from aos_protocol.messages import (
+    BeliefSummary,
+    ConstraintRisk,
+    DecisionRecord,
+    MissionState,
+    ModelAdopted,
+    Outcome,
+)
+from aos_solver.child.answers import BeliefUpdate
+from aos_solver.mission.choosing import Choice
+from aos_solver.mission.endings import Ending
+from aos_solver.mission.memory import MissionMemory
+from aos_solver.mission.ports import Ports
+from aos_solver.mission.takeover import RunningModel
+
+__all__ = ["Reports"]
+
+
+class Reports:
+    """Numbers and dates what a mission tells. `state` is the mission's newest."""
+
+    def __init__(self, state: MissionState, ports: Ports, memory: MissionMemory) -> None:
+        """The records go on where those in `memory` end."""
+        self.state = state
+        self._ports = ports
+        self._sequence = memory.sequence
+        self._goal_probability = memory.goal_probability
+
+    def decided(
+        self,
+        choice: Choice,
+        model: RunningModel,
+        belief: BeliefSummary,
+        seed: int,
+        constraints: tuple[ConstraintRisk, ...],
+        adopted: ModelAdopted | None,
+    ) -> DecisionRecord:
+        """Reports the decision for the next step, with the belief it was taken for; the record of it."""
+        plan = choice.plan
+        chosen = model.engine.description.actions[plan.index]
+        record = DecisionRecord(
+            sequence=self._sequence,
+            stamp_ns=self._ports.clock.now_ns(),
+            mission=self.state.mission,
+            epoch=self.state.epoch,
+            step=self.state.step + 1,
+            action=chosen.name,
+            skill=chosen.skill,
+            parameters=chosen.parameters,
+            model_digest=model.digest,
+            revision=model.revision,
+            seed=seed,
+            simulations=plan.simulations,
+            horizon=plan.horizon,
+            planning_s=plan.seconds,
+            preparation_s=plan.preparation_s,
+            actions=plan.actions,
+            predicted=plan.predicted,
+            belief=belief,
+            planner=plan.planner,
+            why=plan.why,
+            threads=plan.threads,
+            constraints=constraints,
+            set_aside=choice.set_aside,
+            is_cautious=choice.is_cautious,
+            adopted=adopted,
+        )
+        self._publish(record)
+        return record
+
+    def observed(
+        self, decision: DecisionRecord, outcome: Outcome, update: BeliefUpdate, update_s: float, remark: str
+    ) -> None:
+        """Reports the outcome of a decision, and the belief after it; the `remark` is for people."""
+        remarks = (update.remark, remark, *_faults_of_monitors(outcome))
+        record = msgspec.structs.replace(
+            decision,
+            sequence=self._sequence,
+            stamp_ns=self._ports.clock.now_ns(),
+            epoch=self.state.epoch,
+            belief=update.summary,
+            outcome=outcome,
+            surprise=update.surprise,
+            update_s=update_s,
+            adopted=None,
+            is_impossible=update.is_impossible,
+            remark="; ".join(text for text in remarks if text),
+        )
+        self._publish(record)
+
+    def stand_at(self, step: int) -> None:
+        """Takes up a mission at this step, which was reported before."""
+        self.state = msgspec.structs.replace(self.state, step=step)
+
+    def move_to(self, phase: str, step: int, model: RunningModel, belief: BeliefSummary, remark: str) -> None:
+        """Reports another phase of the mission."""
+        self._change_state(
+            phase=phase,
+            step=step,
+            goal_probability=belief.goal_probability,
+            remark=remark,
+            revision=model.revision,
+        )
+
+    def end(self, ending: Ending, remark: str) -> None:
+        """Reports the end of the mission, with the belief of the last record."""
+        self._change_state(
+            phase="ended", ending=ending.value, remark=remark, goal_probability=self._goal_probability
+        )
+
+    def _publish(self, record: DecisionRecord) -> None:
+        self._ports.journal("decision", record)
+        self._sequence = record.sequence + 1
+        self._goal_probability = record.belief.goal_probability
+        self._ports.publish_record(record)
+
+    def _change_state(self, **changes: Any) -> None:
+        self.state = msgspec.structs.replace(self.state, **changes)
+        self._ports.journal("mission", self.state)
+        self._ports.publish_state(self.state)
+
+
+def _faults_of_monitors(outcome: Outcome) -> list[str]:
+    """Tells people of monitors that gave nothing."""
+    return [f"the monitor {name} failed: {text}" for name, text in outcome.monitor_faults.items()]
