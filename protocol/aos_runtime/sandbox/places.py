@@ -95,7 +95,18 @@ def python_folders() -> tuple[str, ...]:
     mine = (site.getusersitepackages(), str(Path.cwd()), "", *named)
     added = [path for path in sys.path[1:] if path not in mine and Path(path).is_absolute()]
     own = [sys.executable, f"{sys.prefix}/pyvenv.cfg", f"{sys.base_prefix}/lib"]
-    return tuple(dict.fromkeys([*own, *standard, *site.getsitepackages(), *added, *_installed_in_place()]))
+    installed = [*standard, *site.getsitepackages(), *added]
+    return tuple(dict.fromkeys([*own, *installed, *_linked_from(installed), *_installed_in_place()]))
+
+
+def _linked_from(folders: Iterable[str]) -> Iterator[str]:
+    """The places that the packages of some folders are linked to: uv links each file, others the folders."""
+    for folder in {folder for folder in folders if Path(folder).is_dir()}:
+        for entry in Path(folder).iterdir():
+            if entry.is_symlink():
+                yield os.path.realpath(entry)
+            elif (entry / "__init__.py").is_symlink():
+                yield str(Path(os.path.realpath(entry / "__init__.py")).parent)
 
 
 def _installed_in_place() -> Iterator[str]:

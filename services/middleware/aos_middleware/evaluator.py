@@ -247,16 +247,22 @@ class Evaluator:
         if status == -signal.SIGALRM:
             return self._fault("AOS403", f"this took more than {limit_s:g} s and was stopped", place)
         how = f"by signal {-status}" if status < 0 else f"with status {status}"
+        if status == 1 and not trace and (said := self._written_to_log().strip().rpartition("\n")[2]):
+            how += f" and said: {said}"
         return self._fault("AOS401", f"the code ended its process {how}", place)
 
     def _left_in_log(self) -> str:
         """The traceback with which the process ended, empty if it left none."""
+        text = self._written_to_log()
+        starts = [text.rfind(head) for head in ("Current thread 0x", "Fatal Python error:")]
+        return text[max(starts) :] if max(starts) >= 0 else ""
+
+    def _written_to_log(self) -> str:
+        """The end of what this worker has written to the log."""
         with self._log_path.open("rb") as log:
             end = log.seek(0, 2)
             log.seek(max(self._log_start_bytes, end - _TRACEBACK_BYTES))
-            text = log.read().decode(errors="replace")
-        starts = [text.rfind(head) for head in ("Current thread 0x", "Fatal Python error:")]
-        return text[max(starts) :] if max(starts) >= 0 else ""
+            return log.read().decode(errors="replace")
 
     def _place_in(self, trace: str) -> Span | None:
         for file_name, line in _FRAME.findall(trace):
