@@ -174,11 +174,11 @@ LIMITS: dict[str, tuple[Row, ...]] = {
         ),
         Row(
             "solver waits for an activation longer than the activation's own limit",
-            "aos_solver.service.ACTIVATION_MARGIN_S", "s", "outcome `unknown`",
+            "aos_solver.bus_ports.ACTIVATION_MARGIN_S", "s", "outcome `unknown`",
         ),
         Row(
             "solver asks registry or middleware something small",
-            "aos_solver.service.ASK_TIMEOUT_S", "s", "AOS601",
+            "aos_solver.registry_watch.ASK_TIMEOUT_S", "s", "AOS601",
         ),
         Row(
             "solver waits for the middleware to generate the mappings before the first step",

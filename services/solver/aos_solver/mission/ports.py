@@ -1,6 +1,6 @@
 """The outside of a mission as ports: the robot, the record of what happens, the supply of models.
 
-`aos_solver.service` gives a mission the bus and the disk; `simulation` gives it a hidden state.
+`aos_solver.bus_ports` gives a mission the bus and the disk; `simulation` gives it a hidden state.
 """
 
 from __future__ import annotations

@@ -1,0 +1,207 @@
+"""The missions of a solver, one or one after the other: how each begins or is taken up, and runs."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from aos_protocol.errors import AosError, MissionRunsError
+from aos_protocol.messages import MissionBegun, MissionState, StartMission
+from aos_solver.bus_ports import BusPorts
+from aos_solver.child.search import Search
+from aos_solver.mapping_watch import MAPPING_DEADLINE_S, MappingWatch
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.failures import FailureRules
+from aos_solver.mission.logbook import Logbook, Logbooks
+from aos_solver.mission.loop import Mission
+from aos_solver.mission.memory import BEGUN, MissionMemory
+from aos_solver.mission.model_shelf import ModelShelf
+from aos_solver.mission.past import Past
+from aos_solver.mission.succession import Succession
+from aos_solver.mission.takeover import RunningModel
+from aos_solver.mission.terms import Terms
+from aos_solver.offline.following import following
+from aos_solver.registry_watch import RegistryWatch
+from aos_solver.settings import Settings
+
+__all__ = ["MissionRunner"]
+
+log = logging.getLogger(__name__)
+
+T = TypeVar("T")
+
+
+class MissionRunner:
+    """Runs missions. `mission` is the newest that has begun in this process; `ended` is set at its end."""
+
+    def __init__(
+        self,
+        settings: Settings,
+        books: Logbooks,
+        shelf: ModelShelf,
+        mappings: MappingWatch,
+        registry: RegistryWatch,
+        ports: BusPorts,
+    ) -> None:
+        self.mission: Mission | None = None
+        self.ended = asyncio.Event()
+        self._settings = settings
+        self._books = books
+        self._shelf = shelf
+        self._mappings = mappings
+        self._registry = registry
+        self._ports = ports
+        self._starting = asyncio.Lock()
+        self._started = asyncio.Event()
+        self._succession = Succession(
+            books, self._terms, registry.documents, Path(settings.cache_dir), settings.mission_values
+        )
+
+    @property
+    def is_interrupted(self) -> bool:
+        """True where the newest mission had begun when its solver ended, and has not ended."""
+        book = self._books.newest
+        return book is not None and book.memory.epoch > 0 and not book.memory.has_ended
+
+    @property
+    def state(self) -> MissionState:
+        """The state of the newest mission, or of the first one to come."""
+        if self.mission is not None:
+            return self.mission.state
+        book = self._books.newest
+        if book is not None and book.memory.has_ended and book.memory.state is not None:
+            return book.memory.state
+        return MissionState(self._books.name, "waiting", 0, 0.0)
+
+    async def start(self, start: StartMission) -> None:
+        """Starts a mission once its model runs; AosError that says why if it cannot."""
+        if start.request and start.request == self._books.last_request:
+            return  # It is asked for again.
+        if (self._runs or self._starting.locked()) and (start.request or self._settings.stay):
+            raise self._busy()
+        async with self._starting:
+            if self._settings.stay:
+                await self._begin_next(start)
+            elif start.request:
+                raise MissionRunsError(
+                    f"the system of {self._books.name} has one mission",
+                    hint="Start the system with `aos-up --stay`",
+                )
+            elif self.mission is None and not self._has_ended:
+                await self._begin_only()
+
+    async def go_on(self) -> None:
+        """Takes up the mission that had begun when the solver before this one ended."""
+        async with self._starting:
+            book = self._books.newest
+            if self.mission is not None or book is None:
+                return  # Whoever has started the system was quicker.
+            running, past = await self._first_model(), None
+            if book.number:
+                begun = await self._succession.at_start_of(running, book.number)
+                running, past = RunningModel(running.revision, begun.engine), begun.past
+                await self._shelf.turn_to(running, self._succession.values(book.start))
+            self._begin(book, running, book.start, past)
+
+    async def run(self) -> None:
+        """Runs each mission that begins to its end; returns after the last one."""
+        if self._has_ended and not self._settings.stay:
+            return
+        is_last = False
+        while not is_last:
+            await self._started.wait()
+            self._started.clear()
+            mission = self.mission
+            assert mission is not None
+            await self._mappings.until_dealt_with(mission.state.revision)
+            state = await mission.run()
+            self.ended.set()
+            log.info("the mission ended: %s, %s", state.ending, state.remark)
+            is_last = not self._settings.stay
+
+    @property
+    def _has_ended(self) -> bool:
+        book = self._books.newest
+        return self.mission is None and book is not None and book.memory.has_ended
+
+    @property
+    def _runs(self) -> bool:
+        """Says whether a mission runs, or one that has begun is to be taken up."""
+        if self.mission is not None:
+            return self.mission.state.phase != "ended"
+        return self.is_interrupted
+
+    def _busy(self) -> AosError:
+        hint = "Wait for its end, or end it with `aos mission stop`"
+        return MissionRunsError(f"the mission {self._books.name} runs", hint=hint)
+
+    async def _begin_only(self) -> None:
+        """Begins the only mission of a system that ends with it, or takes it up."""
+        assert self._books.newest is not None
+        self._begin(self._books.newest, await self._first_model(), None)
+
+    async def _begin_next(self, start: StartMission) -> None:
+        """Begins the next mission of a system that stays; nothing has changed where that fails."""
+        await self._first_model()
+        await self._until_accepted_documents_are_ready()
+        running = await self._succession.model(self._shelf, await self._first_model(), start, self.mission)
+        begun = await self._succession.next(running, start, self.mission)
+        running = RunningModel(running.revision, begun.engine)
+        await self._shelf.turn_to(running, self._succession.values(start))
+        self._begin(self._books.open_next(), running, start, begun.past)
+
+    async def _until_accepted_documents_are_ready(self) -> None:
+        """Waits for what the registry has accepted before the start of a mission, here and in the
+        middleware."""
+        await self._registry.make_current()
+        await self._shelf.made()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(MAPPING_DEADLINE_S):
+                while self._shelf.is_unmapped:
+                    await self._ports.until_changed(1.0)
+
+    async def _first_model(self) -> RunningModel:
+        return self._shelf.running or await self._shelf.first()
+
+    def _begin(
+        self, book: Logbook, running: RunningModel, start: StartMission | None, past: Past | None = None
+    ) -> None:
+        """Begins a mission or takes it up; that it begins is in the journal."""
+        terms = self._terms(book.name, book.seed, book.memory.epoch + 1, running)
+        begun = MissionBegun(
+            book.name,
+            terms.epoch,
+            book.seed,
+            running.revision,
+            running.digest,
+            running.engine.description.mission_parameters,
+            start,
+        )
+        book.append(BEGUN, begun)
+        memory, book.memory = book.memory, MissionMemory()
+        self.mission = Mission(terms, running, self._ports, memory, past)
+        self.ended.clear()
+        self._started.set()
+
+    def _terms(self, name: str, seed: int, epoch: int, running: RunningModel) -> Terms:
+        """The terms of a mission."""
+        search = msgspec.structs.replace(self._settings_as(Search), seed=seed)
+        policy = Path(self._settings.policy) if self._settings.policy else None
+        return Terms(
+            name=name,
+            epoch=epoch,
+            limits=self._settings_as(MissionLimits),
+            search=following(search, policy, engine=running.engine),
+            failures=self._settings_as(FailureRules),
+            activation_timeout_s=self._settings.activation_timeout_s,
+            hold_s=self._settings.hold_s,
+        )
+
+    def _settings_as(self, kind: type[T]) -> T:
+        """The part of the settings that has the fields of this kind."""
+        return msgspec.convert(self._settings, kind, from_attributes=True)

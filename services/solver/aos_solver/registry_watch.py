@@ -1,0 +1,62 @@
+"""The registry as the solver sees it: the newest documents of a project, and those of each revision."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Awaitable, Callable
+
+from aos_protocol.documents import Project
+from aos_protocol.errors import AosError
+from aos_protocol.keys import Keys
+from aos_protocol.messages import ProjectQuery, ProjectRevision
+from aos_runtime.bus import Bus
+
+__all__ = ["RegistryWatch"]
+
+log = logging.getLogger(__name__)
+
+ASK_TIMEOUT_S = 5.0
+
+
+class RegistryWatch:
+    """Asks for the documents of one project; `make` builds a revision."""
+
+    def __init__(
+        self, bus: Bus, keys: Keys, project: str, make: Callable[[ProjectRevision], Awaitable[None]]
+    ) -> None:
+        self._bus = bus
+        self._keys = keys
+        self._project = project
+        self._make = make
+
+    async def follow(self) -> None:
+        """Asks for the documents, and again when the registry comes: what it told meanwhile is lost."""
+        await self.make_current()
+        async with self._bus.presence(self._keys.live("registry")) as presence:
+            async for _, is_there in presence:
+                if is_there:
+                    await self.make_current()
+
+    async def make_current(self) -> None:
+        """Builds what the registry holds already. Where it holds nothing, an announcement will come."""
+        try:
+            revision = await self._bus.ask(
+                self._keys.project,
+                ProjectQuery(self._project),
+                ProjectRevision,
+                timeout_s=ASK_TIMEOUT_S,
+            )
+        except AosError as error:
+            log.info("no documents yet: %s", error)
+            return
+        await self._make(revision)
+
+    async def documents(self, revision: int) -> Project:
+        """The documents of a revision."""
+        answer = await self._bus.ask(
+            self._keys.project,
+            ProjectQuery(self._project, revision),
+            ProjectRevision,
+            timeout_s=ASK_TIMEOUT_S,
+        )
+        return answer.project
