@@ -96,7 +96,9 @@ async def test_what_is_proven_of_values_is_true_and_tight_for_the_best_one(
             await engine.update("listen", sound)
         plan = await _decide(engine, simulations=100_000)
         exact = {value.action: value.q for value in (await engine.exact(ALMOST_ENDLESS)).actions}
-    assert plan.best.q == pytest.approx(max(exact.values()), abs=2 * plan.best.stderr)
+    # The value is that of the decisions within the horizon. What comes later is worth 19 to 28.
+    left = 0.95**plan.horizon
+    assert max(exact.values()) - 28 * left <= plan.best.q <= max(exact.values()) - 19 * left
     assert plan.best.stderr < 0.3
     assert exact[plan.best.action] == pytest.approx(max(exact.values()))
     for action in plan.actions:
@@ -112,7 +114,7 @@ async def test_the_same_simulations_repeat_to_the_bit_and_need_no_seed(tag: Buil
         async with engine_of(tag) as engine:
             plans.append(await _decide(engine, seed=seed))
     assert plans[0].actions == plans[1].actions
-    assert 20_000 <= plans[0].simulations == plans[1].simulations
+    assert 10_000 <= plans[0].simulations == plans[1].simulations  # Trials have half of the budget at least.
 
 
 async def test_a_later_decision_knows_what_an_earlier_one_has_found_out(tag: BuiltModel) -> None:

@@ -82,6 +82,34 @@ TEST("Each action has bounds of its own, of which the best are those of the beli
   EXPECT(actions[1].lower <= open && open <= actions[1].upper);
 }
 
+TEST("Without a horizon, missions tell how much of the value comes after the decisions that count") {
+  const Problem corridor = units::corridor(8, 0.9);
+  for (const auto& [steps, earned] : {std::pair{3u, 0.0}, {8u, 10 * std::pow(0.9, 7)}}) {
+    point_based::OnlineSarsop search{flat_model(corridor)};
+    search.move_to({{0, 1.0}});
+    search.improve(3'000'000, never);
+    const auto actions = search.action_bounds();
+    const std::uint32_t best = actions[0].lower > actions[1].lower ? 0 : 1;
+    std::uint64_t work = 0;
+    const auto losses = search.losses(best, steps, 0, never, work);
+    EXPECT_EQUAL(losses.size(), 30u);
+    for (const point_based::MissionLoss& loss : losses) EXPECT_NEAR(actions[best].lower - loss.all - loss.later, earned, 1e-3);
+  }
+}
+
+TEST("The best of the simple policies listens to the tiger, and returns less than the optimum") {
+  const Problem tiger = units::tiger();
+  point_based::OnlineSarsop search{flat_model(tiger)};
+  search.move_to({{0, 0.5}, {1, 0.5}});
+  std::uint64_t work = 0;
+  const auto policy = search.best_policy(60, 0, never, work);
+  EXPECT(policy.has_value());
+  EXPECT_EQUAL(policy->action, 0u);
+  EXPECT(policy->value - 3 * policy->standard_error < 19.3714);
+  EXPECT(policy->value + 3 * policy->standard_error > 10);
+  EXPECT(work > 0);
+}
+
 TEST("A belief of states that no start leads to is refused") {
   Problem problem = units::world(4, 1, 0.9);
   problem.sensings = {{{0, 1.0}}, {{1, 1.0}}};

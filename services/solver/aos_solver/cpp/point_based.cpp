@@ -16,6 +16,7 @@ namespace {
 
 constexpr double closed_share = 1e-5;  // of the value: a smaller gap matters to no decision
 constexpr double nearly_closed_share = 0.05;
+constexpr double share_of_bits = 0x1p-64;
 constexpr std::size_t max_bytes = std::size_t{512} << 20;
 
 }  // namespace
@@ -87,12 +88,12 @@ std::uint64_t OnlineSarsop::improve_below(std::uint32_t action, const IsOver& is
                          [&](const auto& is_enough) { return solver_->sarsop.improve_below(action, solver_->precision(), is_enough); });
 }
 
-std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over,
-                                              std::uint64_t& work) {
+std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work,
+                                              const IsOver& is_over, std::uint64_t& work) {
   constexpr std::size_t missions = 30;
-  constexpr double share_of_bits = 0x1p-64;
   std::vector<MissionLoss> found;
-  if (solver_->model.horizon == 0 || !solver_->sarsop.has_start() || !solver_->is_nearly_closed()) return found;
+  const bool is_endless = solver_->model.horizon == 0;
+  if (!solver_->sarsop.has_start() || !(is_endless || solver_->is_nearly_closed())) return found;
   const double precision = std::max(solver_->gap(), 0.2 * solver_->nearly_closed_gap());
   const std::uint64_t before = solver_->sarsop.graph().work();
   const auto done = [&] { return solver_->sarsop.graph().work() - before; };
@@ -100,8 +101,21 @@ std::vector<MissionLoss> OnlineSarsop::losses(std::uint32_t action, std::uint64_
   std::mt19937_64 bits{1};
   const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
   while (found.size() < missions && !ends()) {
-    found.push_back(solver_->sarsop.loss_of_mission(action, precision, ends, uniform));
+    found.push_back(solver_->sarsop.loss_of_mission(action, steps, precision, ends, uniform));
   }
+  work += done();
+  return found;
+}
+
+std::optional<PolicyValue> OnlineSarsop::best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
+                                                    std::uint64_t& work) {
+  if (!solver_->sarsop.has_start() || solver_->is_nearly_closed()) return std::nullopt;
+  const std::uint64_t before = solver_->sarsop.graph().work();
+  const auto done = [&] { return solver_->sarsop.graph().work() - before; };
+  const auto ends = [&] { return is_over() || (max_work > 0 && done() >= max_work); };
+  std::mt19937_64 bits{1};
+  const auto uniform = [&] { return static_cast<double>(bits()) * share_of_bits; };
+  const std::optional<PolicyValue> found = solver_->sarsop.best_policy(steps, ends, uniform);
   work += done();
   return found;
 }

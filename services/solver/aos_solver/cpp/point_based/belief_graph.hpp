@@ -169,16 +169,28 @@ class BeliefGraph {
   }
 
   // An upper bound of each action's value: the value if the robot knew more.
-  std::vector<double> informed_values(const Node& node) const {
-    const double* const values = informed_[node.left].data();
-    const std::vector<std::uint32_t>& states = regions_.all[node.region].states;
-    std::vector<double> sums(model_.actions, rounding_ * sizes_[node.left]);
-    for (std::size_t i = 0; i < node.belief.size(); ++i) {
-      const double* const row = values + model_.row(states[node.belief.states[i]], 0);
-      const double probability = node.belief.probabilities[i];
+  std::vector<double> informed_values(const Node& node) const { return informed_values(node.region, node.left, node.belief); }
+  std::vector<double> informed_values(std::uint32_t region, std::uint32_t left, const Belief& belief) const {
+    const double* const values = informed_[left].data();
+    const std::vector<std::uint32_t>& states = regions_.all[region].states;
+    std::vector<double> sums(model_.actions, rounding_ * sizes_[left]);
+    for (std::size_t i = 0; i < belief.size(); ++i) {
+      const double* const row = values + model_.row(states[belief.states[i]], 0);
+      const double probability = belief.probabilities[i];
       for (std::size_t action = 0; action < sums.size(); ++action) sums[action] += probability * row[action];
     }
     return sums;
+  }
+
+  // The lower bound of a belief that has no node, without a horizon.
+  double lower_at(std::uint32_t region, const Belief& belief) {
+    const LowerBound& bound = lower_[region];
+    double best = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t number = 0; number < bound.size(); ++number) {
+      if (!bound[number].is_gone()) best = std::max(best, expected(bound[number].values, belief));
+    }
+    work_ += bound.size() * (per_vector + belief.size());
+    return best;
   }
 
   void refresh_lower(Node& node) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -22,10 +23,21 @@ struct ActionBounds {
   std::uint32_t trials = 0;
 };
 
-// What a mission loses of a lower bound, and the part of it that decisions lose which are not proven to be the best, such as ties.
+// What the decisions of a mission lose of a lower bound, and the part of it that those lose which are not proven to be the best,
+// such as ties. They gain where it is negative. Without a horizon, `later` is what the bound counts beyond the decisions.
 struct MissionLoss {
   double all = 0;
   double unsettled = 0;
+  double later = 0;
+};
+
+// What a policy returns that needs no search (base_policies.hpp): its first action, its mean return, the part of that which
+// it earns within the steps that were played, and the standard error of the mean.
+struct PolicyValue {
+  std::uint32_t action = 0;
+  double value = 0;
+  double within = 0;
+  double standard_error = 0;
 };
 
 // Thrown for a lower bound above an upper one: the cause is a mistake in this folder, whatever the model.
@@ -55,10 +67,15 @@ class OnlineSarsop {
   // Runs trials below an action that is being carried out, without a limit of the work. Returns the work.
   std::uint64_t improve_below(std::uint32_t action, const IsOver& is_over);
 
-  // What missions lose of the lower bound that begin with an action and decide anew with the whole horizon at each step; at
-  // most 30. The last one may exceed the work and `is_over()` a little. None without a horizon, where nothing is lost, nor
-  // before the bounds of the belief have nearly met. Adds the work to `work`.
-  std::vector<MissionLoss> losses(std::uint32_t action, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work);
+  // What `steps` decisions of missions earn less than the lower bound, which begin with an action and decide anew with the
+  // whole horizon at each step; at most 30 missions. The last one may exceed the work and `is_over()` a little. With a
+  // horizon there are none before the bounds of the belief have nearly met. Adds the work to `work`.
+  std::vector<MissionLoss> losses(std::uint32_t action, std::size_t steps, std::uint64_t max_work, const IsOver& is_over,
+                                  std::uint64_t& work);
+
+  // The best of some simple policies from the belief, by missions of `steps` decisions; none where the bounds have nearly met,
+  // and where too few missions fit the work. Adds the work to `work`.
+  std::optional<PolicyValue> best_policy(std::size_t steps, std::uint64_t max_work, const IsOver& is_over, std::uint64_t& work);
 
   // The bounds of all actions at the belief moved to: discounted, over the whole horizon. These bounds and
   // those of `bounds` hold in spite of rounding.

@@ -31,6 +31,15 @@ class Posterior {
     return work;
   }
 
+  // The probability of an observation.
+  double probability_of(const ObservationBranch& branch) const {
+    double total = 0;
+    for (const ObservationBranch::Successor& successor : branch.successors) {
+      total += predicted_[successor.target] * successor.probability;
+    }
+    return total;
+  }
+
   // Computes the weights after an observation. Returns their sum, which is the observation's probability.
   double observe(const ObservationBranch& branch) {
     belief_.states.clear();

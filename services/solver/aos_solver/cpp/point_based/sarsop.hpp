@@ -14,12 +14,14 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "point_based/backups.hpp"
+#include "point_based/base_policies.hpp"
 #include "point_based/belief_graph.hpp"
 #include "point_based/online.hpp"
 #include "point_based/trial.hpp"
@@ -104,12 +106,13 @@ class Sarsop {
     return bounds;
   }
 
-  // Plays a mission from the only start that begins with `action` and decides anew at each later belief, with the whole
-  // horizon to go. Tells what it earns less than the lower bound says: it may put off for ever what is best at the end of
-  // a horizon. Most luck is left out, since a step counts by what it is expected to change of the lower bound. After
-  // `is_over()` decisions are no longer searched for: bounds that are known decide. `uniform()` draws.
+  // Plays `steps` decisions of a mission from the only start. It begins with `action` and decides anew at each later belief,
+  // with the whole horizon to go. Tells what it earns less in them than the lower bound says: it may put off for ever what is
+  // best at the end of a horizon, and without a horizon the bound counts what comes after these decisions, too. Most luck is
+  // left out, since a step counts by what it is expected to change of the lower bound. After `is_over()` decisions are no
+  // longer searched for: bounds that are known decide. `uniform()` draws.
   template <class IsOver, class Uniform>
-  MissionLoss loss_of_mission(std::uint32_t action, double precision, IsOver&& is_over, Uniform&& uniform) {
+  MissionLoss loss_of_mission(std::uint32_t action, std::size_t steps, double precision, IsOver&& is_over, Uniform&& uniform) {
     const std::vector<std::uint32_t> begun = trial_.begun();
     std::uint32_t number = roots_.front().node;
     graph_.refresh_lower(graph_[number]);
@@ -117,7 +120,7 @@ class Sarsop {
     bool is_settled = true;
     MissionLoss loss;
     double discount = roots_.front().weight;
-    for (std::size_t step = 0; step < model_.horizon; ++step) {
+    for (std::size_t step = 0; step < steps; ++step) {
       const Branch branch = opened(number, action);
       const double lost = discount * (promised - branch.lower);
       loss.all += lost;
@@ -125,16 +128,30 @@ class Sarsop {
       double place = uniform();
       const auto next = std::find_if(branch.successors.begin(), branch.successors.end(),
                                      [&](const Successor& successor) { return (place -= successor.probability) < 0; });
-      if (next == branch.successors.end()) break;
+      if (next == branch.successors.end()) {
+        promised = 0;
+        break;
+      }
       number = next->node;
+      graph_.refresh_lower(graph_[number]);
       promised = graph_[number].lower;
       discount *= model_.discount;
       const Belief belief = graph_[number].belief;
       const std::uint32_t anew = graph_.node_of(graph_[number].region, static_cast<std::uint32_t>(model_.horizon), belief);
       std::tie(action, is_settled) = decided_anew(anew, precision, is_over);
     }
+    if (model_.horizon == 0) loss.later = discount * promised;
     trial_.set_begun(begun);
     return loss;
+  }
+
+  // What the best of some simple policies returns from the only start.
+  template <class IsOver, class Uniform>
+  std::optional<PolicyValue> best_policy(std::size_t steps, IsOver&& is_over, Uniform&& uniform) {
+    const auto found = policies_.best(graph_[roots_.front().node], steps, is_over, uniform);
+    if (!found) return found;
+    const double weight = roots_.front().weight;
+    return PolicyValue{found->action, weight * found->value, weight * found->within, weight * found->standard_error};
   }
 
   // Gives up the alpha vectors that are best at no belief that the remaining actions reach.
@@ -297,6 +314,7 @@ class Sarsop {
   const Regions& regions_;
   BeliefGraph graph_;
   Backups backups_{model_, regions_, graph_};
+  BasePolicies policies_{model_, regions_, graph_};
   Trial trial_{model_, graph_, backups_};
   std::vector<Root> roots_;
   std::uint32_t persisted_ = 0;  // how many actions were repeated from the current roots

@@ -176,6 +176,9 @@ class Planner {
       case PlannerKind::sarsop: {
         const std::uint64_t simulations = point_based_.search(budget, [&] { return choice(point_based_.estimates(), barred_); });
         why_ += "; " + bounds_text(horizon, space_.slack(belief, horizon));
+        if (const auto& policy = point_based_.policy()) {
+          why_ += "; a simple policy decides, since it returns " + rounded_down(policy->value) + " in played missions";
+        }
         if (simulations == 0) why_ += "; preparation and earlier searches have found these bounds, and nothing was searched now";
         return simulations;
       }

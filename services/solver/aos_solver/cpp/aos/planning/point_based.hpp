@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -53,8 +54,8 @@ class PointBased {
   bool tells_by_cells() const { return Model::reports_numbers(); }
   // The largest number of cells for one report.
   std::size_t cells() const { return cells_.max_cells(); }
-  // Whether values are those of missions without a horizon. This is so if the discount leaves next to nothing
-  // of what comes after the horizon, or if there are too many states for a layer of bounds for each decision.
+  // Whether values are those of missions without a horizon. This is so if the discount leaves half or less of what comes
+  // after the horizon, or if there are too many states for a layer of bounds for each decision.
   bool is_endless() const { return is_endless_; }
   // The bounds of the value of the belief's running part. With cells, the upper one holds for a robot that
   // observes cells only.
@@ -63,6 +64,8 @@ class PointBased {
     const auto [lower, upper] = search_->bounds();
     return {lower - error_, upper + error_};
   }
+  // The simple policy that decides, if one does.
+  const std::optional<point_based::PolicyValue>& policy() const { return policy_; }
   // How many simulations all searches took so far.
   std::uint64_t known_simulations() const { return known_; }
 
@@ -72,23 +75,42 @@ class PointBased {
     known_ = 0;
   }
 
-  // Runs trials from the prepared belief. In a share of the budget it plays missions that begin with the action that
-  // `choice()` tells then. Returns how many simulations the trials count as; missions are no search.
+  // Runs trials from the prepared belief. Where they leave the bounds apart, simple policies are tried. If these do not
+  // decide, missions are played that begin with the action that `choice()` tells then. Returns how many simulations the
+  // trials count as; policies and missions are no search.
   template <class Choice>
   std::uint64_t search(Budget budget, Choice&& choice) {
-    loss_ = loss_error_ = 0;
+    loss_ = loss_error_ = later_ = 0;
+    missions_ = 0;
+    policy_.reset();
     if (running_ <= 0 || (budget.simulations == 0 && budget.seconds <= 0)) return 0;
     const Operations most = budget.operations(horizon_);
-    const auto most_before = static_cast<Operations>((1 - share_of_missions) * static_cast<double>(most));
+    const auto work_of = [&](double share) { return static_cast<Operations>(share * static_cast<double>(most)); };
     const auto never = [] { return false; };
-    const auto is_over = until(budget, never);
-    Budget before = budget;
-    before.seconds *= 1 - share_of_missions;
-    Operations searched = search_->improve(most_before, until(before, never));
-    Operations work = searched;
-    const auto goes_on = [&] { return (most == 0 || work < most) && !is_over(); };
-    if (goes_on()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
-    if (goes_on()) searched += search_->improve(most == 0 ? 0 : most - work, is_over);
+    const auto over_after = [&](double share) {
+      Budget part = budget;
+      part.seconds *= share;
+      return until(part, never);
+    };
+    const auto trials_are_over = over_after(share_of_trials), policies_are_over = over_after(1 - share_of_missions);
+    const auto is_over = over_after(1);
+    Operations searched = 0, work = 0;
+    // Runs trials until a share of the budget is spent.
+    const auto try_until = [&](double share, const auto& is_spent) {
+      if ((most > 0 && work >= work_of(share)) || is_spent()) return;
+      const Operations trials = search_->improve(most == 0 ? 0 : work_of(share) - work, is_spent);
+      searched += trials;
+      work += trials;
+    };
+    try_until(share_of_trials, trials_are_over);
+    const Operations most_of_policies = std::max<Operations>(work_of(1 - share_of_missions - share_of_trials), most > 0);
+    policy_ = search_->best_policy(static_cast<std::size_t>(horizon_), most_of_policies, policies_are_over, work);
+    if (policy_ && policy_->value - policy_->standard_error <= search_->bounds().first) policy_.reset();
+    if (!policy_) {
+      try_until(1 - share_of_missions, policies_are_over);
+      if ((most == 0 || work < most) && !is_over()) work += play(choice(), most == 0 ? 0 : most - work, is_over);
+    }
+    try_until(1, is_over);
     const std::uint64_t simulations = Budget::simulations_of(searched, horizon_);
     known_ += simulations;
     return simulations;
@@ -102,8 +124,9 @@ class PointBased {
     known_ += Budget::simulations_of(work, horizon_);
   }
 
-  // The lower bounds of the actions, by which the decision is made. `n` counts the trials that began with the action, and 1
-  // for opening it. What is proven holds for the next `horizon` decisions, also where the search has no horizon.
+  // The lower bounds of the actions, or what a policy returns that begins with one; the decision is made by these. `n`
+  // counts the trials that began with the action, and 1 for opening it. What is proven holds for the next `horizon`
+  // decisions, also where the search has no horizon.
   std::vector<ActionEstimate> estimates() const {
     if (running_ <= 0) return std::vector<ActionEstimate>(static_cast<std::size_t>(Model::action_count()));
     const auto [least_later, most_later] = later();
@@ -113,50 +136,60 @@ class PointBased {
       result.push_back({lower, bounds.trials + 1, 0, 0, lower - most_later});
       if (!tells_by_cells()) result.back().at_most = bounds.upper + error_ - least_later;
     }
+    if (policy_) result[policy_->action].q = std::max(result[policy_->action].q, policy_->value);
     return result;
   }
   // Estimates with a value between the bounds. With cells the upper one holds for a robot that observes cells only. Where
-  // the search has no horizon, what comes after the horizon is worth nothing at least, and as much as now at most.
+  // the search has no horizon, missions tell what comes after the horizon. Without missions it is worth nothing at least, and
+  // as much as now at most.
   std::vector<ActionEstimate> values(std::vector<ActionEstimate> estimates, int choice) const {
     if (running_ <= 0) return estimates;
     const auto [worst, best] = search_->bounds();
-    const double left = is_endless_ ? std::pow(Model::discount, horizon_) : 0;
+    const double left = is_endless_ && missions_ == 0 ? std::pow(Model::discount, horizon_) : 0;
+    const double lost = later_ + std::max(loss_, 0.0), gained = std::max(-loss_, 0.0);
     std::vector<double> lowers, uppers;
     for (const point_based::ActionBounds& bounds : search_->action_bounds()) {
-      lowers.push_back(bounds.lower - error_ - left * std::max(best, 0.0));
-      uppers.push_back(bounds.upper + error_ - left * std::min(worst, 0.0));
+      uppers.push_back(bounds.upper + error_ - lost - left * std::min(worst, 0.0));
+      lowers.push_back(std::min(bounds.lower - error_ - lost + gained - left * std::max(best, 0.0), uppers.back()));
     }
+    if (policy_) lowers[policy_->action] = std::clamp(policy_->within, lowers[policy_->action], uppers[policy_->action]);
     set_between(estimates, lowers, uppers, choice);
     for (ActionEstimate& estimate : estimates) {
-      estimate.q = std::min(estimate.q - loss_, estimate.at_most);
+      estimate.q = std::min(estimate.q, estimate.at_most);
       estimate.standard_error = std::hypot(estimate.standard_error, loss_error_);
     }
     return estimates;
   }
 
  private:
-  static constexpr double share_of_missions = 0.2;  // of the budget, at least
-  static constexpr double next_to_nothing = 0.01;
-  static constexpr double little = 0.1;
+  // Of the budget, at least. Policies have what is left.
+  static constexpr double share_of_trials = 0.5;
+  static constexpr double share_of_missions = 0.2;
+  static constexpr double much_later = 0.5;  // of a value, beyond the horizon
 
   // Finds what missions lose that begin with an action and plan anew at each step. Returns the work.
   Operations play(int action, Operations most, const point_based::OnlineSarsop::IsOver& is_over) {
     Operations work = 0;
-    const auto losses = search_->losses(static_cast<std::uint32_t>(action), most, is_over, work);
+    const auto losses = search_->losses(static_cast<std::uint32_t>(action), static_cast<std::size_t>(horizon_), most, is_over, work);
+    missions_ = losses.size();
     const auto count = static_cast<double>(losses.size());
     double unsettled = 0, squares = 0;
-    for (const point_based::MissionLoss& loss : losses) loss_ += loss.all / count;
-    for (const point_based::MissionLoss& loss : losses) unsettled += std::abs(loss.unsettled) / count;
-    for (const point_based::MissionLoss& loss : losses) squares += (loss.all - loss_) * (loss.all - loss_);
+    for (const point_based::MissionLoss& loss : losses) {
+      loss_ += loss.all / count;
+      later_ += loss.later / count;
+      unsettled += std::abs(loss.unsettled) / count;
+    }
+    const double all = loss_ + later_;
+    for (const point_based::MissionLoss& loss : losses) squares += std::pow(loss.all + loss.later - all, 2);
     // The mission itself may decide otherwise there. One mission alone tells no more than the size of what is lost.
-    loss_error_ = std::hypot(unsettled, count > 1 ? std::sqrt(squares / (count - 1) / count) : std::abs(loss_));
+    loss_error_ = std::hypot(unsettled, count > 1 ? std::sqrt(squares / (count - 1) / count) : std::abs(all));
     return work;
   }
 
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
     point_based::FlatModel model = flat_model();
     error_ = error_of(model);
-    is_endless_ = std::pow(Model::discount, horizon_) <= (is_large(model) ? little : next_to_nothing);
+    is_endless_ = Model::discount < 1 && std::pow(Model::discount, horizon_) <= much_later;
     try {
       search_ = search_with(std::move(model), is_endless_ ? 0 : horizon_);
     } catch (const std::length_error&) {
@@ -174,15 +207,6 @@ class PointBased {
     const double left = std::pow(Model::discount, horizon_) * (1 + 1e-9);
     const auto [least, most] = search_->extremes();
     return {left * least, left * most};
-  }
-  // Whether it takes long to go through all observations of all states once for each decision to go.
-  bool is_large(const point_based::FlatModel& model) const {
-    constexpr double max_likelihoods = 2e6;
-    double likelihoods = 0;
-    for (const point_based::Outcome& outcome : model.outcomes.elements) {
-      likelihoods += static_cast<double>(model.likelihoods[outcome.sensing].size());
-    }
-    return likelihoods * horizon_ > max_likelihoods;
   }
   point_based::FlatModel flat_model() const {
     point_based::FlatModel model = space_.rows();
@@ -223,7 +247,10 @@ class PointBased {
   NumberCells cells_;
   double error_ = 0;  // of bounds
   double running_ = 0;
-  double loss_ = 0;  // of missions that plan anew, against the lower bound
+  std::optional<point_based::PolicyValue> policy_;  // that decides, since it returns more than is proven
+  std::size_t missions_ = 0;  // that were played from this belief
+  double loss_ = 0;   // of missions that plan anew, against the lower bound
+  double later_ = 0;  // of the lower bound, beyond the horizon
   double loss_error_ = 0;
   std::uint64_t known_ = 0;
 };

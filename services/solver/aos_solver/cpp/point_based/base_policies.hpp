@@ -1,0 +1,180 @@
+// Policies in belief space that need no search: what they return from a belief, by simulation.
+//
+// Where there are hundreds of actions, a search opens each of them a few times and finds next to nothing from below. A
+// policy that asks what tells most, and acts once it knows enough, is found at once. A policy of this file takes the action
+// with the highest sum of
+//
+//   the reward, a share of what follows if more is known from then on (QMDP: Littman, Cassandra and Kaelbling, 1995), and
+//   a weight times the mutual information between the state and the next observation.
+//
+// Missions are played by each policy from the belief. The better half goes on, until one is left.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "point_based/belief_graph.hpp"
+#include "point_based/online.hpp"
+
+namespace aos::point_based {
+
+class BasePolicies {
+ public:
+  BasePolicies(const FlatModel& model, const Regions& regions, BeliefGraph& graph)
+      : model_(model), regions_(regions), graph_(graph) {
+    std::size_t largest = 0;
+    for (const Region& region : regions.all) largest = std::max(largest, region.states.size());
+    posterior_.reserve(largest);
+    doubts_.resize(regions.all.size() * model.actions);
+  }
+
+  // The policy that returns most from a node's belief over `steps` decisions, and what it returns; none if too few missions
+  // were played when `is_over()` came. `uniform()` draws.
+  template <class IsOver, class Uniform>
+  std::optional<PolicyValue> best(const Node& node, std::size_t steps, IsOver&& is_over, Uniform&& uniform) {
+    const double worth = std::max(node.upper - node.lower, 0.0);  // of knowing all
+    std::vector<Candidate> candidates;
+    for (const Policy& policy : policies_) candidates.push_back({{policy.share, policy.weight * worth}});
+    std::size_t missions = fewest_;
+    while (true) {
+      for (Candidate& candidate : candidates) {
+        for (std::size_t i = 0; i < missions && !is_over(); ++i) play(node, candidate, steps, uniform);
+      }
+      std::stable_sort(candidates.begin(), candidates.end(),
+                       [](const Candidate& one, const Candidate& other) { return one.returns.mean() > other.returns.mean(); });
+      if (is_over() || candidates.size() == 1) return value_of(candidates.front());
+      candidates.resize(candidates.size() / 2);
+      // The mean of the best of several is too high. What the last one returns is found anew.
+      if (candidates.size() == 1) candidates.front().returns = {};
+      missions = candidates.size() == 1 ? most_ : 2 * missions;
+    }
+  }
+
+ private:
+  struct Policy {
+    double share;   // of what follows
+    double weight;  // of a nat, in the worth of knowing all
+  };
+  struct Returns {
+    double count = 0, sum = 0, squares = 0, within = 0;
+    double mean() const { return count > 0 ? sum / count : -std::numeric_limits<double>::infinity(); }
+    double error() const { return std::sqrt(std::max(squares / count - mean() * mean(), 0.0) / (count - 1)); }
+  };
+  struct Candidate {
+    Policy policy;
+    Returns returns{};
+    std::uint32_t first = 0;  // its action at the belief where missions begin
+  };
+
+  static constexpr Policy policies_[] = {{1, 0}, {1, 0.1}, {0.9, 0.03}, {0.9, 0.1}, {0.9, 0.3}, {0.9, 1}};
+  static constexpr std::size_t fewest_ = 4;  // missions by each policy
+  static constexpr std::size_t most_ = 32;
+
+  static std::optional<PolicyValue> value_of(const Candidate& candidate) {
+    const Returns& returns = candidate.returns;
+    if (returns.count < static_cast<double>(fewest_)) return std::nullopt;
+    return PolicyValue{candidate.first, returns.mean(), returns.within / returns.count, returns.error()};
+  }
+
+  // Plays a mission. What comes after its steps counts as the lower bound there, where the search has no horizon.
+  template <class Uniform>
+  void play(const Node& start, Candidate& candidate, std::size_t steps, Uniform&& uniform) {
+    Belief belief = start.belief;
+    std::uint32_t region = start.region;
+    std::uint32_t action = candidate.first;
+    double discount = 1, earned = 0, later = 0;
+    for (std::size_t step = 0; step < steps; ++step) {
+      const std::uint32_t left = graph_.is_endless() ? 0 : start.left - static_cast<std::uint32_t>(step);
+      if (step > 0 || candidate.returns.count == 0) action = choice(belief, region, left, candidate.policy);
+      if (step == 0) candidate.first = action;
+      const Move& move = regions_.all[region].moves[action];
+      earned += discount * expected(move.rewards, belief);
+      discount *= model_.discount;
+      const ObservationBranch* const observed = observation(belief, move, uniform());
+      if (observed == nullptr) {
+        discount = 0;
+        break;
+      }
+      belief = posterior_.normalised(posterior_.observe(*observed), 1e-9);
+      region = observed->region;
+    }
+    if (graph_.is_endless() && discount > 0) later = discount * graph_.lower_at(region, belief);
+    Returns& returns = candidate.returns;
+    returns.count += 1;
+    returns.within += earned;
+    returns.sum += earned + later;
+    returns.squares += (earned + later) * (earned + later);
+  }
+
+  // The observation at `place` in the distribution of all; null if the mission ends. The posterior has its prediction.
+  const ObservationBranch* observation(const Belief& belief, const Move& move, double place) {
+    graph_.count_work(posterior_.predict(belief, move));
+    for (const ObservationBranch& branch : move.observation_branches) {
+      graph_.count_work(branch.successors.size());
+      if ((place -= posterior_.probability_of(branch)) < 0) return &branch;
+    }
+    return nullptr;
+  }
+
+  std::uint32_t choice(const Belief& belief, std::uint32_t region, std::uint32_t left, const Policy& policy) {
+    const std::vector<double> informed = graph_.informed_values(region, left, belief);
+    graph_.count_work(model_.actions * belief.size());
+    std::uint32_t best = 0;
+    double highest = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t action = 0; action < model_.actions; ++action) {
+      const Move& move = regions_.all[region].moves[action];
+      const double reward = expected(move.rewards, belief);
+      double merit = reward + policy.share * (informed[action] - reward);
+      if (policy.weight > 0) merit += policy.weight * information(belief, region, action);
+      if (merit <= highest) continue;
+      highest = merit;
+      best = action;
+    }
+    return best;
+  }
+
+  // The mutual information between the state and what is observed after an action, in nats.
+  double information(const Belief& belief, std::uint32_t region, std::uint32_t action) {
+    const Move& move = regions_.all[region].moves[action];
+    if (move.observation_branches.size() < 2 || belief.size() < 2) return 0;
+    graph_.count_work(posterior_.predict(belief, move));
+    double entropy = 0;
+    for (const ObservationBranch& branch : move.observation_branches) {
+      graph_.count_work(branch.successors.size());
+      entropy += share_of_entropy(posterior_.probability_of(branch));
+    }
+    return std::max(entropy - expected(doubts(region, action), belief), 0.0);
+  }
+
+  // By state of the region: the entropy of what is observed after an action.
+  const std::vector<double>& doubts(std::uint32_t region, std::uint32_t action) {
+    std::vector<double>& known = doubts_[region * model_.actions + action];
+    if (!known.empty()) return known;
+    const Move& move = regions_.all[region].moves[action];
+    for (std::uint32_t state = 0; state < regions_.all[region].states.size(); ++state) {
+      graph_.count_work(posterior_.predict({{state}, {1.0}}, move));
+      double entropy = 0;
+      for (const ObservationBranch& branch : move.observation_branches) {
+        entropy += share_of_entropy(posterior_.probability_of(branch));
+      }
+      graph_.count_work(move.targets);
+      known.push_back(entropy);
+    }
+    return known;
+  }
+
+  static double share_of_entropy(double probability) { return probability > 0 ? -probability * std::log(probability) : 0; }
+
+  const FlatModel& model_;
+  const Regions& regions_;
+  BeliefGraph& graph_;
+  Posterior posterior_;
+  std::vector<std::vector<double>> doubts_;  // [region * actions + action]
+};
+
+}  // namespace aos::point_based
