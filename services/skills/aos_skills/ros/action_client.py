@@ -84,8 +84,11 @@ class ActionClient:
                     raise node_lost(action)
                 if reason:
                     await self._cancel(action, goal_id, result)
-        except* AosError as group:
-            raise _first(group) from None
+        except ExceptionGroup as group:
+            known, others = group.split(AosError)
+            if known is None or others is not None:
+                raise
+            raise _first(known) from None
         finally:
             self._takers.get(action, {}).pop(goal_key, None)
         end = result.result()

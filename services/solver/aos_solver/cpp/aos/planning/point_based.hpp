@@ -54,8 +54,9 @@ class PointBased {
   bool tells_by_cells() const { return Model::reports_numbers(); }
   // The largest number of cells for one report.
   std::size_t cells() const { return cells_.max_cells(); }
-  // Whether values are those of missions without a horizon. This is so if the discount leaves half or less of what comes
-  // after the horizon, or if there are too many states for a layer of bounds for each decision.
+  // Whether values are those of missions without a horizon. This is so if the discount leaves next to nothing of what
+  // comes after the horizon, or half of it where there are many decisions or observations; and if there are too many states
+  // for a layer of bounds for each decision.
   bool is_endless() const { return is_endless_; }
   // The bounds of the value of the belief's running part. With cells, the upper one holds for a robot that
   // observes cells only.
@@ -136,7 +137,12 @@ class PointBased {
       result.push_back({lower, bounds.trials + 1, 0, 0, lower - most_later});
       if (!tells_by_cells()) result.back().at_most = bounds.upper + error_ - least_later;
     }
-    if (policy_) result[policy_->action].q = std::max(result[policy_->action].q, policy_->value);
+    if (policy_) {
+      // Missions that were lucky may have returned more than is possible.
+      const double upper = search_->action_bounds()[policy_->action].upper + error_;
+      double& value = result[policy_->action].q;
+      value = std::max(value, std::min(policy_->value, upper));
+    }
     return result;
   }
   // Estimates with a value between the bounds. With cells the upper one holds for a robot that observes cells only. Where
@@ -165,7 +171,9 @@ class PointBased {
   // Of the budget, at least. Policies have what is left.
   static constexpr double share_of_trials = 0.5;
   static constexpr double share_of_missions = 0.2;
-  static constexpr double much_later = 0.5;  // of a value, beyond the horizon
+  // Of a value, beyond the horizon.
+  static constexpr double much = 0.5;
+  static constexpr double next_to_nothing = 0.01;
 
   // Finds what missions lose that begin with an action and plan anew at each step. Returns the work.
   Operations play(int action, Operations most, const point_based::OnlineSarsop::IsOver& is_over) {
@@ -189,7 +197,8 @@ class PointBased {
   std::string take_model(const std::vector<std::pair<std::uint32_t, double>>& entries) {
     point_based::FlatModel model = flat_model();
     error_ = error_of(model);
-    is_endless_ = Model::discount < 1 && std::pow(Model::discount, horizon_) <= much_later;
+    const double most_later = is_long() || is_large(model) ? much : next_to_nothing;
+    is_endless_ = Model::discount < 1 && std::pow(Model::discount, horizon_) <= most_later;
     try {
       search_ = search_with(std::move(model), is_endless_ ? 0 : horizon_);
     } catch (const std::length_error&) {
@@ -207,6 +216,17 @@ class PointBased {
     const double left = std::pow(Model::discount, horizon_) * (1 + 1e-9);
     const auto [least, most] = search_->extremes();
     return {left * least, left * most};
+  }
+  // Whether there are many layers, so that a search hardly closes the bounds of each.
+  bool is_long() const { return horizon_ > 30; }
+  // Whether it takes long to go through all observations of all states once for each decision to go.
+  bool is_large(const point_based::FlatModel& model) const {
+    constexpr double max_likelihoods = 2e6;
+    double likelihoods = 0;
+    for (const point_based::Outcome& outcome : model.outcomes.elements) {
+      likelihoods += static_cast<double>(model.likelihoods[outcome.sensing].size());
+    }
+    return likelihoods * horizon_ > max_likelihoods;
   }
   point_based::FlatModel flat_model() const {
     point_based::FlatModel model = space_.rows();
