@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import signal
@@ -26,7 +27,7 @@ from aos_solver.building.build import BuiltModel
 from aos_solver.building.project_build import build_project
 from aos_solver.child.engine import Engine
 from aos_solver.mission.model_shelf import ModelShelf
-from aos_solver.mission.past import Past
+from aos_solver.mission.past import Evidence, Past, updated
 
 BIN = Path(sys.executable).parent
 
@@ -179,6 +180,33 @@ async def test_documents_that_come_while_a_mission_runs_do_not_change_its_values
         assert "give(to=alice)" in [action.name for action in newest.model.engine.description.actions]
     finally:
         await shelf.close()
+
+
+async def test_an_errand_whose_documents_gain_a_variable_goes_on_with_what_was_seen(
+    bundles: Path, cache_dir: Path
+) -> None:
+    shelf = Shelf(cache_dir, "target=bob")
+    await shelf.make(ProjectRevision(1, "", errand(bundles)))
+    running = await shelf.first()
+    past = Past(steps=[Evidence("look", "look", "nobody")])
+    for step in past.steps:
+        believed_before = (await updated(running.engine, step, past.refuted_below)).summary
+    gained = "state_variable: bool is_raining\n\ninitial_belief:\nstate.is_raining = AOS.Bernoulli(0.25);"
+    is_replayed = asyncio.Event()
+    shelf.on_ready = is_replayed.set
+    assert await shelf.newest(running, past) is None
+    await shelf.make(ProjectRevision(2, "", errand(bundles, before="initial_belief:", after=gained)))
+    async with asyncio.timeout(HANG_S):
+        while (newest := await shelf.newest(running, past)) is None:
+            await is_replayed.wait()
+            is_replayed.clear()
+    await shelf.close()
+    believed = {marginal.variable: dict(marginal.values) for marginal in newest.belief.marginals}
+    assert (newest.row.by, newest.row.steps, newest.row.foreign) == ("replay", 1, 0)
+    assert believed.pop("is_raining")["true"] == pytest.approx(0.25)
+    before = {marginal.variable: dict(marginal.values) for marginal in believed_before.marginals}
+    assert believed == {variable: pytest.approx(values) for variable, values in before.items()}
+    assert newest.model.engine.description.mission_parameters == {"target": "bob"}
 
 
 async def test_documents_without_the_value_that_was_set_are_refused(bundles: Path, cache_dir: Path) -> None:
