@@ -73,7 +73,7 @@ def main() -> int:
     sandbox = engine_child.confinement_of
 
     def measured(is_confined: bool) -> float:
-        engine_child.confinement_of = sandbox if is_confined else lambda *paths: None  # type: ignore[assignment, return-value]
+        engine_child.confinement_of = sandbox if is_confined else lambda *paths: None
         return asyncio.run(decisions_s(built))
 
     with_s, without_s = alternating(lambda: measured(True), lambda: measured(False), ROUNDS)

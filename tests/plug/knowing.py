@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from models import built_bundle, engine_of
 
@@ -90,12 +92,12 @@ def _condition(chance: random.Random) -> tuple[str, object]:
     return f"!({text})", lambda state: not is_so(state)
 
 
-def _operand(chance: random.Random):  # type: ignore[no-untyped-def]
+def _operand(chance: random.Random) -> tuple[str, Callable[[Any], Any]]:
     number = chance.randrange(len(_VARIABLES))
     return f"state.{_VARIABLES[number]}", lambda state: state[number]
 
 
-def _clause(chance: random.Random):  # type: ignore[no-untyped-def]
+def _clause(chance: random.Random) -> tuple[str, Callable[[Any], bool]]:
     if chance.random() < 0.15:
         return "!state.is_given", lambda state: not state[3]
     name, value = _operand(chance)

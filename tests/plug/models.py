@@ -174,7 +174,7 @@ def _skill(problem: Problem, action: int, weather: Weather | None) -> str:
 
 
 def _listed(values: object) -> str:
-    return "{" + ", ".join(repr(value) for value in values) + "}"  # type: ignore[attr-defined]
+    return "{" + ", ".join(repr(value) for value in values) + "}"
 
 
 # --- the truth -----------------------------------------------------------------------------------------

@@ -118,7 +118,7 @@ class _Shelf(ModelShelf):
         await self.world.turn()
         if self.world.chance.random() < self.world.failing:
             raise ModelError("it does not compile")
-        return project  # type: ignore[return-value]
+        return project
 
     async def _build_thoroughly(self, emitted: object) -> None:
         await self.world.turn()
@@ -137,7 +137,7 @@ class _World:
         self.deciding: Any = None
         self.shelf = _Shelf(
             Path(), lambda remark: None, self._start, lambda revision: revision <= self.mapped
-        )  # type: ignore[arg-type]
+        )
         self.shelf.world = self
 
     async def turn(self) -> None:
@@ -159,7 +159,7 @@ class _World:
 
     async def make(self, revision: int) -> None:
         project = SimpleNamespace(digest=str(self.chance.randrange(1000)), emitted=None)
-        await self.shelf.make(ProjectRevision(revision, "", project))  # type: ignore[arg-type]
+        await self.shelf.make(ProjectRevision(revision, "", project))
 
     async def mission(self) -> None:
         """Decides, step by step, with the newest model; a model that fails ends it."""

@@ -136,7 +136,7 @@ async def _pushes(pushes: int, seed: int) -> bool:
         ways = Counter(each.by for each in all_of_kind if each.by)
         _say(f"  {kind:17} {len(all_of_kind):4}  used after {_times(used)}  {dict(ways)}")
     accepted = [each for each in pushed if each.used_s is not None]
-    _say(f"  accepted until used: {_times([each.used_s - each.answered_s for each in accepted])}")  # type: ignore[operator]
+    _say(f"  accepted until used: {_times([each.used_s - each.answered_s for each in accepted])}")
     disturbed = [seconds for mission in missions for seconds in mission.between_s]
     _say(f"  from outcome to decision, without the search: {_times(disturbed)}")
     _say(f"  the same without pushes:                      {_times(calm.between_s)}")

@@ -107,7 +107,7 @@ def _past(
 async def _taken(
     stack: AsyncExitStack, new: object, running: RunningModel, past: Past, clock: SystemClock
 ) -> Takeover:
-    engine = await stack.enter_async_context(engine_of(new))  # type: ignore[arg-type]
+    engine = await stack.enter_async_context(engine_of(new))
     takeover = await Successor(RunningModel(2, engine), clock).take_over(running, past)
     assert takeover is not None
     return takeover
@@ -124,7 +124,7 @@ async def _distance(engine: Engine, truth: Belief) -> float:
 
 async def _drawn(stack: AsyncExitStack, new: object, past: Past, truth: Belief) -> float:
     """Returns how far the probability of the likeliest weather is off by particles, in standard errors."""
-    engine = await stack.enter_async_context(engine_of(new))  # type: ignore[arg-type]
+    engine = await stack.enter_async_context(engine_of(new))
     summary = await engine.draw_belief()
     for evidence in past.steps:
         summary = (await updated(engine, evidence, past.refuted_below)).summary

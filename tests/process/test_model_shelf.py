@@ -101,7 +101,7 @@ class Slowed:
     def __init__(self, engine: Engine) -> None:
         self.begun, self.may_go_on = asyncio.Event(), asyncio.Event()
         self._import = engine.import_beliefs
-        engine.import_beliefs = self  # type: ignore[method-assign]
+        engine.import_beliefs = self
 
     async def __call__(self, beliefs: ExportedBeliefs) -> BeliefSummary:
         self.begun.set()
@@ -158,7 +158,7 @@ async def test_a_revision_that_cannot_import_the_belief_replays_the_mission_inst
     async with workshop(cache_dir) as made:
         running = await running_lamp(made)
         await made.shelf.make(lamp(2))
-        made.engines[1].import_beliefs = refuse  # type: ignore[method-assign]
+        made.engines[1].import_beliefs = refuse
         assert await made.taken(running) is running
         takeover = None
         while takeover is None:

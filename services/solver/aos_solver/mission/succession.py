@@ -195,5 +195,5 @@ class _Over(QuietPorts):
     """The surroundings of a mission that is over: nothing moves."""
 
     async def activate(self, request: Activate, action: str) -> Outcome:
-        """Nobody asks for it: a mission that is over has no step to bring to its end."""
-        raise NotImplementedError
+        """Is not called."""
+        raise AssertionError("a mission that is over has no step to bring to its end")
