@@ -22,7 +22,7 @@ from aos_deploy.printing import from_here
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
 from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
-from aos_deploy.run_end import settled
+from aos_deploy.run_end import beginning_of, settled
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp
 from aos_deploy.verdict import Account, Verdict
@@ -121,7 +121,7 @@ class MissionRun:
             run.path, self._heard, stopped_by=self.error, was_interrupted=was_interrupted
         )
         self.error = self.error or lacking
-        return self._summary(verdict)
+        return self._summary(verdict, run.path)
 
     def _run_directory(self) -> RunDirectory:
         if self._taken_up is not None:
@@ -264,7 +264,9 @@ class MissionRun:
             )
         )
 
-    def _summary(self, verdict: Verdict) -> Summary:
+    def _summary(self, verdict: Verdict, folder: Path) -> Summary:
+        """The summary of the mission in this folder."""
+        begun = beginning_of(folder)
         return Summary(
             robot=self._deployment.file.robot,
             deploy_file=str(self._deployment.path),
@@ -276,6 +278,7 @@ class MissionRun:
             first_decision_s=self._first_decision_s,
             duration_s=self._elapsed_s(),
             process_ends=tuple(self._supervisor.ends) if self._supervisor is not None else (),
+            mission_parameters=begun.mission_parameters if begun is not None else {},
         )
 
     def _elapsed_s(self) -> float:

@@ -63,7 +63,8 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
 
     The ending and its probabilities are those of the last belief: nobody tells a robot how its world ended.
     `cautious_goal_probability` is that of the goal if nothing ran that was not observed.
-    `process_ends` are the processes that ended by themselves, in this order.
+    `process_ends` are the processes that ended by themselves, in this order. `mission_parameters` are the
+    values of all parts of mission parameters.
     """
 
     robot: str
@@ -84,6 +85,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     first_decision_s: float | None
     duration_s: float
     process_ends: tuple[ProcessEnd, ...] = ()
+    mission_parameters: dict[str, str] = {}
 
 
 class SystemSummary(Summary, frozen=True, kw_only=True):

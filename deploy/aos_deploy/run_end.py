@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import msgspec
+
 from aos_deploy.verdict import Account, Verdict, message_of_row
 from aos_protocol.errors import AosError, StorageError
+from aos_protocol.messages import MissionBegun
 from aos_runtime.journal import Journal
 
-__all__ = ["account_of", "settled"]
+__all__ = ["account_of", "beginning_of", "settled"]
 
 _JOURNAL = "journal.db"
 
@@ -23,6 +26,19 @@ def account_of(run: Path) -> Account:
                 if message is not None:
                     account.take(message)
     return account
+
+
+def beginning_of(run: Path) -> MissionBegun | None:
+    """The first `begun` row of a mission's folder; None where there is none, or it cannot be read."""
+    path = run / _JOURNAL
+    if not path.is_file():
+        return None
+    try:
+        with Journal.read(path) as journal:
+            row = next(journal.walk("begun"), None)
+            return None if row is None else msgspec.json.decode(row.payload, type=MissionBegun)
+    except (StorageError, msgspec.MsgspecError):
+        return None
 
 
 def settled(

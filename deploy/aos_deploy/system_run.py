@@ -71,7 +71,7 @@ class SystemRun(MissionRun):
         )
         self.error = self.error or lacking
         summary = msgspec.structs.replace(
-            self._summary(verdict),
+            self._summary(verdict, folder),
             seed=entry.seed,
             started=_time_text(entry.begun_ns),
             services_ready_s=None,
@@ -97,7 +97,7 @@ class SystemRun(MissionRun):
             if run.read_summary(entry.number) is None:
                 self._keep(entry, was_interrupted=was_interrupted)
         verdict = self._verdict(fault, has_begun=bool(entries), ran=ran)
-        fields = msgspec.structs.asdict(self._summary(verdict))
+        fields = msgspec.structs.asdict(self._summary(verdict, run.path))
         summaries = [run.read_summary(entry.number) for entry in entries]
         fields["steps"] = sum(summary.steps for summary in summaries if summary is not None)
         return SystemSummary(**fields, missions=tuple(entry.mission for entry in entries))

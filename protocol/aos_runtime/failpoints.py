@@ -2,7 +2,8 @@
 
 `AOS_FAILPOINT=NAME:ACTION` or `NAME:ACTION:TIME` in the environment arms one; the process fails when it comes
 there for that time, the first without a number. Actions: `kill` (SIGKILL), `exit` (an exit without any
-cleaning up), `freeze` (SIGSTOP), and `full`: the disk is full at this write and for the process from then on.
+cleaning up), `freeze` (SIGSTOP), and `full` or `readonly`: the disk is full, or read-only, at this write and
+for the process from then on.
 `AOS_FAILPOINT_DONE` may name a file that is made when the process fails; where it is there, nothing fails
 any more, so that a process that is started again goes on.
 
@@ -18,7 +19,7 @@ import signal
 
 __all__ = ["ACTIONS", "FAILPOINTS", "is_armed", "reach"]
 
-ACTIONS = ("kill", "exit", "freeze", "full")
+ACTIONS = ("kill", "exit", "freeze", "full", "readonly")
 EXIT_STATUS = 70
 
 FAILPOINTS = {
@@ -55,6 +56,8 @@ FAILPOINTS = {
 
 _NO_WRITES = {"up.start.before", "solver.engine.before", "middleware.worker.before", "middleware.call.before"}
 
+_REFUSALS = {"full": errno.ENOSPC, "readonly": errno.EROFS}
+
 _armed = os.environ.get("AOS_FAILPOINT", "")
 _done = os.environ.get("AOS_FAILPOINT_DONE", "")
 _times = 0
@@ -64,7 +67,7 @@ is_armed = bool(_armed)
 
 
 def reach(name: str) -> None:
-    """Fails where this place is armed; OSError ENOSPC where its disk is full."""
+    """Fails where this place is armed; OSError ENOSPC or EROFS where its disk is full or read-only."""
     if is_armed:
         _reach(name)
 
@@ -73,9 +76,9 @@ def _reach(name: str) -> None:
     global _times
     place, action, time = (*_armed.split(":"), "1")[:3]
     _times += place == name
-    if action == "full" and _times >= int(time) and name.endswith(".before") and name not in _NO_WRITES:
+    if action in _REFUSALS and _times >= int(time) and name.endswith(".before") and name not in _NO_WRITES:
         _is_first()
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        raise OSError(_REFUSALS[action], os.strerror(_REFUSALS[action]))
     if place != name or _times != int(time) or not _is_first():
         return
     if action == "kill":

@@ -19,6 +19,7 @@ def main() -> int:
     parser.add_argument("--freezes", type=int, default=0, help="freezes of 1 s or 6 s, 3 in a mission")
     parser.add_argument("--failpoints", type=int, default=0, help="runs at each failpoint")
     parser.add_argument("--full", type=int, default=0, help="times that the disk is full at each write")
+    parser.add_argument("--readonly", type=int, default=0, help="times that it is read-only at each write")
     parser.add_argument("--cancels", type=int, default=0, help="aos-up killed in mid-motion")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2, help="runs at the same time")
@@ -26,9 +27,10 @@ def main() -> int:
     parser.add_argument("--keep", type=Path, help="keep the folders of runs that break a promise here")
     parser.add_argument("--again", nargs="+", default=[], help="only these runs, by their names")
     options = parser.parse_args()
-    counts = {name: getattr(options, name) for name in ("kills", "freezes", "failpoints", "full", "cancels")}
+    kinds = ("kills", "freezes", "failpoints", "full", "readonly", "cancels")
+    counts = {name: getattr(options, name) for name in kinds}
     if not options.again and not any(counts.values()):
-        counts = {"kills": 24, "freezes": 6, "failpoints": 1, "full": 1, "cancels": 2}
+        counts = {"kills": 24, "freezes": 6, "failpoints": 1, "full": 1, "readonly": 1, "cancels": 2}
     names = options.again or names_of(**counts, seed=options.seed)
     with tempfile.TemporaryDirectory(prefix="aos-chaos-") as folder:
         compile_bundles(Path(folder))

@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from tests.chaos.disturbed import FREEZES_OF_A_MISSION, KILLS_OF_A_MISSION, cancelled, disturbed
-from tests.chaos.failing import FULL_WRITES, failing, full
+from tests.chaos.failing import WRITES, failing, refused
 from tests.chaos.judged import Report
 
 from aos_deploy.terminal import progress
@@ -21,15 +21,18 @@ from aos_runtime.failpoints import FAILPOINTS
 __all__ = ["names_of", "report_of", "run_all", "table"]
 
 
-def names_of(*, kills: int, freezes: int, failpoints: int, full: int, cancels: int, seed: int) -> list[str]:
+def names_of(
+    *, kills: int, freezes: int, failpoints: int, full: int, readonly: int, cancels: int, seed: int
+) -> list[str]:
     """The names of the runs with so many kills and freezes, and so many runs at each failpoint.
 
-    `full` is how often the disk is full at each write. Run a name again with `--again NAME`.
+    `full` and `readonly` are how often the disk refuses each write so. Run a name again with `--again NAME`.
     """
     missions = {"kills": -(-kills // KILLS_OF_A_MISSION), "freezes": -(-freezes // FREEZES_OF_A_MISSION)}
     names = [f"{how}:{seed + number}" for how, count in missions.items() for number in range(count)]
     names += [f"failpoint:{place}:{seed + number}" for number in range(failpoints) for place in FAILPOINTS]
-    names += [f"full:{place}:{time}" for _ in range(full) for place, time in FULL_WRITES]
+    for how, times in (("full", full), ("readonly", readonly)):
+        names += [f"{how}:{place}:{time}" for _ in range(times) for place, time in WRITES]
     return names + [f"cancel:{seed + number}" for number in range(cancels)]
 
 
@@ -50,8 +53,8 @@ def report_of(name: str, keep: Path | None = None) -> Report:
 def _run(folder: Path, name: str, what: str, more: list[str]) -> Report:
     if what == "failpoint":
         return failing(folder, name, more[0], int(more[1]))
-    if what == "full":
-        return full(folder, name, more[0], int(more[1]))
+    if what in ("full", "readonly"):
+        return refused(folder, name, more[0], int(more[1]), what)
     if what == "cancel":
         return cancelled(folder, name, int(more[0]))
     return disturbed(folder, name, int(more[0]), what)

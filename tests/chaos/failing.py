@@ -1,4 +1,4 @@
-"""One mission that fails at a failpoint: a process dies or freezes there, or its disk is full."""
+"""One mission that fails at a failpoint: a process dies or freezes there, or its disk refuses a write."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.chaos.up import Process, Up, send, write_deploy_file
 from aos_deploy.run_end import account_of
 from aos_runtime.failpoints import EXIT_STATUS
 
-__all__ = ["FULL_WRITES", "failing", "full"]
+__all__ = ["WRITES", "failing", "refused"]
 
 _STEPS = 5
 _FROZEN_S = 6.0
@@ -32,10 +32,8 @@ _WRITES = {
     "up.record": 1,
     "up.summary": 1,
 }
-FULL_WRITES = tuple(
-    (f"{place}.before", time) for place, times in _WRITES.items() for time in range(1, times + 1)
-)
-"""The writes at which a disk is full: each place with the time when it is come to."""
+WRITES = tuple((f"{place}.before", time) for place, times in _WRITES.items() for time in range(1, times + 1))
+"""The writes at which a disk is full or read-only: each place with the time when it is come to."""
 
 
 def failing(folder: Path, name: str, place: str, seed: int) -> Report:
@@ -106,12 +104,15 @@ def _until_ended(up: Up) -> set[Process]:
                 raise
 
 
-def full(folder: Path, name: str, place: str, time_there: int) -> Report:
-    """A mission whose disk is full at one write, and from then on at that place: it ends with AOS701."""
+def refused(folder: Path, name: str, place: str, time_there: int, how: str) -> Report:
+    """A mission whose disk refuses one write, and those of the process from then on: it ends with AOS701.
+
+    `how` is `full` or `readonly`.
+    """
     report = Report(name)
     write_deploy_file(folder, 1, _STEPS)
     failed = folder / "failed"
-    environment = {"AOS_FAILPOINT": f"{place}:full:{time_there}", "AOS_FAILPOINT_DONE": str(failed)}
+    environment = {"AOS_FAILPOINT": f"{place}:{how}:{time_there}", "AOS_FAILPOINT_DONE": str(failed)}
     up = Up(folder, "tester.yaml", environment=environment)
     try:
         processes = _until_ended(up)
@@ -120,7 +121,7 @@ def full(folder: Path, name: str, place: str, time_there: int) -> Report:
         report.faults.append("it hangs")
         up.end()
         return report
-    report.disturbances.append(Disturbance(f"{place} full"))
+    report.disturbances.append(Disturbance(f"{place} {how}"))
     if not failed.exists():
         report.faults.append(f"{place} was not reached for time {time_there}")
         return report
@@ -134,7 +135,7 @@ def full(folder: Path, name: str, place: str, time_there: int) -> Report:
         if line.startswith("begun") and float(line.split()[2]) > failed.stat().st_mtime + 0.05
     ]
     if late:
-        report.faults.append(f"{len(late)} motions began after the disk was full")
+        report.faults.append(f"{len(late)} motions began after the disk was {how}")
     if place != "up.summary.before" and (folder / "runs" / "latest").exists():
         judge(folder, report, status, processes, allowed=("fault", "not_started", "step_limit", ""))
     return report

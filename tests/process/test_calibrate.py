@@ -20,6 +20,9 @@ from aos_lab.calibration.records import RecordedMission, read_missions
 from aos_lab.trials.campaign import play_campaign
 from aos_lab.trials.setting import Setting
 from aos_language.load import load_files
+from aos_protocol.messages import MissionBegun, StartMission
+from aos_runtime.journal import Journal
+from aos_runtime.mission_folders import make_mission_folder, mission_folder
 
 AOS = Path(sys.executable).parent / "aos"
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
@@ -155,6 +158,19 @@ def test_a_folder_without_missions_is_refused(tmp_path: Path) -> None:
     assert run.returncode == 1
     assert "AOS801" in run.stderr
     assert "holds no recorded missions" in run.stderr
+
+
+def test_a_mission_that_began_with_a_kept_belief_is_not_explained_from_the_initial_one(
+    tmp_path: Path,
+) -> None:
+    starts = [StartMission(), StartMission(belief="keep"), StartMission(idle=2), None]
+    for number, start in enumerate(starts, 1):
+        make_mission_folder(tmp_path, number)
+        with Journal.open(mission_folder(tmp_path, number) / "journal.db") as journal:
+            journal.append("begun", MissionBegun(f"lamp-{number}", 1, number, 1, "", start=start))
+    missions = read_missions(tmp_path)
+    assert [bool(mission.ends_early) for mission in missions] == [False, True, True, False]
+    assert "did not begin with the initial belief" in missions[1].ends_early
 
 
 def test_the_draws_of_documents_are_found_with_their_numbers() -> None:

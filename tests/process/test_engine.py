@@ -12,7 +12,9 @@ from models import built_bundle, built_text, engine_of
 from processes import descendants, until_ended
 
 from aos_protocol.errors import ModelError
+from aos_solver.building.build import BuiltModel
 from aos_solver.child.engine import Engine
+from aos_solver.child.engine_child import EngineChild, EngineStart
 from aos_solver.child.search import Search
 from aos_solver.mission.endings import MissionLimits
 from aos_solver.mission.simulation import simulate_mission
@@ -162,6 +164,31 @@ async def test_a_killed_engine_comes_back_with_its_belief(bundles: Path, cache_d
             os.kill(engine.pid, signal.SIGKILL)
             await until_ended(children)
             assert await engine.summary() == before
+
+
+async def test_an_engine_that_is_killed_while_it_is_started_anew_comes_back_as_well(
+    bundles: Path, cache_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with engine_of(await built_bundle(bundles / "armadillo-finer", cache_dir)) as engine:
+        before = (await engine.update("pick", "pick_succeeded")).summary
+        start, killed = EngineChild.start, []
+
+        async def start_and_kill(built: BuiltModel, beginning: EngineStart) -> EngineChild:
+            child = await start(built, beginning)
+            if len(killed) < 3:
+                killed.append(child.pid)
+                below = descendants(child.pid)
+                os.kill(child.pid, signal.SIGKILL)
+                await until_ended(below)
+            return child
+
+        monkeypatch.setattr(EngineChild, "start", start_and_kill)
+        assert engine.pid is not None
+        children = descendants(engine.pid)
+        os.kill(engine.pid, signal.SIGKILL)
+        await until_ended(children)
+        assert await engine.summary() == before
+        assert len(killed) == 3
 
 
 async def test_an_engine_that_crashes_between_documents_says_what_may_have_harmed_it(

@@ -17,6 +17,7 @@ from processes import HANG_S
 from typer.testing import CliRunner
 
 from aos_deploy.cli import aos_app
+from aos_deploy.run_directory import RunDirectory
 from aos_language.load import load_files
 from aos_language.mission_parameters import mission_value_of_option
 from aos_protocol.documents import Project
@@ -319,3 +320,14 @@ def test_a_mission_has_the_values_of_its_command_also_after_its_aos_up_was_kille
     with Journal.read(run / "journal.db") as journal:
         begun = [msgspec.json.decode(row.payload, type=MissionBegun) for row in journal.rows("begun")]
     assert [row.mission_parameters for row in begun] == [{"target": "bob"}] * 2
+    summary = RunDirectory(run).read_summary()
+    assert summary is not None
+    assert summary.mission_parameters == {"target": "bob"}
+    listed = subprocess.run(
+        [BIN / "aos", "runs", "--runs", run.parent],
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
+    )
+    assert "target=bob" in listed.stdout

@@ -13,7 +13,7 @@ from aos_deploy.options import AsJson
 from aos_deploy.printing import count, from_here, print_json
 from aos_deploy.pruning import Pruned, pruned
 from aos_deploy.run_directory import RunDirectory, RunRecord
-from aos_deploy.run_end import account_of
+from aos_deploy.run_end import account_of, beginning_of
 from aos_protocol.errors import DeployError, StorageError
 from aos_runtime.mission_folders import mission_folder, mission_folders
 
@@ -42,6 +42,7 @@ class Entry(msgspec.Struct, omit_defaults=True):
     duration_s: float | None
     endpoint: str
     missions: tuple[Entry, ...] = ()
+    mission_parameters: dict[str, str] = {}
 
 
 Folder = Annotated[Path | None, typer.Option("--runs", metavar="DIR", help="Instead of ./runs")]
@@ -71,7 +72,8 @@ def runs(
     for entry in (each for listed in entries for each in (listed, *listed.missions)):
         steps = "" if entry.steps is None else f"{entry.steps:3} steps"
         took = "" if entry.duration_s is None else f"{entry.duration_s:7.1f} s"
-        typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}")
+        values = "".join(f"  {name}={value}" for name, value in entry.mission_parameters.items())
+        typer.echo(f"{entry.ending:18} {steps:>9} {took:>9}  {entry.robot}  {entry.directory}{values}")
     if not entries:
         where = "" if running else f", and there is no run in {folder or RUNS}"
         typer.echo(f"No mission runs{where}.")
@@ -129,6 +131,7 @@ def _entry(run: RunDirectory) -> Entry:
         duration_s=summary.duration_s if summary else None,
         endpoint=record.endpoint,
         missions=tuple(_mission(run, number, record) for number in mission_folders(run.path)),
+        mission_parameters=_mission_parameters(run.path),
     )
 
 
@@ -144,4 +147,11 @@ def _mission(run: RunDirectory, number: int, record: RunRecord) -> Entry:
         steps=summary.steps if summary else None,
         duration_s=summary.duration_s if summary else None,
         endpoint=record.endpoint,
+        mission_parameters=_mission_parameters(folder),
     )
+
+
+def _mission_parameters(folder: Path) -> dict[str, str]:
+    """The values with which a mission began, also of one that runs or was killed."""
+    begun = beginning_of(folder)
+    return begun.mission_parameters if begun is not None else {}

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from aos_deploy.printing import from_here
-from aos_lab.trials.run_parameters import mission_parameters_of
+from aos_deploy.run_end import beginning_of
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import DeployError
 from aos_protocol.messages import DecisionRecord
@@ -99,6 +99,10 @@ def _of_file(path: Path) -> Iterator[RecordedMission]:
 
 
 def _of_run(run: Path) -> RecordedMission:
+    name, begun = str(from_here(run)), beginning_of(run)
+    start = begun.start if begun is not None else None
+    if start is not None and (start.belief != "initial" or start.given or start.idle):
+        return RecordedMission(name, (), "the mission did not begin with the initial belief")
     journal = Journal.read(run / "journal.db")
     try:
         rows = [msgspec.json.decode(row.payload, type=DecisionRecord) for row in journal.rows("decision")]
@@ -112,8 +116,10 @@ def _of_run(run: Path) -> RecordedMission:
                 (record.action, record.outcome.response if is_seen else "", record.outcome.numbers)
             )
     lines = [line for name in _TRUTHS if (run / name).is_file() for line in (run / name).open()]
-    mission = _mission(str(from_here(run)), recorded, lines)
-    return msgspec.structs.replace(mission, mission_parameters=mission_parameters_of(run))
+    mission = _mission(name, recorded, lines)
+    if begun is None:
+        return mission
+    return msgspec.structs.replace(mission, mission_parameters=begun.mission_parameters)
 
 
 def _mission(

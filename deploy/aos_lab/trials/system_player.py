@@ -12,7 +12,6 @@ from aos_deploy.deploy_file import Deployment
 from aos_deploy.mission_run import MissionRun
 from aos_deploy.needed_here import check_needed_here
 from aos_deploy.run_directory import RunDirectory, Summary
-from aos_lab.trials.run_parameters import mission_parameters_of
 from aos_lab.trials.trial import Trial
 from aos_protocol.errors import AosError
 from aos_runtime.clock import SystemClock
@@ -64,5 +63,5 @@ def _trial(seed: int, summary: Summary, run: Path) -> Trial:
         states=tuple(line.strip() for line in lines),
         seconds=summary.duration_s,
         fault=summary.remark if summary.ending in ("fault", "not_started", "cancelled") else "",
-        mission_parameters=mission_parameters_of(run),
+        mission_parameters=summary.mission_parameters,
     )
