@@ -9,7 +9,7 @@ from pathlib import Path
 
 from processes import HANG_S
 
-RUNS = ("failpoint:journal.intended.after:1", "full:middleware.started.before:1")
+RUNS = ("failpoint:journal.intended.after:1", "readonly:middleware.started.before:1")
 
 
 def test_missions_keep_what_is_promised(root: Path, cache_dir: Path) -> None:
