@@ -27,10 +27,13 @@ def descendants(pid: int) -> list[int]:
     """All processes below a process, whatever their group and session."""
     below: list[int] = []
     for task in Path(f"/proc/{pid}/task").iterdir():
-        for child in (task / "children").read_text().split():
-            below.append(int(child))
+        children: list[str] = []
+        with suppress(FileNotFoundError, ProcessLookupError):  # A thread may end meanwhile.
+            children = (task / "children").read_text().split()
+        for child in map(int, children):
+            below.append(child)
             with suppress(FileNotFoundError, ProcessLookupError):
-                below += descendants(int(child))
+                below += descendants(child)
     return below
 
 
