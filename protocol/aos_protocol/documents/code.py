@@ -1,0 +1,70 @@
+"""Code in documents: text with its places, and the blocks that it stands in."""
+
+from __future__ import annotations
+
+import msgspec
+
+from aos_protocol.diagnostics import Span
+
+__all__ = ["Assignment", "Iteration", "Snippet", "TemporaryVariable"]
+
+
+class Snippet(msgspec.Struct, frozen=True):
+    """Code from a document, verbatim.
+
+    `origins[i]` is the place in the document where line `i` of `code` starts, so that a compiler's or an
+    interpreter's complaint comes back to the document whatever the dialect did to the text. `escapes` holds
+    (line, column, width) of each character of `code` that takes `width` > 1 characters of its document.
+    """
+
+    code: str
+    origins: tuple[Span, ...]
+    escapes: tuple[tuple[int, int, int], ...] = ()
+
+    @property
+    def span(self) -> Span:
+        """The place where the snippet starts."""
+        return self.origins[0]
+
+    def locate(self, line: int, column: int = 1) -> Span:
+        """The document place of a line and column of `code`, both from 1; clamped to the snippet."""
+        line = min(max(line, 1), len(self.origins))
+        column = max(column, 1)
+        origin = self.origins[line - 1]
+        extra = sum(width - 1 for at, before, width in self.escapes if at == line and before < column)
+        return Span(origin.file, origin.line, origin.column + column - 1 + extra)
+
+
+class TemporaryVariable(msgspec.Struct, frozen=True):
+    """A variable of a code block. For an enum, `enum_name` and `enum_values` declare its type on the spot."""
+
+    name: str
+    type: str
+    span: Span
+    enum_name: str = ""
+    enum_values: tuple[str, ...] = ()
+
+
+class Iteration(msgspec.Struct, frozen=True):
+    """A loop over all state variables of compound type `type`: `body` runs where `condition` holds."""
+
+    type: str
+    item: str
+    span: Span
+    condition: Snippet | None = None
+    body: Snippet | None = None
+
+
+class Assignment(msgspec.Struct, frozen=True):
+    """One block of model code. Order of effect: the temporary variable, the loops, then `code`.
+
+    The loops of one tuple are nested; `over_previous` runs over `state`, `over_next` over the copy that the
+    block writes.
+    """
+
+    span: Span
+    name: str = ""
+    temporary: TemporaryVariable | None = None
+    over_previous: tuple[Iteration, ...] = ()
+    over_next: tuple[Iteration, ...] = ()
+    code: Snippet | None = None
