@@ -189,9 +189,15 @@ def _is_engine(pid: int) -> bool:
     return False
 
 
+def _is_python(pid: int) -> bool:
+    with contextlib.suppress(OSError):
+        return Path(f"/proc/{pid}/exe").readlink() == Path(sys.executable).resolve()
+    return False
+
+
 def _process(mission: int, pid: int) -> Process:
-    """The service itself, where it runs behind a guard; engines are processes of one mission."""
-    tree = [one for one in (pid, *descendants(pid)) if not _is_engine(one)]
+    """The service itself, where it runs behind a guard; engines and compilers are others'."""
+    tree = [one for one in (pid, *descendants(pid)) if _is_python(one)]
     sizes = [found for one in tree if (found := _size(mission, one)) is not None]
     return max(sizes, key=lambda size: size.rss_kb)
 

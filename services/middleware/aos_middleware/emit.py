@@ -17,7 +17,9 @@ import msgspec
 
 from aos_language.observed import reported_numbers
 from aos_middleware.generated_lines import word
+from aos_middleware.module_names import ModuleNames
 from aos_middleware.python_code import LineOrigin, python_fault
+from aos_middleware.read_snippets import ReadSnippets
 from aos_middleware.sections import Sections
 from aos_protocol.diagnostics import Diagnostic, Span
 from aos_protocol.documents import AbstractionMapping, LowLevelDocument, Skill, SkillModel, Snippet
@@ -90,15 +92,16 @@ def emit_mapping(
     DocumentError AOS121 with a diagnostic for each mistake if the documents' Python is not valid.
     """
     mapping = skill.mapping
-    sections = Sections(mapping, low_level, shared)
+    snippets = ReadSnippets(mapping)
+    sections, names = Sections(mapping, snippets), ModuleNames(mapping, low_level, shared, snippets)
     request, functions, observe = sections.request(), sections.functions(), sections.observe()
     start_values = sections.start_values()
-    shared_lines = sections.shared_code()
-    constant_code = sections.constants()
-    types = sections.low_level_types()
-    whole, parts, by_star = sections.imports()
-    if sections.diagnostics:
-        raise _refusal(mapping, sections.diagnostics)
+    shared_lines = names.shared_code()
+    constant_code = names.constants()
+    types = names.low_level_types()
+    whole, parts, by_star = names.imports()
+    if snippets.diagnostics:
+        raise _refusal(mapping, snippets.diagnostics)
     support = [
         *(["low_level_type"] if constant_code or types else []),
         *(["stand_in"] if by_star or any(part.otherwise != ("pass",) for part in parts) else []),
@@ -121,14 +124,13 @@ def emit_mapping(
         observe=observe,
         tables=sections.tables(constant_code),
     )
-    python, origins = sections.marks.separate(rendered)
+    python, origins = snippets.marks.separate(rendered)
     constant_names = dict(constants or {})
     observed = tuple(number.name for number in reported_numbers(skill.model))
-    digest = _digest_of(python, constant_names, observed)
     emitted = EmittedMapping(
         skill=skill.name,
         python=python,
-        digest=digest,
+        digest=_digest_of(python, constant_names, observed),
         origins=origins,
         mapping=mapping,
         constants=constant_names,
