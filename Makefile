@@ -7,7 +7,7 @@ CHAOS :=
 COMPILE := $(BIN)/uv pip compile --quiet $(UPGRADE) --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header
 
-.PHONY: help setup check quick test format promote docs lock newcomer chaos plug hostile clean
+.PHONY: help setup check quick test format page promote docs lock newcomer chaos plug hostile clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -31,13 +31,16 @@ format:  ## put the sources into the house's form
 docs:  ## write the generated parts of docs/ anew
 	$(BIN)/python docs/write_reference.py
 
+page:  ## make the page that `aos serve` shows out of its sources; needs node
+	cd services/gateway/page && npm ci --silent && node build.mjs
+
 promote:  ## accept the emitted code as it is now as the golden files
 	AOS_PROMOTE=1 $(BIN)/pytest tests/golden
 
 lock:  ## resolve the dependencies anew and pin them with hashes; needs uv (.venv/bin/pip install uv)
 	$(COMPILE) --output-file $(LOCK)/build.txt $(LOCK)/build.in
-	$(COMPILE) --output-file $(LOCK)/runtime.txt --extra sim --constraint $(LOCK)/build.txt pyproject.toml
-	$(COMPILE) --output-file $(LOCK)/dev.txt --extra sim --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
+	$(COMPILE) --output-file $(LOCK)/runtime.txt --extra sim --extra page --constraint $(LOCK)/build.txt pyproject.toml
+	$(COMPILE) --output-file $(LOCK)/dev.txt --extra sim --extra page --extra dev --constraint $(LOCK)/runtime.txt pyproject.toml
 	printf 'ziglang>=0.15\n' | $(COMPILE) --output-file $(LOCK)/compiler.txt -
 
 chaos:  ## kill, freeze and fail processes of missions, and print what became of them

@@ -1,7 +1,7 @@
 """Writes what follows from the sources: errors.md, schemas, colours, tables of other pages.
 
 `python docs/write_reference.py` writes them, `--check` only says whether they are current (exit code 1 if
-not). In languages.md, limits.md and protocol.md the text between `<!-- generated: NAME -->` and
+not). In http-api.md, languages.md, limits.md and protocol.md the text between `<!-- generated: NAME -->` and
 `<!-- end -->` is replaced; the rest is written by hand.
 """
 
@@ -15,25 +15,20 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import msgspec
 from limits_table import limits_table
 
 from aos_deploy.exit_codes import EXIT_CODES_TEXT
 from aos_deploy.schemas import SCHEMAS
 from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
+from aos_gateway.table import OPERATIONS
 from aos_protocol import errors, keys
-from aos_protocol.messages import base, bundles, mission, records, skills, study
+from aos_protocol.messages import base, bundles, mission, skills
 
 DOCS = Path(__file__).resolve().parent
 GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
-MESSAGES = {
-    "around every message": base,
-    "bundles": bundles,
-    "mission": mission,
-    "records": records,
-    "study": study,
-    "skills": skills,
-}
+MESSAGES = {"around every message": base, "bundles": bundles, "mission": mission, "skills": skills}
 """The modules of messages, each under the title of its conversation."""
 
 
@@ -88,6 +83,24 @@ def key_table() -> str:
     for key, kind, what, said in key_rows():
         linked = re.sub(r"\w+", lambda name: f"[{name[0]}](#{name[0].lower()})", said)
         lines.append(f"| `{key}` | {kind} | {what} | {linked.replace('->', '→')} |")
+    return "\n".join(lines) + "\n"
+
+
+# --- http ----------------------------------------------------------------------------------------------
+
+
+def operation_table() -> str:
+    """The operations of the gateway, with what each takes and gives."""
+    lines = ["| Operation | What it does | Takes | Gives |", "| --- | --- | --- | --- |"]
+    for one in OPERATIONS:
+        fields = msgspec.structs.fields(one.query) if one.query is not None else ()
+        takes = [f"`{field.name}`" for field in fields]
+        takes += [f"`{field.name}`" for field in msgspec.structs.fields(one.body)] if one.body else []
+        takes += [one.upload] if one.upload else []
+        is_json = one.media == "application/json" and isinstance(one.gives, type)
+        gives = f"`{one.gives.__name__}`" if is_json else f"`{one.media}`"
+        summary = one.summary.rstrip(".")
+        lines.append(f"| `{one.method} {one.path}` | {summary} | {', '.join(takes)} | {gives} |")
     return "\n".join(lines) + "\n"
 
 
@@ -162,6 +175,7 @@ def schema_text(schema: dict[str, object]) -> str:
 def with_generated_parts(current: str) -> str:
     """The page with its generated parts renewed."""
     parts = {
+        "http": operation_table,
         "keys": key_table,
         "messages": message_sections,
         "limits": limits_table,
@@ -172,7 +186,7 @@ def with_generated_parts(current: str) -> str:
 
 def pages() -> dict[Path, str]:
     """The text that each page should have."""
-    generated_in_part = [DOCS / name for name in ("languages.md", "limits.md", "protocol.md")]
+    generated_in_part = [DOCS / name for name in ("http-api.md", "languages.md", "limits.md", "protocol.md")]
     return {
         DOCS / "errors.md": errors_page(),
         DOCS / "examples/vscode/syntaxes/aos.tmLanguage.json": textmate_grammar(),

@@ -22,9 +22,8 @@ _COMMANDS = {
     "aos_deploy.commands.mission": ("mission",),
     "aos_deploy.commands.decisions": ("decisions",),
     "aos_deploy.commands.runs": ("runs",),
+    "aos_gateway.command": ("serve",),
     "aos_deploy.commands.check": ("check",),
-    "aos_deploy.commands.replay": ("replay", "diff"),
-    "aos_deploy.commands.why": ("why", "whatif"),
     "aos_deploy.commands.skill": ("skill", "resume"),
     "aos_deploy.commands.documents": ("lint", "inspect"),
     "aos_deploy.commands.bundle": ("bundle",),
@@ -42,7 +41,7 @@ _COMMANDS = {
     "aos_deploy.commands.machine": ("doctor", "version"),
 }
 """The modules, in the order of the help, with the names that each registers. They are named here and not
-imported: laboratory and editor are above this package."""
+imported: laboratory, editor and gateway are above this package."""
 
 _STYLE: dict[str, Any] = {
     "pretty_exceptions_enable": False,

@@ -10,7 +10,7 @@ from aos_deploy.yaml_source import YamlList, YamlMap, YamlScalar, read_yaml
 from aos_language.load import read_bundle_files
 from aos_protocol.errors import DeployError
 
-__all__ = ["deploy_file_at"]
+__all__ = ["deploy_file_at", "deploy_files_in"]
 
 _SUFFIXES = (".yaml", ".yml")
 
@@ -19,14 +19,14 @@ def deploy_file_at(path: Path) -> Path:
     """The path itself, of a folder its deploy file; DeployError AOS801 where it has none or several."""
     if not path.is_dir():
         return path
-    inside = [file for file, _ in _deploy_files(path)]
+    inside = [file for file, _ in deploy_files_in(path)]
     if len(inside) == 1:
         return inside[0]
     if inside:
         raise _refusal(path, f"has {len(inside)} deploy files", f"Name one: {_named(inside)}")
     folder = path.resolve()
     of_bundle = [
-        Path(os.path.relpath(file)) for file, bundles in _deploy_files(folder.parent) if folder in bundles
+        Path(os.path.relpath(file)) for file, bundles in deploy_files_in(folder.parent) if folder in bundles
     ]
     if of_bundle:
         raise _refusal(path, "is a bundle, and no deploy file", f"Name one that has it: {_named(of_bundle)}")
@@ -38,7 +38,7 @@ def deploy_file_at(path: Path) -> Path:
     raise _refusal(path, "is a folder without a deploy file", hint)
 
 
-def _deploy_files(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
+def deploy_files_in(folder: Path) -> Iterator[tuple[Path, list[Path]]]:
     """The deploy files in a folder, each with its bundles."""
     for file in sorted(folder.iterdir()):
         if file.suffix not in _SUFFIXES or not file.is_file():

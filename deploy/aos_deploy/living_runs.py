@@ -43,7 +43,7 @@ def living_runs() -> list[RunDirectory]:
         run = RunDirectory(link.resolve())
         if run.is_running:
             found.append(run)
-        else:
+        elif not (link.exists() and run.is_held):
             link.unlink(missing_ok=True)
     return found
 

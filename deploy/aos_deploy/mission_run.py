@@ -14,10 +14,11 @@ from typing import Protocol
 import msgspec
 
 from aos_deploy.bundle_files import check_mission_of, files_of_bundle
-from aos_deploy.deploy_file import Deployment, with_whole_paths
+from aos_deploy.deploy_file import Deployment
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.living_runs import noted
+from aos_deploy.page_address import page_address
 from aos_deploy.printing import from_here
 from aos_deploy.program import programs_of_deployment
 from aos_deploy.readiness import until_skills_can_run
@@ -26,7 +27,6 @@ from aos_deploy.run_end import beginning_of, settled
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp
 from aos_deploy.verdict import Account, Verdict
-from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError
 from aos_protocol.messages import (
@@ -52,7 +52,10 @@ _BUILD_TIMEOUT_S = 600.0
 
 
 class MissionRun:
-    """Runs a deployment once, or goes on with a run that is `taken_up`. `report` is told what happens."""
+    """Runs a deployment once, or goes on with a run that is `taken_up`. `report` is told what happens.
+
+    Where it `shows_page`, also the address of the run's page, once the run can be found.
+    """
 
     stays = False
     """True where the system goes on after a mission."""
@@ -65,12 +68,14 @@ class MissionRun:
         *,
         taken_up: TakenUp | None = None,
         is_played: bool = False,
+        shows_page: bool = False,
     ) -> None:
         file = msgspec.structs.replace(deployment.file, stay=self.stays)
         self._deployment = msgspec.structs.replace(deployment, file=file)
         self._report = report
         self._clock = clock
         self._taken_up = taken_up
+        self._shows_page = shows_page
         self._is_played = is_played or (taken_up is not None and taken_up.record.is_played)
         self._begun_s = clock.monotonic_s()
         self.error: AosError | None = None
@@ -100,8 +105,6 @@ class MissionRun:
             self._report(Told(sandbox_text()))
         was_interrupted = False
         try:
-            if self._taken_up is None:
-                run.keep_inputs(with_whole_paths(self._deployment), self._deployment.policy)
             with noted(run):
                 await self._run_in(run, endpoint)
         except asyncio.CancelledError:
@@ -150,6 +153,8 @@ class MissionRun:
                 self._supervisor = supervisor
                 await supervisor.start()
                 self._write_record(run, endpoint, supervisor)
+                if self._shows_page:
+                    self._report(Told(f"page {await asyncio.to_thread(page_address, run.path)}"))
                 self._write_again = write_again = partial(self._write_record, run, endpoint, supervisor)
                 async with asyncio.TaskGroup() as tasks:
                     tasks.create_task(self._follow(supervisor))
@@ -264,7 +269,6 @@ class MissionRun:
                 pids=supervisor.pids,
                 is_played=self._is_played,
                 sandbox=sandbox_text(),
-                version=__version__,
             )
         )
 

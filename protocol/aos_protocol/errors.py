@@ -15,6 +15,7 @@ compares no codes:
                       LateAnswerError, NobodyAnswersError, LostAnswerError
       StorageError    AOS7xx  journal or catalogue
       DeployError     AOS8xx  deploy file, start-up, supervision
+      GatewayError    AOS9xx  a request over HTTP that cannot be answered
 
 A user's mistakes are collected as diagnostics; an AosError may carry them.
 """
@@ -32,6 +33,7 @@ __all__ = [
     "DocumentError",
     "EndlessCodeError",
     "EngineDefectError",
+    "GatewayError",
     "IntractableError",
     "LateAnswerError",
     "LostAnswerError",
@@ -42,7 +44,6 @@ __all__ = [
     "PlanningError",
     "SkillError",
     "StorageError",
-    "StudyError",
     "error_from_code",
 ]
 
@@ -126,7 +127,6 @@ CODES: dict[str, str] = {
     "AOS514": "the id of an activation was used for another one",
     "AOS515": "a mission runs already",
     "AOS516": "a mission cannot begin with this belief",
-    "AOS530": "a mission that cannot be studied so",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
     "AOS603": "another protocol version",
@@ -146,6 +146,10 @@ CODES: dict[str, str] = {
     "AOS808": "an experiment or a file of mission tests is not valid",
     "AOS809": "a Ray cluster that cannot be used",
     "AOS810": "a run that cannot be taken up",
+    "AOS901": "a request that is not valid",
+    "AOS902": "nothing is there",
+    "AOS903": "the token is needed",
+    "AOS904": "a request from elsewhere",
 }
 """Every code with its meaning; docs/errors.md is made from this table."""
 
@@ -232,12 +236,6 @@ class MissionRunsError(SkillError):
     code = "AOS515"
 
 
-class StudyError(SkillError):
-    """A question about a mission that cannot be answered, or not from what was kept of it."""
-
-    code = "AOS530"
-
-
 class BusError(AosError):
     code = "AOS601"
 
@@ -264,6 +262,10 @@ class StorageError(AosError):
     code = "AOS701"
 
 
+class GatewayError(AosError):
+    code = "AOS902"
+
+
 class DeployError(AosError):
     code = "AOS801"
 
@@ -287,6 +289,7 @@ _BY_HUNDRED: dict[str, type[AosError]] = {
     "6": BusError,
     "7": StorageError,
     "8": DeployError,
+    "9": GatewayError,
 }
 
 _SITUATIONS: dict[str, type[AosError]] = {
@@ -298,7 +301,6 @@ _SITUATIONS: dict[str, type[AosError]] = {
     "AOS217": EngineDefectError,
     "AOS220": IntractableError,
     "AOS515": MissionRunsError,
-    "AOS530": StudyError,
     "AOS601": LateAnswerError,
     "AOS604": NobodyAnswersError,
     "AOS607": LostAnswerError,

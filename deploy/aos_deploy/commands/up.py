@@ -55,6 +55,9 @@ Stay = Annotated[
         "while a mission runs, else 0",
     ),
 ]
+Page = Annotated[bool, typer.Option("--page", help="Print the address of the mission's page; see aos serve")]
+Plain = Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")]
+JsonLines = Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")]
 Serve = Annotated[
     str | None,
     typer.Option(
@@ -79,8 +82,9 @@ def up(
     model: PlayedByModel = False,
     serve: Serve = None,
     stay: Stay = False,
-    plain: Annotated[bool, typer.Option("--plain", help="Plain lines, on a terminal too")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object a line for each event")] = False,
+    page: Page = False,
+    plain: Plain = False,
+    as_json: JsonLines = False,
     version: Version = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
@@ -90,10 +94,9 @@ def up(
     registry the documents, and shows what the robot decides until the mission ends. Ctrl-C stops all of it in
     order, a second Ctrl-C at once. The run directory keeps the journal, the logs and the pictures.
     """
-    # For --help, and for a word about a wrong option, none of this is needed.
-    import asyncio
+    import asyncio  # For --help none of this is needed.
 
-    from aos_deploy.deploy_file import read_deploy_file, without_a_robot
+    from aos_deploy.deploy_file import read_deploy_file
     from aos_deploy.living_runs import RUNS
     from aos_deploy.mission_run import MissionRun, run_until_interrupted
     from aos_deploy.needed_here import check_needed_here, check_sandbox
@@ -104,6 +107,7 @@ def up(
     from aos_deploy.views import make_view
     from aos_runtime.clock import SystemClock
 
+    _refuse_beside_serve(serve, stay=stay, page=page)
     if resume:
         flags = {"set": set_values or None, "model": model or None, "stay": stay or None}
         _refuse_beside_resume(seed=seed, listen=listen, runs=runs, serve=serve, **flags)
@@ -112,15 +116,13 @@ def up(
         raise typer.BadParameter("name the deploy file, or use --resume", param_hint="DEPLOY")
     else:
         deployment, taken_up = read_deploy_file(deploy), None
-    deployment = _with_options(deployment, seed, listen, runs, set_values, is_to_stay=_stays(stay, serve))
-    if model:
-        deployment = without_a_robot(deployment)
+    deployment = _with_options(deployment, seed, listen, runs, set_values, is_to_stay=stay, is_played=model)
     check_sandbox(deployment)
     check_needed_here(deployment)
     view = make_view(_title(deployment), is_plain=plain, is_json=as_json, is_terminal=sys.stdout.isatty())
     kind = SystemRun if deployment.file.stay else MissionRun
     mission: MissionRun | ServeRun = (
-        kind(deployment, view, SystemClock(), taken_up=taken_up, is_played=model)
+        kind(deployment, view, SystemClock(), taken_up=taken_up, is_played=model, shows_page=page)
         if serve is None
         else ServeRun(deployment, serve, view, SystemClock())
     )
@@ -143,11 +145,11 @@ def _title(deployment: Deployment) -> str:
     return f"{deployment.file.robot} · {deployment.path.name}"
 
 
-def _stays(stay: bool, serve: str | None) -> bool:
-    """Returns `stay`; BadParameter where no mission runs that others could follow."""
-    if stay and serve is not None:
-        raise typer.BadParameter("no mission runs that others could follow", param_hint="--stay")
-    return stay
+def _refuse_beside_serve(serve: str | None, **options: bool) -> None:
+    """BadParameter for an option that needs a mission, where none runs."""
+    given = [f"--{name}" for name, is_given in options.items() if is_given]
+    if given and serve is not None:
+        raise typer.BadParameter("no mission runs that others could follow", param_hint=", ".join(given))
 
 
 def _with_options(
@@ -158,9 +160,10 @@ def _with_options(
     set_values: list[str] | None,
     *,
     is_to_stay: bool,
+    is_played: bool,
 ) -> Deployment:
     """The deployment with what the command says otherwise; of two values for a parameter the last counts."""
-    from aos_deploy.deploy_file import check_endpoint
+    from aos_deploy.deploy_file import check_endpoint, without_a_robot
     from aos_deploy.mission_values import values_of_options
 
     file = deployment.file
@@ -171,9 +174,10 @@ def _with_options(
     if listen is not None:
         check_endpoint(listen)
         file = msgspec.structs.replace(file, bus=msgspec.structs.replace(file.bus, listen=listen))
-    return msgspec.structs.replace(
+    deployment = msgspec.structs.replace(
         deployment,
         file=file,
         mission_values=(*deployment.mission_values, *values_of_options(set_values)),
         runs=runs.resolve() if runs is not None else deployment.runs,
     )
+    return without_a_robot(deployment) if is_played else deployment

@@ -48,7 +48,6 @@ from aos_protocol.messages.mission import (
     StopMission,
     TakeoverWay,
 )
-from aos_protocol.messages.records import BeliefRow, ChosenBy, SearchMade, WeightedStates
 from aos_protocol.messages.skills import (
     Activate,
     ActivationId,
@@ -63,25 +62,11 @@ from aos_protocol.messages.skills import (
     Stray,
     TopicMessage,
 )
-from aos_protocol.messages.study import (
-    Consequence,
-    DecisionTree,
-    Flip,
-    TreeBranch,
-    TreeNode,
-    TreeQuery,
-    ValueTerm,
-    WhatIf,
-    WhatIfQuery,
-    Why,
-    WhyQuery,
-)
 
 __all__ = [
     "ActionValue",
     "Activate",
     "ActivationId",
-    "BeliefRow",
     "BeliefSummary",
     "BundleReport",
     "Cancel",
@@ -90,15 +75,11 @@ __all__ = [
     "CatalogueEntry",
     "CatalogueQuery",
     "CheckModel",
-    "ChosenBy",
-    "Consequence",
     "ConstraintRisk",
     "DecisionRecord",
-    "DecisionTree",
     "EndingOdds",
     "Envelope",
     "Fault",
-    "Flip",
     "History",
     "HistoryQuery",
     "MappingQuery",
@@ -123,7 +104,6 @@ __all__ = [
     "RevisionEntry",
     "Revisions",
     "RevisionsQuery",
-    "SearchMade",
     "SkillCall",
     "SkillProgress",
     "SkillResult",
@@ -132,13 +112,4 @@ __all__ = [
     "Stray",
     "TakeoverWay",
     "TopicMessage",
-    "TreeBranch",
-    "TreeNode",
-    "TreeQuery",
-    "ValueTerm",
-    "WeightedStates",
-    "WhatIf",
-    "WhatIfQuery",
-    "Why",
-    "WhyQuery",
 ]

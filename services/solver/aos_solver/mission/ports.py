@@ -51,13 +51,7 @@ class Robot(Available, Protocol):
 
 
 class Record(Protocol):
-    """The journal and the audience of a mission.
-
-    Where it `keeps_beliefs` the journal has whole beliefs too.
-    """
-
-    @property
-    def keeps_beliefs(self) -> bool: ...
+    """The journal and the audience of a mission."""
 
     def journal(self, kind: str, payload: Message) -> None:
         """Write durably; returns once it is on the disk."""
@@ -93,7 +87,6 @@ class QuietPorts:
     unavailable: Mapping[str, str] = {}
     announced: Mapping[str, int] = {}
     world_ending: Ending | None = None
-    keeps_beliefs: bool = False
 
     async def until_changed(self, timeout_s: float) -> None:
         """Nothing ever changes."""

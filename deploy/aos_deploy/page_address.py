@@ -1,0 +1,82 @@
+"""The page of a run: the address of the gateway that runs on this machine, or of one that is started for
+it.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from urllib.error import URLError
+from urllib.request import urlopen
+
+import msgspec
+
+from aos_deploy.program import cache_dir
+from aos_protocol.errors import DeployError
+
+__all__ = ["GatewayNote", "gateway_folder", "page_address"]
+
+_START_S = 20.0
+_LOOK_S = 0.05
+_ANSWER_S = 2.0
+
+
+class GatewayNote(msgspec.Struct, frozen=True):
+    """The note by which a gateway is found: its address and process."""
+
+    address: str
+    pid: int
+
+
+def gateway_folder() -> Path:
+    """Returns the folder of the gateway's note, its token, and the projects that it keeps.
+
+    It is $AOS_GATEWAY_DIR, or `gateway` in the cache directory.
+    """
+    named = os.environ.get("AOS_GATEWAY_DIR")
+    return Path(named).absolute() if named else cache_dir() / "gateway"
+
+
+def page_address(run: Path) -> str:
+    """Returns the address of a run's page, with the token; starts a gateway if none runs.
+
+    A gateway that is started goes on after the run. DeployError AOS805 if it cannot be started.
+    """
+    address = _found() or _started(run.parent)
+    token = (gateway_folder() / "token").read_text().strip()
+    return f"{address}#/runs/{run.name}?token={token}"
+
+
+def _found() -> str | None:
+    try:
+        note = msgspec.json.decode((gateway_folder() / "gateway.json").read_bytes(), type=GatewayNote)
+        with urlopen(f"{note.address}v1/openapi.json", timeout=_ANSWER_S):
+            return note.address
+    except (OSError, URLError, msgspec.MsgspecError):
+        return None
+
+
+def _started(runs: Path) -> str:
+    gateway_folder().mkdir(parents=True, exist_ok=True)
+    log = gateway_folder() / "gateway.log"
+    with log.open("ab") as said:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "aos_gateway", "--port", "0", "--runs", str(runs)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+            start_new_session=True,
+        )
+    until_s = time.monotonic() + _START_S
+    while time.monotonic() < until_s and process.poll() is None:
+        if (address := _found()) is not None:
+            return address
+        time.sleep(_LOOK_S)
+    raise DeployError(
+        f"the page cannot be served; {log} says why",
+        code="AOS805",
+        hint="pip install 'aos-autonomy[page]' brings what it needs",
+    )

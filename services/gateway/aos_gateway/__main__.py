@@ -1,0 +1,10 @@
+"""`python -m aos_gateway` is `aos serve`."""
+
+from __future__ import annotations
+
+import typer
+
+from aos_gateway.command import serve
+
+if __name__ == "__main__":
+    typer.run(serve)

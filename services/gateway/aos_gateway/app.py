@@ -1,0 +1,105 @@
+"""The gateway as an ASGI application: access first, then the operations, then the page."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from http import HTTPStatus
+
+import msgspec
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from aos_gateway.access import COOKIE, Access
+from aos_gateway.openapi import openapi_document
+from aos_gateway.operations import JSON, Content, Operation, response_of, route_of
+from aos_gateway.page import page_routes
+from aos_gateway.shared import Gateway
+from aos_gateway.table import OPERATIONS
+from aos_protocol.errors import AosError, BusError, GatewayError
+
+__all__ = ["make_app"]
+
+_HEADERS = {
+    "content-security-policy": "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "referrer-policy": "no-referrer",
+    "x-content-type-options": "nosniff",
+}
+
+
+def make_app(gateway: Gateway, access: Access) -> ASGIApp:
+    """The application. Every request passes `access`."""
+    described = Content(msgspec.json.encode(openapi_document(OPERATIONS)), JSON)
+
+    async def openapi(gateway: Gateway) -> Content:
+        """The description of all operations, as OpenAPI 3.1."""
+        return described
+
+    own = Operation(method="GET", path="/v1/openapi.json", do=openapi, gives=Content)
+    routes = [route_of(one, gateway) for one in (own, *OPERATIONS)]
+    session = Route("/v1/session", _session_of(access), methods=["POST"])
+    app = Starlette(
+        routes=[session, *routes, *page_routes()],
+        exception_handlers={HTTPException: _no_operation, Exception: _defect},
+    )
+    return _Guarded(app, access)
+
+
+class _Guarded:
+    """Refuses what `access` refuses, and adds the headers that keep a page to itself."""
+
+    def __init__(self, app: ASGIApp, access: Access) -> None:
+        self._app = app
+        self._access = access
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            return
+        request = Request(scope)
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = message.setdefault("headers", [])
+                present = {name for name, _ in headers}
+                headers += [
+                    (name.encode(), text.encode())
+                    for name, text in _HEADERS.items()
+                    if name.encode() not in present
+                ]
+            await send(message)
+
+        is_of_page = not scope["path"].startswith("/v1")
+        try:
+            self._access.check(scope["method"], request.headers, request.cookies, is_open=is_of_page)
+        except AosError as error:
+            await response_of(error)(scope, receive, send_with_headers)
+            return
+        await self._app(scope, receive, send_with_headers)
+
+
+def _session_of(access: Access) -> Callable[[Request], Awaitable[Response]]:
+    async def session(request: Request) -> Response:
+        """Gives a browser that shows the token the cookie by which it may read."""
+        response = Response(status_code=HTTPStatus.NO_CONTENT)
+        response.set_cookie(COOKIE, access.token, httponly=True, samesite="strict")
+        return response
+
+    return session
+
+
+async def _no_operation(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    status = HTTPStatus(error.status_code)
+    if status == HTTPStatus.NOT_FOUND:
+        return response_of(GatewayError(f"there is nothing at {request.url.path}", code="AOS902"))
+    text = f"{request.method} {request.url.path}: {error.detail}"
+    return response_of(GatewayError(text, code="AOS901"), status=status)
+
+
+async def _defect(request: Request, error: Exception) -> Response:
+    text = f"the gateway failed on {request.url.path}: {type(error).__name__}: {error}"
+    return response_of(BusError(text, code="AOS606", hint="The gateway's terminal has the rest"))

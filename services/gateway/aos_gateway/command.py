@@ -1,0 +1,101 @@
+"""`aos serve`: the runs of this machine over HTTP, and the page that shows them."""
+
+from __future__ import annotations
+
+from ipaddress import ip_address
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from aos_deploy.living_runs import RUNS
+from aos_protocol.errors import DeployError
+
+__all__ = ["register", "serve"]
+
+
+Listen = Annotated[
+    str, typer.Option("--listen", metavar="ADDRESS", help="The address; off loopback all needs the token")
+]
+Port = Annotated[int, typer.Option("--port", min=0, max=65535, help="The port; 0 takes any free one")]
+Hosts = Annotated[
+    list[str] | None, typer.Option("--host", metavar="NAME", help="Another name that it answers to")
+]
+Private = Annotated[bool, typer.Option("--private", help="Reading needs the token on loopback, too")]
+Runs = Annotated[
+    list[Path] | None,
+    typer.Option("--runs", metavar="DIR", help="A folder of runs, besides those that run anywhere"),
+]
+Projects = Annotated[
+    list[Path] | None,
+    typer.Option("--projects", metavar="DIR", help="A folder of deploy files that the page may start"),
+]
+Connect = Annotated[
+    list[str] | None,
+    typer.Option("--connect", metavar="ENDPOINT", help="A system elsewhere, with --robot"),
+]
+Robots = Annotated[
+    list[str] | None, typer.Option("--robot", help="The robot at the endpoint, in the same order")
+]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command to `aos`."""
+    app.command(epilog="Example: aos serve, then open the address that it prints")(serve)
+
+
+def serve(
+    listen: Listen = "127.0.0.1",
+    port: Port = 7480,
+    host: Hosts = None,
+    private: Private = False,
+    runs: Runs = None,
+    projects: Projects = None,
+    connect: Connect = None,
+    robot: Robots = None,
+) -> None:
+    """Show runs, living and past, on a page and over HTTP.
+
+    It goes on after missions, and finds those that begin later. Ctrl-C ends it, and no mission with it.
+    docs/http-api.md describes the API, docs/page.md the page.
+    """
+    import asyncio  # Here, so that --help needs none of it.
+
+    try:
+        from aos_gateway.server import Settings, serve_gateway
+    except ModuleNotFoundError as error:
+        raise DeployError(
+            f"the page needs {error.name}", code="AOS805", hint="pip install 'aos-autonomy[page]'"
+        ) from error
+
+    endpoints, robots = connect or [], robot or []
+    if len(endpoints) != len(robots):
+        raise typer.BadParameter("give one --robot for each --connect", param_hint="--robot")
+    if listen != "localhost" and not _is_address(listen):
+        raise typer.BadParameter("no address of this machine", param_hint="--listen")
+
+    def ready(address: str, token: str) -> None:
+        typer.echo(f"{address}#/?token={token}")
+        typer.echo("Whoever has this address may start and stop missions. Ctrl-C ends the gateway.")
+
+    settings = Settings(
+        host="127.0.0.1" if listen == "localhost" else listen,
+        port=port,
+        names=tuple(host or ()),
+        is_private=private,
+        runs=tuple(runs or [RUNS]),
+        projects=tuple(projects or [Path()]),
+        remote=tuple(zip(endpoints, robots, strict=True)),
+    )
+    try:
+        asyncio.run(serve_gateway(settings, ready))
+    except KeyboardInterrupt:
+        raise typer.Exit(0) from None
+
+
+def _is_address(text: str) -> bool:
+    try:
+        ip_address(text)
+    except ValueError:
+        return False
+    return True

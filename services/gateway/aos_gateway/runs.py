@@ -1,0 +1,283 @@
+"""The runs that the gateway knows: those on this machine, living and past, and systems at an endpoint."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from abc import ABC, abstractmethod
+from collections.abc import AsyncIterator, Iterable
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import msgspec
+
+from aos_deploy.living_runs import living_runs
+from aos_deploy.run_directory import RunDirectory, RunRecord, Summary
+from aos_deploy.run_end import account_of
+from aos_deploy.verdict import message_of_row
+from aos_protocol.errors import AosError, BusError, DeployError, GatewayError
+from aos_protocol.messages import History, HistoryQuery, MissionEntry, MissionState
+from aos_runtime.client import AosClient
+from aos_runtime.journal import Journal
+from aos_runtime.mission_folders import mission_folder, mission_folders, number_of
+from aos_solver.mission.history import history_page
+from aos_solver.mission.logbook import JOURNAL, entries_of
+
+__all__ = ["KeptRun", "RemoteRun", "Run", "RunEntry", "RunShelf"]
+
+_ANSWER_S = 5.0
+_FRESH_S = 0.8
+
+
+class RunEntry(msgspec.Struct, frozen=True, omit_defaults=True):
+    """One run: a start of a system. `ending` is `running` while it goes on, `killed` if nobody ended it.
+
+    `missions` are the names of its missions, the oldest first. Of a system at an endpoint `directory` is
+    empty.
+    """
+
+    run: str
+    robot: str
+    is_running: bool
+    ending: str
+    started: str = ""
+    deploy_file: str = ""
+    directory: str = ""
+    endpoint: str = ""
+    seed: int = 0
+    is_played: bool = False
+    sandbox: str = ""
+    stays: bool = False
+    missions: tuple[str, ...] = ()
+
+
+class Run(ABC):
+    """A run, on this machine or elsewhere."""
+
+    name: str
+    robot: str
+    endpoint: str
+
+    @property
+    @abstractmethod
+    def is_running(self) -> bool:
+        """True while its system is there."""
+
+    @abstractmethod
+    async def entry(self) -> RunEntry:
+        """The run in the list."""
+
+    @abstractmethod
+    async def missions(self) -> tuple[MissionEntry, ...]:
+        """Its missions, the oldest first."""
+
+    @abstractmethod
+    async def page(self, mission: str, since: int, limit: int = 0) -> History:
+        """The decision records of a mission from a sequence number on."""
+
+    @abstractmethod
+    async def last_state(self, mission: str) -> MissionState | None:
+        """The last that is known of a mission; None before its first word, and of one that is not the
+        newest of a system elsewhere.
+        """
+
+    @asynccontextmanager
+    async def client(self) -> AsyncIterator[AosClient]:
+        """A client of the system; BusError AOS605 if it does not run."""
+        if not self.is_running:
+            raise BusError(
+                f"the run {self.name} is over", code="AOS605", hint="Start a system, or look at its records"
+            )
+        async with AosClient.connect(self.endpoint, self.robot) as client:
+            yield client
+
+
+class KeptRun(Run):
+    """A run with its directory."""
+
+    def __init__(self, directory: RunDirectory, record: RunRecord) -> None:
+        self.directory = directory
+        self.record = record
+        self.name = directory.path.name
+        self.robot = record.robot
+        self.endpoint = record.endpoint
+        self._last: RunEntry | None = None
+
+    @property
+    def is_running(self) -> bool:
+        return self.directory.is_running
+
+    async def entry(self) -> RunEntry:
+        if self._last is None or self._last.is_running:
+            self._last = await asyncio.to_thread(self._entry)
+        return self._last
+
+    def _entry(self) -> RunEntry:
+        path, record = self.directory.path, self.record
+        numbers = list(mission_folders(path))
+        names = tuple(f"{path.name}-{number}" for number in numbers) if numbers else (path.name,)
+        summary = self.directory.read_summary()
+        is_running = summary is None and self.is_running
+        return RunEntry(
+            run=self.name,
+            robot=record.robot,
+            is_running=is_running,
+            ending=summary.ending if summary else "running" if is_running else _ending_of(path),
+            started=record.started,
+            deploy_file=record.deploy_file,
+            directory=str(path),
+            endpoint=record.endpoint,
+            seed=record.seed,
+            is_played=record.is_played,
+            sandbox=record.sandbox,
+            stays=bool(numbers),
+            missions=names,
+        )
+
+    async def missions(self) -> tuple[MissionEntry, ...]:
+        return await asyncio.to_thread(entries_of, self.directory.path)
+
+    async def page(self, mission: str, since: int, limit: int = 0) -> History:
+        journal = self.folder(mission) / JOURNAL
+        if not journal.exists():
+            return History(mission, ())
+        return await asyncio.to_thread(history_page, journal, mission, HistoryQuery(since, limit))
+
+    async def last_state(self, mission: str) -> MissionState | None:
+        return await asyncio.to_thread(self._last_state, self.folder(mission) / JOURNAL)
+
+    @staticmethod
+    def _last_state(journal: Path) -> MissionState | None:
+        if not journal.exists():
+            return None
+        with Journal.read(journal) as rows:
+            last = next(iter(rows.rows("mission")[-1:]), None)
+        message = message_of_row(last) if last is not None else None
+        return message if isinstance(message, MissionState) else None
+
+    def folder(self, mission: str) -> Path:
+        """The folder of a mission's journal and summary."""
+        place = number_of(mission)
+        is_one_of_several = place is not None and place[0] == self.name
+        return (
+            mission_folder(self.directory.path, place[1])
+            if place and is_one_of_several
+            else self.directory.path
+        )
+
+    def summary(self, mission: str) -> Summary | None:
+        """The summary of a mission that has ended."""
+        place = number_of(mission)
+        is_one_of_several = place is not None and place[0] == self.name
+        return self.directory.read_summary(place[1] if place and is_one_of_several else 0)
+
+
+class RemoteRun(Run):
+    """A system at an endpoint, of which nothing but its bus is known."""
+
+    is_running = True
+
+    def __init__(self, endpoint: str, robot: str) -> None:
+        self.endpoint = endpoint
+        self.robot = robot
+        self.name = f"{robot}@{endpoint.rpartition('/')[2]}"
+
+    async def entry(self) -> RunEntry:
+        try:
+            missions = await self.missions()
+        except AosError:
+            return RunEntry(
+                self.name, self.robot, is_running=False, ending="unreachable", endpoint=self.endpoint
+            )
+        names = tuple(mission.mission for mission in missions)
+        return RunEntry(
+            self.name, self.robot, is_running=True, ending="running", endpoint=self.endpoint, missions=names
+        )
+
+    async def missions(self) -> tuple[MissionEntry, ...]:
+        async with self.client() as client:
+            return (await client.missions()).entries
+
+    async def page(self, mission: str, since: int, limit: int = 0) -> History:
+        async with self.client() as client:
+            return await client.bus.ask(
+                client.keys.decision_history,
+                HistoryQuery(since, limit, mission),
+                History,
+                timeout_s=_ANSWER_S,
+            )
+
+    async def last_state(self, mission: str) -> MissionState | None:
+        async with self.client() as client:
+            state = await client.mission_state()
+        return state if state.mission == mission else None
+
+
+class RunShelf:
+    """All runs by name. Folders in which a living run was found stay in view."""
+
+    def __init__(self, folders: Iterable[Path], remote: Iterable[RemoteRun] = ()) -> None:
+        self._folders = {folder.resolve(): None for folder in folders}
+        self._remote = {run.name: run for run in remote}
+        self._kept: dict[Path, KeptRun] = {}
+        self._entries: tuple[RunEntry, ...] = ()
+        self._looked_s = -_FRESH_S
+        self._looking = asyncio.Lock()
+
+    async def entries(self) -> tuple[RunEntry, ...]:
+        """The list of runs, the newest first, as it was less than a second ago: viewers share a look."""
+        async with self._looking:
+            if time.monotonic() - self._looked_s >= _FRESH_S:
+                runs = await asyncio.to_thread(self.runs)
+                self._entries = tuple([await run.entry() for run in runs.values()])
+                self._looked_s = time.monotonic()
+            return self._entries
+
+    def runs(self) -> dict[str, Run]:
+        """The runs, the newest first. Of two directories of one name the last by path is shown."""
+        living = {run.path for run in living_runs()}
+        self._folders |= {path.parent: None for path in living}
+        paths = set(living)
+        for folder in self._folders:
+            paths |= {record.parent for record in folder.glob("*/run.json") if not record.parent.is_symlink()}
+        for gone in self._kept.keys() - paths:
+            del self._kept[gone]
+        for path in paths - self._kept.keys():
+            try:
+                self._kept[path] = KeptRun(RunDirectory(path), RunDirectory(path).read_record())
+            except DeployError:
+                continue
+        newest_first = sorted(self._kept, key=lambda path: (path.name, str(path)), reverse=True)
+        runs: dict[str, Run] = dict(self._remote)
+        for path in newest_first:
+            runs.setdefault(path.name, self._kept[path])
+        return runs
+
+    def run(self, name: str) -> Run:
+        """The run of this name; GatewayError AOS902 if there is none."""
+        found = self.runs().get(name)
+        if found is None:
+            raise GatewayError(f"there is no run {name}", code="AOS902", hint="GET /v1/runs lists them")
+        return found
+
+    async def run_of_mission(self, mission: str) -> Run:
+        """The run of a mission; GatewayError AOS902 if there is none."""
+        runs = self.runs()
+        place = number_of(mission)
+        found = runs.get(mission) or (runs.get(place[0]) if place is not None else None)
+        if found is not None:
+            return found
+        for run in self._remote.values():
+            if any(entry.mission == mission for entry in await run.missions()):
+                return run
+        raise GatewayError(
+            f"there is no mission {mission}", code="AOS902", hint="GET /v1/missions lists them"
+        )
+
+
+def _ending_of(folder: Path) -> str:
+    """The ending of a run without a summary: its aos-up was killed, or had no space for one."""
+    try:
+        return account_of(folder).verdict().ending or "killed"
+    except AosError:
+        return "killed"

@@ -1,0 +1,105 @@
+"""The gateway as a process: its socket, its note for `aos-up --page`, and uvicorn."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import msgspec
+import uvicorn
+
+from aos_deploy.page_address import GatewayNote, gateway_folder
+from aos_gateway.access import access_of, kept_token
+from aos_gateway.app import make_app
+from aos_gateway.feed import Watches
+from aos_gateway.runs import RemoteRun, RunShelf
+from aos_gateway.shared import Gateway
+from aos_protocol.errors import DeployError
+
+__all__ = ["Settings", "serve_gateway"]
+
+_LAST_STREAMS_S = 1
+"""Streams are cut this long after the gateway was told to end."""
+_BACKLOG = 128
+
+
+class Settings(msgspec.Struct, frozen=True, kw_only=True):
+    """The options of `aos serve`. `remote` are endpoints with the robot there."""
+
+    host: str = "127.0.0.1"
+    port: int = 7480
+    names: tuple[str, ...] = ()
+    is_private: bool = False
+    runs: tuple[Path, ...] = (Path("runs"),)
+    projects: tuple[Path, ...] = ()
+    remote: tuple[tuple[str, str], ...] = ()
+
+
+async def serve_gateway(settings: Settings, ready: Callable[[str, str], None]) -> None:
+    """Serves until it is interrupted. `ready` is told the address and the token once requests are answered.
+
+    DeployError AOS802 if the address is taken or is none of this machine.
+    """
+    folder = gateway_folder()
+    token = kept_token(folder / "token")
+    with _listening(settings.host, settings.port) as listener:
+        port = listener.getsockname()[1]
+        shown = f"[{settings.host}]" if ":" in settings.host else settings.host
+        shown = {"0.0.0.0": "127.0.0.1", "[::]": "[::1]"}.get(shown, shown)
+        address = f"http://{shown}:{port}/"
+        access = access_of(settings.host, settings.names, token, is_private=settings.is_private)
+        async with asyncio.TaskGroup() as tasks:
+            watches = Watches(tasks)
+            gateway = Gateway(
+                shelf=RunShelf(settings.runs, [RemoteRun(*each) for each in settings.remote]),
+                watches=watches,
+                projects=tuple(path.resolve() for path in settings.projects),
+                folder=folder,
+                runs=settings.runs[0].resolve(),
+            )
+            config = uvicorn.Config(
+                make_app(gateway, access),
+                log_config=None,
+                access_log=False,
+                lifespan="off",
+                server_header=False,
+                timeout_graceful_shutdown=_LAST_STREAMS_S,
+            )
+            with _noted(folder, address):
+                ready(address, token)
+                await uvicorn.Server(config).serve(sockets=[listener])
+            watches.close()
+
+
+@contextmanager
+def _listening(host: str, port: int) -> Iterator[socket.socket]:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family) as listener:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind((host, port))
+        except OSError as error:
+            raise DeployError(
+                f"cannot listen at {host}:{port}: {error.strerror}",
+                code="AOS802",
+                hint="Another gateway may run there; `--port 0` takes any free port",
+            ) from error
+        listener.listen(_BACKLOG)
+        yield listener
+
+
+@contextmanager
+def _noted(folder: Path, address: str) -> Iterator[None]:
+    """Lets `aos-up --page` find this gateway while it serves."""
+    path = folder / "gateway.json"
+    path.write_bytes(msgspec.json.encode(GatewayNote(address, os.getpid())))
+    try:
+        yield
+    finally:
+        with suppress(OSError, msgspec.MsgspecError):
+            if msgspec.json.decode(path.read_bytes(), type=GatewayNote).pid == os.getpid():
+                path.unlink()

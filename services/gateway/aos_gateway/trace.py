@@ -1,0 +1,193 @@
+"""A mission's steps for views: one row for each step, small enough to hold a thousand of them.
+
+A decision record says all of one step. Views over time need little of each: what was chosen, by how much,
+what was expected and seen, and the belief. A row has of the belief what is another than in the row before.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import msgspec
+
+from aos_protocol.messages import ActionValue, BeliefSummary, DecisionRecord
+
+__all__ = ["Endings", "Step", "Steps", "Trace", "steps_of"]
+
+_DIGITS = 4
+_SHOWN_VALUES = 8
+_CERTAIN = 1e-9
+
+
+class Endings(msgspec.Struct, frozen=True, omit_defaults=True):
+    """The chances of the endings in a belief, and its entropy in nats."""
+
+    goal: float
+    failure: float = 0.0
+    over: float = 0.0
+    entropy: float = 0.0
+
+
+class Step(msgspec.Struct, omit_defaults=True):
+    """One step of a mission.
+
+    `sequence` is that of the newest record about it. `value` and `error` are of the chosen action, `second`
+    is the best of the others, `margin` is how much better the chosen one is. `predicted` are the responses
+    with their probabilities, `seen` is the response, `expected` its probability. `belief` are the variables
+    whose distribution is another one than before this decision, `after` those that the outcome has changed:
+    value to probability, with `…` for all values that are not listed.
+    """
+
+    step: int
+    sequence: int
+    action: str
+    skill: str
+    decided_ms: int
+    value: float | None = None
+    error: float | None = None
+    second: str = ""
+    second_value: float | None = None
+    second_error: float | None = None
+    margin: float | None = None
+    actions: int = 0
+    planner: str = ""
+    simulations: int = 0
+    planning_s: float = 0.0
+    revision: int = 0
+    adopted: str = ""
+    predicted: dict[str, float] = {}
+    endings: Endings | None = None
+    belief: dict[str, dict[str, float]] = {}
+    status: str = ""
+    seen: str = ""
+    expected: float | None = None
+    surprise: float = 0.0
+    impossible: bool = False
+    stopped_by: str = ""
+    fault: str = ""
+    remark: str = ""
+    started_ms: int = 0
+    ended_ms: int = 0
+    endings_after: Endings | None = None
+    after: dict[str, dict[str, float]] = {}
+
+
+class Trace(msgspec.Struct, frozen=True):
+    """The steps of a mission up to the record before `next`, the sequence number to go on from.
+
+    Where `first` is not 1, the steps before it are left out.
+    """
+
+    mission: str
+    next: int
+    first: int
+    steps: tuple[Step, ...]
+
+
+class Steps:
+    """Rows out of records, one after the other. `whole` rows name every variable, not only changed ones."""
+
+    def __init__(self, *, whole: bool = False) -> None:
+        self._whole = whole
+        self._known: dict[str, dict[str, float]] = {}
+        self.by_number: dict[int, Step] = {}
+        self.next = 0
+
+    def take(self, record: DecisionRecord) -> Step:
+        """The row of the step that the record is about, with what the record adds to it."""
+        self.next = record.sequence + 1
+        row = self.by_number.get(record.step)
+        if row is None or record.outcome is None:
+            row = self.by_number[record.step] = self._decided(record)
+        if record.outcome is not None:
+            self._observed(row, record)
+        return row
+
+    def _decided(self, record: DecisionRecord) -> Step:
+        chosen = next((value for value in record.actions if value.action == record.action), None)
+        second = _second(record)
+        row = Step(
+            step=record.step,
+            sequence=record.sequence,
+            action=record.action,
+            skill=record.skill,
+            decided_ms=record.stamp_ns // 1_000_000,
+            actions=len(record.actions),
+            planner=record.planner,
+            simulations=record.simulations,
+            planning_s=_short(record.planning_s) or 0.0,
+            revision=record.revision,
+            predicted={seen.response: _probability(seen.probability) for seen in record.predicted},
+        )
+        if chosen is not None:
+            row.value, row.error = _short(chosen.q), _short(chosen.stderr)
+        if second is not None:
+            row.second, row.second_value, row.second_error = (
+                second.action,
+                _short(second.q),
+                _short(second.stderr),
+            )
+            row.margin = _short(chosen.q - second.q) if chosen is not None else None
+        if record.adopted is not None:
+            row.adopted = f"revision {record.adopted.revision}, its belief by {record.adopted.by}"
+        if record.outcome is None:
+            row.endings, row.belief = _endings(record.belief), self._changed(record.belief)
+        return row
+
+    def _observed(self, row: Step, record: DecisionRecord) -> None:
+        outcome = record.outcome
+        assert outcome is not None
+        row.sequence = record.sequence
+        row.status, row.seen = outcome.status, outcome.response
+        row.expected = row.predicted.get(outcome.response) if outcome.response else None
+        row.surprise, row.impossible = _short(record.surprise) or 0.0, record.is_impossible
+        row.stopped_by, row.remark = outcome.stopped_by, record.remark
+        row.fault = outcome.fault.message if outcome.fault is not None else ""
+        row.started_ms, row.ended_ms = outcome.started_ns // 1_000_000, outcome.ended_ns // 1_000_000
+        row.endings_after, row.after = _endings(record.belief), self._changed(record.belief)
+
+    def _changed(self, belief: BeliefSummary) -> dict[str, dict[str, float]]:
+        changed = {}
+        for marginal in belief.marginals:
+            likely = list(marginal.values.items())
+            values = {value: _probability(each) for value, each in likely[:_SHOWN_VALUES] if each >= 0.00005}
+            others = marginal.others + sum(each for _, each in likely[_SHOWN_VALUES:])
+            if others >= 0.00005:
+                values["…"] = _probability(others)
+            if self._whole or self._known.get(marginal.variable) != values:
+                changed[marginal.variable] = self._known[marginal.variable] = values
+        return changed
+
+
+def steps_of(mission: str, records: Iterable[DecisionRecord]) -> Trace:
+    """The trace of records in order."""
+    steps = Steps()
+    for record in records:
+        steps.take(record)
+    rows = tuple(steps.by_number[number] for number in sorted(steps.by_number))
+    return Trace(mission, steps.next, rows[0].step if rows else 1, rows)
+
+
+def _second(record: DecisionRecord) -> ActionValue | None:
+    others = [value for value in record.actions if value.action != record.action and math.isfinite(value.q)]
+    return max(others, key=lambda value: value.q, default=None)
+
+
+def _endings(belief: BeliefSummary) -> Endings:
+    return Endings(
+        _probability(belief.goal_probability),
+        _probability(belief.failure_probability),
+        _probability(belief.over_probability),
+        _short(belief.entropy) or 0.0,
+    )
+
+
+def _probability(value: float) -> float:
+    """Four digits; what is not certain, to a billionth, is not rounded to certainty."""
+    rounded = round(value, _DIGITS)
+    return 0.9999 if rounded == 1.0 and value < 1.0 - _CERTAIN else rounded
+
+
+def _short(value: float) -> float | None:
+    return float(f"{value:.5g}") if math.isfinite(value) else None

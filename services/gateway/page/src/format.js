@@ -1,0 +1,71 @@
+// Numbers, times and names for people.
+
+export const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+
+// One size of digits for a value: as many as tell something.
+export function signed(value, digits = 2) {
+  if (!isNumber(value)) return "–";
+  const text = Math.abs(value) >= 1000 ? Math.round(Math.abs(value)).toLocaleString("en") : Math.abs(value).toFixed(digits);
+  return `${value < 0 ? "−" : "+"}${text}`;
+}
+
+export const plain = (value, digits = 2) => (isNumber(value) ? value.toFixed(digits) : "–");
+
+// What is not certain is never shown as certain.
+export function chance(value) {
+  if (!isNumber(value)) return "–";
+  if (value > 0.9995 && value < 1) return ">0.999";
+  if (value < 0.0005 && value > 0) return "<0.001";
+  return value.toFixed(3);
+}
+
+export function percent(value) {
+  if (!isNumber(value)) return "–";
+  if (value > 0.995 && value < 1) return ">99 %";
+  if (value < 0.005 && value > 0) return "<1 %";
+  return `${Math.round(value * 100)} %`;
+}
+
+export function seconds(value) {
+  if (!isNumber(value)) return "";
+  if (value < 0.001) return "<1 ms";
+  if (value < 1) return `${Math.round(value * 1000)} ms`;
+  return value < 60 ? `${value.toFixed(1)} s` : `${Math.floor(value / 60)} min ${Math.round(value % 60)} s`;
+}
+
+export function moment(text) {
+  const date = new Date(text);
+  if (Number.isNaN(date.getTime())) return "";
+  const isToday = date.toDateString() === new Date().toDateString();
+  const time = date.toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
+  return isToday ? `today, ${time}` : `${date.toLocaleDateString([], { day: "numeric", month: "short" })}, ${time}`;
+}
+
+const ENDINGS = {
+  goal: "Goal reached",
+  over: "Over, no goal",
+  failure: "Failed",
+  nothing_worthwhile: "Nothing worth doing",
+  too_risky: "Too risky",
+  step_limit: "Step limit",
+  skills_failed: "Skills kept failing",
+  cancelled: "Cancelled",
+  fault: "Fault",
+  not_started: "Not started",
+  stopped: "Stopped",
+  killed: "Killed",
+  running: "Running",
+  unreachable: "Unreachable",
+};
+export const ending = (name) => ENDINGS[name] ?? name;
+
+const PHASES = {
+  waiting: "Waiting",
+  building: "Building the model",
+  planning: "Deciding",
+  acting: "Acting",
+  holding: "Holding",
+};
+export const phase = (name) => PHASES[name] ?? name;
+
+export const briefAction = (action) => action.replace(/([(,] ?)\w+=/g, "$1");

@@ -1,0 +1,125 @@
+// One mission: where it is, what was decided, and the views below.
+import { Card, Findings, html, useEffect, useState } from "./ui.js";
+import { hasToken, write } from "./api.js";
+import { addressOf, route, VIEWS } from "./route.js";
+import { at, close, connection, index, isLive, last, loadRecord, mission, open, pictures, points, problem, state, steps, successor } from "./store.js";
+import { chance, ending, phase } from "./format.js";
+import { Sentence } from "./sentence.js";
+import { Timeline } from "./timeline.js";
+import { Ribbons } from "./ribbons.js";
+import { Values } from "./values.js";
+import { Model } from "./model.js";
+import { Steps, Table } from "./steps.js";
+import { Documents } from "./documents.js";
+import { System } from "./system.js";
+
+const TITLES = { overview: "Overview", steps: "Steps", model: "Model", documents: "Documents", system: "System" };
+const PAGES = { overview: Overview, steps: Steps, model: Model, documents: Documents, system: System };
+
+export function Mission() {
+  const { name, view } = route.value;
+  useEffect(() => {
+    open(name);
+    return close;
+  }, [name]);
+  const step = at.value?.step;
+  const isOpen = at.value && !at.value.status;
+  useEffect(() => {
+    if (!step) return;
+    // Whoever drags the slider passes many steps.
+    const soon = setTimeout(() => loadRecord(step), 60);
+    return () => clearTimeout(soon);
+  }, [name, step, isOpen]);
+  if (problem.value && !mission.value)
+    return html`<main id="main" class="page"><h1>${name}</h1><${Findings} problem=${problem.value} /><p><a href="#/">All missions</a></p></main>`;
+  const Page = PAGES[view];
+  return html`<main id="main" class="page">
+    <${Head} />
+    <div class="hero card">
+      <${Sentence} />
+      <${Timeline} />
+    </div>
+    <nav class="views" aria-label="Views">
+      ${VIEWS.map((each) => html`<a href=${addressOf(name, each, route.value.step)} aria-current=${each === view ? "page" : null}>${TITLES[each]}</a>`)}
+    </nav>
+    <${Page} />
+  </main>`;
+}
+
+function Head() {
+  const view = mission.value;
+  const now = state.value;
+  const isOver = now?.phase === "ended";
+  const endings = at.value && (isLive.value || at.value === last.value ? at.value.endings_after ?? at.value.endings : at.value.endings_after ?? at.value.endings);
+  const goal = endings?.goal ?? now?.goal_probability;
+  return html`<header class="head">
+    <div class="head-name">
+      <h1>${view?.robot ?? " "}</h1>
+      <p class="muted">${route.value.name}</p>
+    </div>
+    <div class="head-state">
+      <p class=${`phase is-${isOver ? now.ending : now?.phase ?? "waiting"}`} role="status">
+        <i class=${isOver || !view?.is_running ? "still-dot" : "pulse"}></i>${isOver ? ending(now.ending) : phase(now?.phase ?? "waiting")}
+        ${!isLive.value && html`<span class="past">showing step ${at.value?.step}</span>`}
+      </p>
+      <p class="remark">${now?.remark ?? ""}</p>
+    </div>
+    <div class="goal" title="How probable the goal is, as the belief has it">
+      <span class="goal-number">${chance(goal)}</span><span class="goal-word">goal</span>
+      <svg viewBox="0 0 100 4" preserveAspectRatio="none" aria-hidden="true"><rect width="100" height="4" class="goal-rail" /><rect width=${(goal ?? 0) * 100} height="4" class="goal-bar" /></svg>
+      ${endings?.failure > 0.0005 && html`<span class="failure">failure ${chance(endings.failure)}</span>`}
+    </div>
+    <${Controls} />
+  </header>`;
+}
+
+function Controls() {
+  const [failed, setFailed] = useState(null);
+  const [busy, setBusy] = useState(false);
+  const view = mission.value;
+  const now = state.value;
+  const name = route.value.name;
+  const canStop = view?.is_running && now?.phase !== "ended";
+  async function ask(what) {
+    setBusy(true);
+    setFailed(null);
+    try {
+      state.value = await write(`/v1/missions/${encodeURIComponent(name)}/${what}`);
+    } catch (error) {
+      setFailed(error);
+    }
+    setBusy(false);
+  }
+  if (successor.value) return html`<a class="button primary" href=${addressOf(successor.value)}>To the next mission</a>`;
+  if (!canStop) return null;
+  if (!hasToken()) return html`<p class="controls note">Read only</p>`;
+  return html`<div class="controls">
+    ${now?.phase === "holding" && html`<button class="primary" disabled=${busy} onClick=${() => ask("resume")}>Go on</button>`}
+    <button class="stop" disabled=${busy} onClick=${() => ask("stop")}>${busy ? "Stopping…" : "Stop"}</button>
+    <${Findings} problem=${failed} />
+  </div>`;
+}
+
+function Overview() {
+  return html`<div class="columns overview">
+    <div class="stack">
+      <${Card} id="belief" title="Belief" note=${beliefNote()}><${Ribbons} /><//>
+      <${Card} id="all-steps" title="Steps"><${Table} /><//>
+    </div>
+    <div class="stack">
+      <${Card} id="values" title="Values of the actions"><${Values} /><//>
+      ${pictures.value.length > 0 && html`<${Card} id="world" title="World"><${Picture} /><//>`}
+    </div>
+  </div>`;
+}
+
+const beliefNote = () => (points.value.length ? `After ${isLive.value ? "the newest step" : `step ${at.value?.step}`}.` : "");
+
+function Picture() {
+  const known = pictures.value;
+  const wanted = at.value?.step ?? 0;
+  const shown = known.filter((step) => step <= wanted).at(-1) ?? known[0];
+  if (shown === undefined) return null;
+  return html`<figure class="picture"><img src=${`/v1/missions/${encodeURIComponent(route.value.name)}/world/${shown}`} alt=${`The world after step ${shown}`} />
+    <figcaption class="note">After step ${shown}</figcaption></figure>`;
+}

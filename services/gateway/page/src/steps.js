@@ -1,0 +1,63 @@
+// All steps as a table, and one step in full: parameters, local variables, times.
+import { Card, html, useEffect, useRef } from "./ui.js";
+import { briefAction, chance, plain, seconds, signed } from "./format.js";
+import { at, record, selectStep, steps } from "./store.js";
+import { hasFailed, isSurprising } from "./timeline.js";
+
+export const Steps = () => html`<div class="columns">
+  <${Card} id="all-steps" title="Steps" className="wide"><${Table} /><//>
+  <${Card} id="activation" title=${at.value ? `Activation of step ${at.value.step}` : "Activation"}><${Activation} /><//>
+</div>`;
+
+export function Table() {
+  const body = useRef(null);
+  const now = at.value?.step;
+  useEffect(() => {
+    const row = body.current?.querySelector("[aria-selected=true]");
+    const box = body.current?.closest(".scroll");
+    if (row && box && (row.offsetTop < box.scrollTop + 30 || row.offsetTop + row.offsetHeight > box.scrollTop + box.clientHeight))
+      box.scrollTop = row.offsetTop - box.clientHeight / 2;
+  }, [now]);
+  return html`<div class="scroll" tabindex="0" role="region" aria-label="Steps">
+    <table class="steps">
+      <thead><tr><th>Step</th><th>Action</th><th class="num wide-only">Value</th><th>Seen</th><th class="num wide-only">Expected</th><th class="num">Surprise</th><th class="num wide-only">Goal</th></tr></thead>
+      <tbody ref=${body}>${steps.value.map((step) => html`<${Row} key=${step.step} step=${step} isNow=${step.step === now} />`)}</tbody>
+    </table>
+  </div>`;
+}
+
+const Row = ({ step, isNow }) => html`<tr aria-selected=${isNow} onClick=${() => selectStep(step.step)}>
+  <td><button class="row-step" aria-label=${`Step ${step.step}`}>${step.step}</button></td>
+  <td class="action" title=${step.action}>${briefAction(step.action)}</td>
+  <td class="num wide-only">${signed(step.value)}</td>
+  <td>${step.status ? (hasFailed(step) ? html`<span class="bad">✕ ${step.status.replace("_", " ")}</span>` : step.seen) : html`<span class="muted">running</span>`}</td>
+  <td class="num wide-only">${step.status ? chance(step.expected) : ""}</td>
+  <td class="num">${step.status ? html`${isSurprising(step) ? html`<span class="mark" aria-label="surprising">▲ </span>` : ""}${step.impossible ? "∞" : plain(step.surprise)}` : ""}</td>
+  <td class="num wide-only">${chance((step.endings_after ?? step.endings)?.goal)}</td>
+</tr>`;
+
+function Activation() {
+  const found = record.value;
+  const step = at.value;
+  if (!step || !found) return html`<p class="empty">There is no step yet.</p>`;
+  const full = found.observed ?? found.decided;
+  const outcome = found.observed?.outcome;
+  const took = outcome ? (outcome.ended_ns - outcome.started_ns) / 1e9 : null;
+  const locals = Object.entries(outcome?.local_variables ?? {});
+  return html`<div class="activation">
+    <p class="big-action">${step.action}</p>
+    <dl class="facts">
+      <div><dt>Outcome</dt><dd>${outcome ? `${outcome.status.replace("_", " ")}${outcome.response ? `: ${outcome.response}` : ""}` : "running"}</dd></div>
+      ${took !== null && html`<div><dt>Took</dt><dd>${seconds(took)}</dd></div>`}
+      <div><dt>Decided in</dt><dd>${seconds(full.planning_s)}${full.planner ? `, by ${full.planner}` : ""}</dd></div>
+      ${full.why && html`<div><dt>Why this planner</dt><dd>${full.why}</dd></div>`}
+      <div><dt>Look-ahead</dt><dd>${full.horizon} decisions</dd></div>
+      <div><dt>Model</dt><dd>revision ${full.revision}, <code>${full.model_digest.slice(0, 12)}</code></dd></div>
+      <div><dt>Belief</dt><dd>${full.belief.states.toLocaleString("en")} ${full.belief.states === 1 ? "state" : "states"}, ${full.belief.is_exact ? "exact" : "sampled"}</dd></div>
+      ${Object.entries(outcome?.numbers ?? {}).map(([name, value]) => html`<div><dt>${name}</dt><dd>${JSON.stringify(value)}</dd></div>`)}
+      ${Object.entries(outcome?.monitors ?? {}).map(([name, value]) => html`<div><dt>${name}</dt><dd>${value}</dd></div>`)}
+    </dl>
+    <h3>Local variables</h3>
+    ${locals.length ? html`<dl class="facts mono">${locals.map(([name, value]) => html`<div><dt>${name}</dt><dd>${value}</dd></div>`)}</dl>` : html`<p class="empty">${outcome ? "The mapping has none." : "They come with the outcome."}</p>`}
+  </div>`;
+}

@@ -1,0 +1,192 @@
+"""A gateway as a process, requests to it, and small missions for it to show."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from http.client import HTTPConnection, HTTPResponse
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from processes import HANG_S
+
+__all__ = ["Answer", "Gateway", "environment", "gateway", "played", "slow_system"]
+
+BIN = Path(sys.executable).parent
+ROOT = Path(__file__).resolve().parents[1]
+ANY_PORT = "tcp/127.0.0.1:0"
+SLOW = """\
+aos: 1
+robot: tiger
+bundles: [{root}/deploy/bundles/bench/tiger]
+mission: {{goal_probability: 1.0, step_limit: 1_000_000}}
+solver: {{simulations: 100, planner: pomcp, ponder_while_acting: false}}
+bind: {{/listen: {{python: robot.py:listen}}, /open: {{python: robot.py:open_door}}}}
+runs: runs
+"""
+SLOW_ROBOT = """\
+import asyncio
+import os
+
+turns = os.open("turns", os.O_RDWR | os.O_NONBLOCK)
+
+async def listen(call):
+    loop = asyncio.get_running_loop()
+    has_turn = loop.create_future()
+    loop.add_reader(turns, has_turn.set_result, None)
+    try:
+        await has_turn
+    finally:
+        loop.remove_reader(turns)
+    os.read(turns, 1)
+    return {"loudest": "left"}
+
+async def open_door(call, door):
+    await asyncio.Event().wait()
+"""
+"""A robot that waits for somebody to write into a pipe: a mission that goes on as a test wants costs
+nothing.
+"""
+
+
+class Answer(NamedTuple):
+    """An answer of the gateway."""
+
+    status: int
+    headers: dict[str, str]
+    body: bytes
+
+    @property
+    def json(self) -> Any:
+        """The body as data."""
+        return json.loads(self.body)
+
+
+class Gateway(NamedTuple):
+    """A gateway that serves."""
+
+    port: int
+    token: str
+    process: subprocess.Popen[str]
+
+    def ask(
+        self,
+        path: str,
+        method: str = "GET",
+        body: bytes | None = None,
+        *,
+        has_token: bool = True,
+        headers: dict[str, str] | None = None,
+    ) -> Answer:
+        """The answer to a request."""
+        connection = HTTPConnection("127.0.0.1", self.port, timeout=HANG_S)
+        sent = {"authorization": f"Bearer {self.token}"} if has_token else {}
+        connection.request(method, path, body, sent | (headers or {}))
+        answer = connection.getresponse()
+        found = {name.lower(): text for name, text in answer.getheaders()}
+        with_body = Answer(answer.status, found, answer.read())
+        connection.close()
+        return with_body
+
+    def post(self, path: str, body: Any = None) -> Answer:
+        """The answer to a request that writes."""
+        return self.ask(path, "POST", json.dumps(body or {}).encode())
+
+    @contextmanager
+    def events(self, path: str, last: str = "") -> Iterator[Iterator[tuple[str, str, Any]]]:
+        """The events of a stream: id, kind, data."""
+        connection = HTTPConnection("127.0.0.1", self.port, timeout=HANG_S)
+        connection.request("GET", path, headers={"last-event-id": last} if last else {})
+        try:
+            yield _events(connection.getresponse())
+        finally:
+            connection.close()
+
+
+def _events(answer: HTTPResponse) -> Iterator[tuple[str, str, Any]]:
+    fields: dict[str, str] = {}
+    for raw in answer:
+        line = raw.decode().rstrip("\n")
+        if line:
+            name, _, text = line.partition(": ")
+            fields[name] = text
+        elif "data" in fields:
+            yield fields.get("id", ""), fields["event"], json.loads(fields["data"])
+            fields = {}
+
+
+def environment(folder: Path, cache: Path) -> dict[str, str]:
+    """The environment of commands that shall find no run but those of a folder."""
+    own = {"AOS_RUNNING_DIR": "running", "AOS_GATEWAY_DIR": "gateway"}
+    return {
+        **os.environ,
+        **{name: str(folder / place) for name, place in own.items()},
+        "AOS_CACHE_DIR": str(cache),
+    }
+
+
+@contextmanager
+def gateway(folder: Path, cache: Path, *options: str) -> Iterator[Gateway]:
+    """A gateway of the runs and deploy files in a folder."""
+    process = subprocess.Popen(
+        [BIN / "aos", "serve", "--port", "0", *options],
+        cwd=folder,
+        env=environment(folder, cache),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        address = process.stdout.readline()
+        port, _, token = address.rpartition("#/?token=")
+        yield Gateway(int(port.rstrip("/").rpartition(":")[2]), token.strip(), process)
+    finally:
+        process.terminate()
+        process.communicate(timeout=HANG_S)
+
+
+def played(folder: Path, cache: Path, *options: str, deploy: Path = ROOT / "deploy/errand.yaml") -> Path:
+    """The directory of a mission that has run to its end, each skill played by its document."""
+    command = [
+        BIN / "aos-up",
+        deploy,
+        "--model",
+        "--plain",
+        "--runs",
+        folder / "runs",
+        "--listen",
+        ANY_PORT,
+        *options,
+    ]
+    subprocess.run(
+        command, cwd=folder, env=environment(folder, cache), capture_output=True, timeout=HANG_S, check=False
+    )
+    return (folder / "runs/latest").resolve()
+
+
+@contextmanager
+def slow_system(folder: Path, cache: Path, *options: str) -> Iterator[Path]:
+    """The directory of a mission that goes on: its robot listens once for each write to the pipe `turns`."""
+    os.mkfifo(folder / "turns")
+    (folder / "tiger.yaml").write_text(SLOW.format(root=ROOT))
+    (folder / "robot.py").write_text(SLOW_ROBOT)
+    process = subprocess.Popen(
+        [BIN / "aos-up", "tiger.yaml", "--json", "--listen", ANY_PORT, *options],
+        cwd=folder,
+        env=environment(folder, cache),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        for line in process.stdout:
+            if json.loads(line)["event"] == "decision":
+                break
+        yield (folder / "runs/latest").resolve()
+    finally:
+        process.terminate()
+        process.communicate(timeout=HANG_S)

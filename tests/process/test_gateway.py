@@ -1,0 +1,246 @@
+"""The gateway over HTTP: a mission that is over, one that runs, and what is refused."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from gateway import Gateway, gateway, played, slow_system
+
+ERRAND = "deploy/bundles/errand"
+
+
+def archive(folder: Path, **changed: str) -> bytes:
+    """A bundle as a zip file, some documents with another text."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as file:
+        for path in sorted(folder.iterdir()):
+            file.writestr(path.name, changed.get(path.stem, path.read_text()))
+    return packed.getvalue()
+
+
+@pytest.fixture(scope="module")
+def past(tmp_path_factory: pytest.TempPathFactory, cache_dir: Path) -> Iterator[tuple[Gateway, str]]:
+    """A gateway, and a mission that has run to its end."""
+    folder = tmp_path_factory.mktemp("past")
+    run = played(folder, cache_dir)
+    with gateway(folder, cache_dir) as served:
+        yield served, run.name
+
+
+@pytest.fixture
+def living(tmp_path: Path, cache_dir: Path) -> Iterator[tuple[Gateway, Path]]:
+    """A gateway, and the directory of a mission that goes on."""
+    with slow_system(tmp_path, cache_dir) as run, gateway(tmp_path, cache_dir) as served:
+        yield served, run
+
+
+def test_a_run_and_its_mission_are_listed(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    (run,) = served.ask("/v1/runs").json["runs"]
+    assert (run["run"], run["robot"], run["is_running"], run["ending"]) == (name, "errand", False, "goal")
+    (mission,) = served.ask("/v1/missions").json["missions"]
+    assert mission["mission"]["ending"] == mission["state"]["ending"] == "goal"
+    assert mission["summary"]["steps"] == mission["mission"]["steps"]
+    assert served.ask(f"/v1/runs/{name}").json == run
+
+
+def test_decisions_beliefs_activations_and_trace_tell_of_the_same_steps(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    path = f"/v1/missions/{name}"
+    records = served.ask(f"{path}/decisions").json["records"]
+    trace = served.ask(f"{path}/trace").json
+    assert [row["action"] for row in trace["steps"]] == [record["action"] for record in records[::2]]
+    assert trace["next"] == len(records)
+    beliefs = served.ask(f"{path}/beliefs?limit=2").json
+    assert [each["belief"] for each in beliefs["beliefs"]] == [record["belief"] for record in records[:2]]
+    assert (beliefs["has_more"], beliefs["next"]) == (True, 2)
+    activations = served.ask(f"{path}/activations").json["activations"]
+    assert [each["outcome"] for each in activations] == [record["outcome"] for record in records[1::2]]
+    last = served.ask(f"{path}/decisions/{len(activations)}").json
+    assert (last["decided"], last["observed"]) == (records[-2], records[-1])
+
+
+def test_documents_come_with_the_lines_of_each_skill(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    found = served.ask(f"/v1/missions/{name}/documents").json
+    texts = {file["name"]: file["text"].splitlines() for file in found["files"]}
+    assert found["skills"]
+    for skill, lines in found["skills"].items():
+        model = next(each for each in lines if each["what"] == "model")
+        assert model["file"] == f"{skill}.sd"
+        assert 1 <= model["first"] <= model["last"] <= len(texts[model["file"]]) + 1
+
+
+def test_a_past_mission_is_streamed_from_a_record_on_with_its_end(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    count = served.ask(f"/v1/missions/{name}/trace").json["next"]
+    with served.events(f"/v1/events?mission={name}", last=f"{name}:{count - 2}") as events:
+        told = [next(events) for _ in range(3)]
+    assert [kind for _, kind, _ in told] == ["decision", "decision", "state"]
+    assert told[-1][2]["ending"] == "goal"
+    assert [event_id for event_id, _, _ in told] == [
+        f"{name}:{number}" for number in (count - 1, count, count)
+    ]
+
+
+def test_logs_are_read_of_services_alone(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    services = {each["service"] for each in served.ask(f"/v1/runs/{name}/services").json["services"]}
+    assert {"router", "registry", "middleware", "solver"} <= services
+    log = served.ask(f"/v1/runs/{name}/logs/solver?tail=1000")
+    assert (log.status, log.headers["content-type"]) == (200, "text/plain; charset=utf-8")
+    assert b"solver" in log.body
+    assert served.ask(f"/v1/runs/{name}/logs/..%2Fjournal.db").status == 404
+
+
+@pytest.mark.parametrize(
+    ("path", "status", "code"),
+    [
+        ("/v1/runs/nothing", 404, "AOS902"),
+        ("/v1/missions/nothing", 404, "AOS902"),
+        ("/v1/missions/{name}/decisions/999", 404, "AOS902"),
+        ("/v1/missions/{name}/decisions/x", 400, "AOS901"),
+        ("/v1/missions/{name}/decisions?limit=0", 400, "AOS901"),
+        ("/v1/missions/{name}/decisions?limit=x", 400, "AOS901"),
+        ("/v1/missions/{name}/decisions?colour=red", 400, "AOS901"),
+        ("/v1/missions/{name}/documents?revision=99", 404, "AOS902"),
+        ("/v1/missions/{name}/world/1", 404, "AOS902"),
+        ("/v1/nothing", 404, "AOS902"),
+    ],
+)
+def test_what_cannot_be_answered_is_a_problem(
+    past: tuple[Gateway, str], path: str, status: int, code: str
+) -> None:
+    served, name = past
+    answer = served.ask(path.format(name=name))
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert (answer.status, answer.json["status"], answer.json["code"]) == (status, status, code)
+    assert answer.json["type"] == f"urn:aos:{code}"
+
+
+def test_strangers_are_refused(past: tuple[Gateway, str]) -> None:
+    served, name = past
+    refusals = [
+        served.ask("/v1/runs", headers={"host": "evil.example"}),
+        served.ask("/", headers={"host": "evil.example"}),
+        served.ask("/v1/runs", headers={"origin": "http://evil.example"}),
+        served.ask(f"/v1/missions/{name}/stop", "POST", has_token=False),
+    ]
+    assert [(each.status, each.json["code"]) for each in refusals] == [
+        (403, "AOS904"),
+        (403, "AOS904"),
+        (403, "AOS904"),
+        (401, "AOS903"),
+    ]
+
+
+def test_openapi_describes_every_operation_with_schemas_that_are_there(past: tuple[Gateway, str]) -> None:
+    served, _ = past
+    document = served.ask("/v1/openapi.json").json
+    assert document["openapi"] == "3.1.0"
+    references: list[str] = []
+
+    def look(value: Any) -> None:
+        if isinstance(value, dict):
+            references.extend([value["$ref"]] if "$ref" in value else [])
+            for each in value.values():
+                look(each)
+        elif isinstance(value, list):
+            for each in value:
+                look(each)
+
+    look(document)
+    assert "DecisionRecord" in document["components"]["schemas"]
+    for reference in references:
+        assert reference.removeprefix("#/components/schemas/") in document["components"]["schemas"]
+    writes = [one for path in document["paths"].values() for method, one in path.items() if method != "get"]
+    assert all(one["security"] == [{"token": []}] for one in writes)
+
+
+def test_a_bundle_is_checked_with_the_place_of_each_finding(past: tuple[Gateway, str], root: Path) -> None:
+    served, _ = past
+    good = served.ask("/v1/checks?name=errand.zip", "POST", archive(root / ERRAND)).json
+    assert (good["is_accepted"], good["project"]) == (True, "errand")
+    broken = archive(root / ERRAND, errand="project: errand\nhorizon: many\n")
+    bad = served.ask("/v1/checks?name=errand.zip", "POST", broken).json
+    assert not bad["is_accepted"]
+    assert any(found["span"]["file"] == "errand.ef" and found["span"]["line"] for found in bad["diagnostics"])
+
+
+def test_an_upload_that_is_no_bundle_is_refused_and_nothing_is_kept(past: tuple[Gateway, str]) -> None:
+    served, _ = past
+    before = served.ask("/v1/projects").json
+    for name, body in (
+        ("a.zip", b"no archive"),
+        ("a.exe", b"x"),
+        ("a.sd", b"project: p\n"),
+        ("..%2F..%2Fa.sd", b""),
+    ):
+        answer = served.ask(f"/v1/projects?name={name}", "POST", body)
+        assert (answer.status, answer.headers["content-type"]) == (422, "application/problem+json")
+    assert served.ask("/v1/projects").json == before
+
+
+def test_a_mission_is_started_from_an_uploaded_bundle_and_ends_as_one_from_a_terminal(
+    past: tuple[Gateway, str], root: Path
+) -> None:
+    served, _ = past
+    kept = served.ask("/v1/projects?name=errand.zip", "POST", archive(root / ERRAND))
+    assert kept.status == 201
+    started = served.post(
+        "/v1/runs", {"project": kept.json["project"], "seed": 3, "values": {"target": "alice"}}
+    )
+    assert started.status == 201
+    with served.events(f"/v1/events?mission={started.json['mission']}") as events:
+        end = next(data for _, kind, data in events if kind == "state" and data["phase"] == "ended")
+    assert end["ending"] == "goal"
+
+
+def test_a_deploy_file_that_is_wrong_is_refused_with_its_place(
+    past: tuple[Gateway, str], tmp_path: Path
+) -> None:
+    served, _ = past
+    wrong = tmp_path / "wrong.yaml"
+    wrong.write_text("aos: 1\nrobot: r\nbundles: [nothing]\n")
+    answer = served.post("/v1/runs", {"deploy_file": str(wrong)})
+    assert (answer.status, answer.json["code"]) == (422, "AOS801")
+    assert ":3:" in answer.json["place"]
+
+
+def test_whoever_views_a_living_mission_is_told_what_happens_and_can_stop_it(
+    living: tuple[Gateway, Path],
+) -> None:
+    served, run = living
+    with served.events(f"/v1/events?mission={run.name}") as events:
+        seen = [next(events)]
+        while {"state", "service"} - {kind for _, kind, _ in seen}:
+            seen.append(next(events))
+        assert next(data for _, kind, data in seen if kind == "decision")["row"]["action"] == "listen"
+        (run.parents[1] / "turns").write_bytes(b".")
+        outcome = next(data for _, kind, data in events if kind == "decision" and "outcome" in data["record"])
+        assert outcome["record"]["outcome"]["response"] == "tiger_left"
+        stopped = served.post(f"/v1/missions/{run.name}/stop")
+        assert (stopped.status, stopped.json["ending"]) == (200, "cancelled")
+        end = next(data for _, kind, data in events if kind == "state" and data["phase"] == "ended")
+    assert end["ending"] == "cancelled"
+
+
+def test_a_stream_that_comes_back_gets_each_record_once_from_a_gateway_that_was_started_again(
+    living: tuple[Gateway, Path], tmp_path: Path, cache_dir: Path
+) -> None:
+    served, run = living
+    with served.events(f"/v1/events?mission={run.name}") as events:
+        last, _, first = next(each for each in events if each[1] == "decision")
+    (tmp_path / "turns").write_bytes(b".")
+    with (
+        gateway(tmp_path, cache_dir) as again,
+        again.events(f"/v1/events?mission={run.name}", last=last) as events,
+    ):
+        decisions = (data["record"]["sequence"] for _, kind, data in events if kind == "decision")
+        following = [next(decisions) for _ in range(2)]
+    assert (first["record"]["sequence"], following) == (0, [1, 2])

@@ -1,0 +1,85 @@
+"""Access to the gateway: by which name, from which page, with which token."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from aos_gateway.access import COOKIE, Access, access_of, kept_token
+from aos_protocol.errors import GatewayError
+
+OWN = {"host": "localhost:7480"}
+BEARER = {"authorization": "Bearer secret"}
+
+
+def refusal(
+    access: Access, method: str, headers: dict[str, str], cookies: dict[str, str] | None = None
+) -> str:
+    """The code of the refusal; empty where the request may pass."""
+    try:
+        access.check(method, headers, cookies or {})
+    except GatewayError as error:
+        return error.code
+    return ""
+
+
+@pytest.fixture
+def loopback() -> Access:
+    return access_of("127.0.0.1", (), "secret", is_private=False)
+
+
+@pytest.mark.parametrize("host", ["localhost:7480", "127.0.0.1:7480", "[::1]:7480", "LOCALHOST"])
+def test_names_of_the_gateway_are_answered(loopback: Access, host: str) -> None:
+    assert refusal(loopback, "GET", {"host": host}) == ""
+
+
+@pytest.mark.parametrize(
+    "host", ["evil.example:7480", "evil.example", "", "127.0.0.1.evil.example", "localhost.evil:80"]
+)
+def test_a_name_that_somebody_else_has_given_to_this_machine_is_refused(loopback: Access, host: str) -> None:
+    assert refusal(loopback, "GET", {"host": host} | BEARER) == "AOS904"
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://evil.example", "null", "http://localhost:8000", "http://127.0.0.1:7480"]
+)
+def test_a_page_of_another_origin_is_refused_also_with_the_token(loopback: Access, origin: str) -> None:
+    assert refusal(loopback, "POST", OWN | BEARER | {"origin": origin}) == "AOS904"
+    assert refusal(loopback, "GET", OWN | {"origin": origin}) == "AOS904"
+
+
+def test_the_gateways_own_page_may_ask(loopback: Access) -> None:
+    assert refusal(loopback, "POST", OWN | BEARER | {"origin": "http://localhost:7480"}) == ""
+
+
+def test_writing_needs_the_token_itself_and_no_cookie(loopback: Access) -> None:
+    assert refusal(loopback, "POST", OWN) == "AOS903"
+    assert refusal(loopback, "POST", OWN | {"authorization": "Bearer other"}) == "AOS903"
+    assert refusal(loopback, "POST", OWN, {COOKIE: "secret"}) == "AOS903"
+    assert refusal(loopback, "DELETE", OWN) == "AOS903"
+    assert refusal(loopback, "POST", OWN | BEARER) == ""
+
+
+@pytest.mark.parametrize("listen", ["0.0.0.0", "192.0.2.7", "::"])
+def test_off_loopback_reading_needs_the_token_or_the_cookie(listen: str) -> None:
+    access = access_of(listen, ("robot.lab",), "secret", is_private=False)
+    there = {"host": "robot.lab:7480"}
+    assert refusal(access, "GET", there) == "AOS903"
+    assert refusal(access, "GET", there, {COOKIE: "wrong"}) == "AOS903"
+    assert refusal(access, "GET", there, {COOKIE: "secret"}) == ""
+    assert refusal(access, "GET", there | BEARER) == ""
+
+
+def test_the_files_of_the_page_say_nothing_of_a_robot_and_are_open() -> None:
+    access = access_of("127.0.0.1", (), "secret", is_private=True)
+    access.check("GET", OWN, {}, is_open=True)
+    assert refusal(access, "GET", OWN) == "AOS903"
+
+
+def test_the_token_is_kept_and_nobody_else_may_read_it(tmp_path: Path) -> None:
+    path = tmp_path / "gateway" / "token"
+    token = kept_token(path)
+    assert len(token) >= 32
+    assert kept_token(path) == token
+    assert path.stat().st_mode & 0o777 == 0o600

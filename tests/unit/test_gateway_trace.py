@@ -1,0 +1,109 @@
+"""The rows of steps that views over time are made of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from decision_records import decision_record
+
+from aos_gateway.trace import Step, Steps, steps_of
+from aos_protocol.messages import (
+    ActionValue,
+    ActivationId,
+    BeliefSummary,
+    DecisionRecord,
+    Marginal,
+    Outcome,
+    PredictedObservation,
+)
+
+
+def belief(goal: float = 0.0, **variables: dict[str, float]) -> BeliefSummary:
+    marginals = tuple(Marginal(name, values) for name, values in variables.items())
+    return BeliefSummary(marginals, 0.5, goal, 0.0, 2, True)
+
+
+def decided(step: int, **others: Any) -> DecisionRecord:
+    return decision_record(2 * step - 2, **others)
+
+
+def observed(step: int, response: str, **others: Any) -> DecisionRecord:
+    outcome = Outcome(ActivationId("m", step), "look", "observed" if response else "failed", response)
+    return decision_record(2 * step - 1, outcome=outcome, **others)
+
+
+def row_of(*records: DecisionRecord) -> Step:
+    (row,) = steps_of("m", records).steps
+    return row
+
+
+def test_the_margin_is_over_the_best_of_the_other_actions() -> None:
+    values = (
+        ActionValue("look", 2.5, 9, 0.1),
+        ActionValue("wait", 1.0, 9, 0.2),
+        ActionValue("go", 2.0, 9, 0.3),
+    )
+    row = row_of(decided(1, actions=values))
+    assert (row.value, row.second, row.second_value, row.second_error, row.margin) == (
+        2.5,
+        "go",
+        2.0,
+        0.3,
+        0.5,
+    )
+
+
+def test_an_action_whose_value_nobody_knows_is_no_second() -> None:
+    values = (ActionValue("look", 2.5, 9, 0.1), ActionValue("go", float("-inf"), 0, 0.0))
+    assert row_of(decided(1, actions=values)).margin is None
+
+
+def test_a_row_has_what_was_expected_and_what_was_seen() -> None:
+    predicted = (PredictedObservation("yes", 0.75), PredictedObservation("no", 0.25))
+    row = row_of(decided(1, predicted=predicted), observed(1, "no", predicted=predicted, surprise=1.386))
+    assert (row.predicted, row.seen, row.expected) == ({"yes": 0.75, "no": 0.25}, "no", 0.25)
+    assert (row.status, row.surprise) == ("observed", 1.386)
+
+
+def test_a_skill_that_failed_has_a_status_and_nothing_seen() -> None:
+    row = row_of(decided(1), observed(1, ""))
+    assert (row.status, row.seen, row.expected) == ("failed", "", None)
+
+
+def test_only_variables_whose_distribution_has_changed_are_in_the_row() -> None:
+    before = belief(at={"A": 1.0}, held={"true": 0.5, "false": 0.5})
+    after = belief(at={"A": 1.0}, held={"true": 0.9, "false": 0.1})
+    trace = steps_of(
+        "m", [decided(1, belief=before), observed(1, "yes", belief=after), decided(2, belief=after)]
+    )
+    first, second = trace.steps
+    assert first.belief == {"at": {"A": 1.0}, "held": {"true": 0.5, "false": 0.5}}
+    assert first.after == {"held": {"true": 0.9, "false": 0.1}}
+    assert second.belief == {}
+
+
+def test_rows_of_a_stream_have_all_variables_since_a_page_may_begin_anywhere() -> None:
+    same = belief(at={"A": 1.0})
+    rows = Steps(whole=True)
+    rows.take(decided(1, belief=same))
+    assert rows.take(observed(1, "yes", belief=same)).after == {"at": {"A": 1.0}}
+
+
+def test_what_is_not_certain_is_not_rounded_to_certainty() -> None:
+    row = row_of(decided(1, belief=belief(goal=0.99999, held={"true": 0.99999, "false": 0.00001})))
+    assert row.endings is not None
+    assert row.endings.goal < 1
+    assert row.belief["held"]["true"] < 1
+
+
+def test_values_beyond_the_likeliest_are_one() -> None:
+    many = {f"v{number}": 0.1 for number in range(10)}
+    values = row_of(decided(1, belief=belief(at=many))).belief["at"]
+    assert len(values) == 9
+    assert abs(sum(values.values()) - 1) < 1e-9
+
+
+def test_a_trace_says_with_which_record_to_go_on() -> None:
+    trace = steps_of("m", [decided(3), observed(3, "yes")])
+    assert (trace.first, trace.next, [row.sequence for row in trace.steps]) == (3, 6, [5])
+    assert steps_of("m", []).next == 0
