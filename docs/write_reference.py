@@ -24,11 +24,18 @@ from aos_editor.meanings import BUILT_INS, SECTIONS, Meaning
 from aos_editor.textmate_grammar import textmate_grammar
 from aos_gateway.table import OPERATIONS
 from aos_protocol import errors, keys
-from aos_protocol.messages import base, bundles, mission, skills
+from aos_protocol.messages import base, bundles, mission, records, skills, study
 
 DOCS = Path(__file__).resolve().parent
 GENERATED = re.compile(r"(<!-- generated: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
-MESSAGES = {"around every message": base, "bundles": bundles, "mission": mission, "skills": skills}
+MESSAGES = {
+    "around every message": base,
+    "bundles": bundles,
+    "mission": mission,
+    "records": records,
+    "study": study,
+    "skills": skills,
+}
 """The modules of messages, each under the title of its conversation."""
 
 

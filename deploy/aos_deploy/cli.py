@@ -24,6 +24,8 @@ _COMMANDS = {
     "aos_deploy.commands.runs": ("runs",),
     "aos_gateway.command": ("serve",),
     "aos_deploy.commands.check": ("check",),
+    "aos_deploy.commands.replay": ("replay", "diff"),
+    "aos_deploy.commands.why": ("why", "whatif"),
     "aos_deploy.commands.skill": ("skill", "resume"),
     "aos_deploy.commands.documents": ("lint", "inspect"),
     "aos_deploy.commands.bundle": ("bundle",),

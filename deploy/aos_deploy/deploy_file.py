@@ -205,6 +205,24 @@ def without_a_robot(deployment: Deployment, faults: Mapping[str, float] | None =
     return msgspec.structs.replace(deployment, file=file, adapters=played_by_model(faults))
 
 
+def with_whole_paths(deployment: Deployment) -> DeployFile:
+    """The file with what it leaves to defaults, and with paths that hold in every folder."""
+    file, policy = deployment.file, deployment.policy
+    return msgspec.structs.replace(
+        file,
+        project=deployment.project,
+        bundles=tuple(map(str, deployment.bundles)),
+        world=_text(deployment.world),
+        watch=_text(deployment.watch),
+        runs=str(deployment.runs),
+        solver=msgspec.structs.replace(file.solver, policy=_text(policy)),
+    )
+
+
+def _text(path: Path | None) -> str | None:
+    return None if path is None else str(path)
+
+
 def check_endpoint(endpoint: str) -> None:
     """Raises DeployError AOS801 unless it is one of this machine alone: everything else needs protection
     first."""

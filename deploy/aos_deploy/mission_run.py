@@ -14,7 +14,7 @@ from typing import Protocol
 import msgspec
 
 from aos_deploy.bundle_files import check_mission_of, files_of_bundle
-from aos_deploy.deploy_file import Deployment
+from aos_deploy.deploy_file import Deployment, with_whole_paths
 from aos_deploy.endpoint import hold_endpoint
 from aos_deploy.events import Event, Report, ServiceChanged, Told
 from aos_deploy.living_runs import noted
@@ -27,6 +27,7 @@ from aos_deploy.run_end import beginning_of, settled
 from aos_deploy.supervisor import Supervisor, supervised
 from aos_deploy.taking_up import TakenUp
 from aos_deploy.verdict import Account, Verdict
+from aos_protocol import __version__
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.errors import AosError, DeployError, DocumentError, StorageError
 from aos_protocol.messages import (
@@ -105,6 +106,8 @@ class MissionRun:
             self._report(Told(sandbox_text()))
         was_interrupted = False
         try:
+            if self._taken_up is None:
+                run.keep_inputs(with_whole_paths(self._deployment), self._deployment.policy)
             with noted(run):
                 await self._run_in(run, endpoint)
         except asyncio.CancelledError:
@@ -269,6 +272,7 @@ class MissionRun:
                 pids=supervisor.pids,
                 is_played=self._is_played,
                 sandbox=sandbox_text(),
+                version=__version__,
             )
         )
 

@@ -10,7 +10,7 @@ import typer
 from aos_protocol import __version__
 from aos_runtime.sandbox.support import trust_documents
 
-__all__ = ["HELP_NAMES", "AsJson", "Connect", "Robot", "Run", "Runs", "TrustDocuments", "Version"]
+__all__ = ["HELP_NAMES", "AsJson", "Connect", "Mission", "Robot", "Run", "Runs", "TrustDocuments", "Version"]
 
 HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
 """The context settings of a program."""
@@ -43,6 +43,9 @@ TrustDocuments = Annotated[
     ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON")]
+Mission = Annotated[
+    int | None, typer.Option(min=1, metavar="N", help="Of a system that stays: instead of the last")
+]
 
 # --- which mission -----------------------------------------------------------------------------------
 

@@ -2,6 +2,8 @@
 
 runs/20260105T101500Z-armadillo/
   run.json         what runs here: endpoint, robot, deploy file, seed, process ids
+  deploy.json      the deploy file, with what it leaves to defaults
+  solver.policy    the policy file, where decisions come from one
   settings/        what each service was started with
   logs/            what each service said
   faults/          why a service ended, if it ended by a fault
@@ -14,6 +16,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
@@ -36,7 +39,7 @@ LATEST = "latest"
 
 class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     """`run.json`. `pid` is that of aos-up. `is_played` says that skills are played by their documents, and
-    `sandbox` what confines the documents' code."""
+    `sandbox` what confines the documents' code. `version` is that of AOS."""
 
     robot: str
     endpoint: str
@@ -47,6 +50,7 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     pids: dict[str, int] = {}
     is_played: bool = False
     sandbox: str = ""
+    version: str = ""
 
 
 class ProcessEnd(msgspec.Struct, frozen=True):
@@ -157,6 +161,22 @@ class RunDirectory:
         with _kept(path):
             _write_privately(path, _pretty(settings))
         return path
+
+    def keep_inputs(self, deploy_file: Any, policy: Path | None) -> None:
+        """Keeps what may change outside: the deploy file as it was read, and the policy file.
+
+        StorageError AOS701 if they cannot be written, or the policy file cannot be read.
+        """
+        with _kept(self.path / "deploy.json"):
+            _write_privately(self.path / "deploy.json", _pretty(deploy_file))
+        if policy is not None:
+            with _kept(self.policy):
+                shutil.copyfile(policy, self.policy)
+
+    @property
+    def policy(self) -> Path:
+        """The copy of the policy file; there is none where decisions are searched for."""
+        return self.path / "solver.policy"
 
     def log(self, service: str) -> Path:
         return self.path / "logs" / f"{service}.log"

@@ -44,6 +44,7 @@ __all__ = [
     "PlanningError",
     "SkillError",
     "StorageError",
+    "StudyError",
     "error_from_code",
 ]
 
@@ -127,6 +128,7 @@ CODES: dict[str, str] = {
     "AOS514": "the id of an activation was used for another one",
     "AOS515": "a mission runs already",
     "AOS516": "a mission cannot begin with this belief",
+    "AOS530": "a mission that cannot be studied so",
     "AOS601": "no answer in time",
     "AOS602": "a malformed message",
     "AOS603": "another protocol version",
@@ -236,6 +238,12 @@ class MissionRunsError(SkillError):
     code = "AOS515"
 
 
+class StudyError(SkillError):
+    """A question about a mission that cannot be answered, or not from what was kept of it."""
+
+    code = "AOS530"
+
+
 class BusError(AosError):
     code = "AOS601"
 
@@ -301,6 +309,7 @@ _SITUATIONS: dict[str, type[AosError]] = {
     "AOS217": EngineDefectError,
     "AOS220": IntractableError,
     "AOS515": MissionRunsError,
+    "AOS530": StudyError,
     "AOS601": LateAnswerError,
     "AOS604": NobodyAnswersError,
     "AOS607": LostAnswerError,

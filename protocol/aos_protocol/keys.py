@@ -23,6 +23,9 @@
     aos/<robot>/mission/state       stream and query: where the mission is       MissionQuery -> MissionState
     aos/<robot>/decision/record     stream  decisions and their outcomes                       DecisionRecord
     aos/<robot>/decision/history    query   the records from a sequence number        HistoryQuery -> History
+    aos/<robot>/study/why           query   why a decision was made                         WhyQuery -> Why
+    aos/<robot>/study/whatif        query   a decision under other circumstances     WhatIfQuery -> WhatIf
+    aos/<robot>/study/tree          query   how a decision looks ahead           TreeQuery -> DecisionTree
 
 Names are checked where they enter, so that no wildcard can: robot, service and skill names are identifiers,
 paths are what a ROS name may be.
@@ -170,6 +173,18 @@ class Keys:
     @property
     def decision_history(self) -> str:
         return f"{self._root}/decision/history"
+
+    @property
+    def study_why(self) -> str:
+        return f"{self._root}/study/why"
+
+    @property
+    def study_whatif(self) -> str:
+        return f"{self._root}/study/whatif"
+
+    @property
+    def study_tree(self) -> str:
+        return f"{self._root}/study/tree"
 
     def service_of(self, live_key: str) -> str:
         """The service name in a liveliness key."""

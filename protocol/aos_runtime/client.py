@@ -13,6 +13,8 @@ from collections.abc import AsyncIterator, Iterable, Mapping
 from contextlib import asynccontextmanager
 from typing import Any, Literal
 
+import msgspec
+
 from aos_protocol.errors import (
     BusError,
     LateAnswerError,
@@ -24,6 +26,7 @@ from aos_protocol.keys import Keys
 from aos_protocol.messages import (
     BundleReport,
     DecisionRecord,
+    DecisionTree,
     History,
     HistoryQuery,
     MissionEntry,
@@ -33,6 +36,11 @@ from aos_protocol.messages import (
     MissionState,
     StartMission,
     StopMission,
+    TreeQuery,
+    WhatIf,
+    WhatIfQuery,
+    Why,
+    WhyQuery,
 )
 from aos_runtime.asking import ask_until_answered
 from aos_runtime.bus import Bus
@@ -54,6 +62,9 @@ SOLVER_AWAY_S = 15.0
 
 START_TIMEOUT_S = 600.0
 """A mission may begin with documents that are still to be compiled."""
+
+STUDY_TIMEOUT_S = 600.0
+"""A study begins with a replay, and may compile a model."""
 
 STOP_TIMEOUT_S = 300.0
 """A mission that is stopped ends once what moves has stopped, and a decision on its way is made."""
@@ -121,6 +132,33 @@ class AosClient:
     async def missions(self) -> Missions:
         """The missions of the system so far."""
         return await self.bus.ask(self.keys.missions, MissionsQuery(), Missions, timeout_s=_HISTORY_TIMEOUT_S)
+
+    async def why(self, step: int, *, instead: str = "", mission: int | None = None) -> Why:
+        """The reasons for the decision of a step, and not for `instead` another action.
+
+        The mission is the newest one, or that of a number in a system that stays. StudyError AOS530 where it
+        cannot be told; SkillError AOS501 for a step or an action that there is not.
+        """
+        query = WhyQuery(step, instead, await self._named(mission))
+        return await self.bus.ask(self.keys.study_why, query, Why, timeout_s=STUDY_TIMEOUT_S)
+
+    async def what_if(self, query: WhatIfQuery, *, mission: int | None = None) -> WhatIf:
+        """The decision of a step under other circumstances; errors as from `why`."""
+        query = msgspec.structs.replace(query, mission=await self._named(mission))
+        return await self.bus.ask(self.keys.study_whatif, query, WhatIf, timeout_s=STUDY_TIMEOUT_S)
+
+    async def tree(self, query: TreeQuery) -> DecisionTree:
+        """The tree below a decision; errors as from `why`."""
+        return await self.bus.ask(self.keys.study_tree, query, DecisionTree, timeout_s=STUDY_TIMEOUT_S)
+
+    async def _named(self, mission: int | None) -> str:
+        """The name of a mission by its number; empty for the newest one."""
+        if mission is None:
+            return ""
+        for entry in (await self.missions()).entries:
+            if entry.number == mission:
+                return entry.mission
+        raise SkillError(f"there is no mission {mission}", code="AOS501", hint="See `aos mission list`")
 
     async def until_ended(self, mission: str) -> MissionEntry:
         """Returns how a mission has ended, once it has.

@@ -133,7 +133,7 @@ async def test_what_cannot_be_replayed_is_said(tiger: BuiltModel, bundles: Path,
     changed: Rows = [*rows[:third], ("adopted", ModelAdopted(2, "other", 1)), *rows[third:]]
     replay = await replay_of(changed, tmp_path / "changed", bundles)
     assert (replay.violations, replay.compared) == ([], 2)
-    assert replay.remark == f"row {third + 1} changes the model: what follows is not replayed"
+    assert replay.remark == "the catalogue has no revision 2 of tiger"
 
     begun = rows[0][1]
     assert isinstance(begun, MissionBegun)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import statistics
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 from typing import Annotated, TypeVar
 
@@ -33,6 +33,7 @@ from aos_solver.mission.simulation import SimulatedRun, simulate_mission
 from aos_solver.mission.takeover import RunningModel
 from aos_solver.mission.terms import Terms
 from aos_solver.offline.following import following
+from aos_solver.study.supposing import believe_all
 
 __all__ = ["register"]
 
@@ -92,14 +93,25 @@ def plan(
     policy: PolicyFile = None,
     never: Never = None,
     set_values: SetValues = None,
+    belief: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--belief",
+            metavar="VAR=VALUE:P|FILE",
+            help="Another probability at the start, or a file with one a line; repeatable",
+        ),
+    ] = None,
     exact: Annotated[bool, typer.Option("--exact", help="By enumeration instead of search")] = False,
     as_json: AsJson = False,
     trust_documents: TrustDocuments = False,
 ) -> None:
     """Decide at the initial belief.
 
-    Prints the value of every action, found by search or exactly.
+    Prints the value of every action, found by search or exactly. With --belief
+    the probability of a variable's value is another one, and all ratios inside
+    are kept: --belief "holding_can=true:0.5".
     """
+    supposed = _suppositions(belief or ())
     if exact and policy is not None:
         raise typer.BadParameter("it excludes --exact", param_hint="--policy")
     search = Search(
@@ -110,6 +122,8 @@ def plan(
     async def decide(engine: Engine) -> Decision:
         with waiting("deciding") as tell:
             engine.on_progress = lambda found: tell(found.text)
+            for said in await believe_all(engine, supposed):
+                typer.echo(f"supposed {said}", err=True)
             if exact:
                 return _decision((await engine.exact(horizon)).values, 0)
             return await _searched_decision(engine, search)
@@ -121,6 +135,17 @@ def plan(
         _print_decision(
             decision, "exact" if exact else "0 simulations" if policy is None else "by the policy"
         )
+
+
+def _suppositions(given: Iterable[str]) -> list[str]:
+    """The suppositions, in place of files the lines that they have."""
+    found: list[str] = []
+    for text in given:
+        if Path(text).is_file():
+            found += [line for line in Path(text).read_text().splitlines() if line.strip()]
+        else:
+            found.append(text)
+    return found
 
 
 async def _searched_decision(engine: Engine, search: Search) -> Decision:

@@ -48,6 +48,7 @@ from aos_protocol.messages.mission import (
     StopMission,
     TakeoverWay,
 )
+from aos_protocol.messages.records import BeliefRow, ChosenBy, SearchMade, WeightedStates
 from aos_protocol.messages.skills import (
     Activate,
     ActivationId,
@@ -62,11 +63,25 @@ from aos_protocol.messages.skills import (
     Stray,
     TopicMessage,
 )
+from aos_protocol.messages.study import (
+    Consequence,
+    DecisionTree,
+    Flip,
+    TreeBranch,
+    TreeNode,
+    TreeQuery,
+    ValueTerm,
+    WhatIf,
+    WhatIfQuery,
+    Why,
+    WhyQuery,
+)
 
 __all__ = [
     "ActionValue",
     "Activate",
     "ActivationId",
+    "BeliefRow",
     "BeliefSummary",
     "BundleReport",
     "Cancel",
@@ -75,11 +90,15 @@ __all__ = [
     "CatalogueEntry",
     "CatalogueQuery",
     "CheckModel",
+    "ChosenBy",
+    "Consequence",
     "ConstraintRisk",
     "DecisionRecord",
+    "DecisionTree",
     "EndingOdds",
     "Envelope",
     "Fault",
+    "Flip",
     "History",
     "HistoryQuery",
     "MappingQuery",
@@ -104,6 +123,7 @@ __all__ = [
     "RevisionEntry",
     "Revisions",
     "RevisionsQuery",
+    "SearchMade",
     "SkillCall",
     "SkillProgress",
     "SkillResult",
@@ -112,4 +132,13 @@ __all__ = [
     "Stray",
     "TakeoverWay",
     "TopicMessage",
+    "TreeBranch",
+    "TreeNode",
+    "TreeQuery",
+    "ValueTerm",
+    "WeightedStates",
+    "WhatIf",
+    "WhatIfQuery",
+    "Why",
+    "WhyQuery",
 ]

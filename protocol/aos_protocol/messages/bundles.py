@@ -85,10 +85,14 @@ class Revisions(Message, frozen=True):
 
 
 class ProjectQuery(Message, frozen=True):
-    """Asks for a revision of a project, 0 for the current one; an empty name asks for the only project."""
+    """Asks for a revision of a project, 0 for the current one; an empty name asks for the only project.
+
+    The answer has the source files too where they are asked for (`with_files`).
+    """
 
     project: str = ""
     revision: int = 0
+    with_files: bool = False
 
 
 class ProjectRevision(Message, frozen=True):
@@ -97,6 +101,7 @@ class ProjectRevision(Message, frozen=True):
     revision: int
     digest: str
     project: Project
+    files: dict[str, bytes] = {}
 
 
 class CatalogueQuery(Message, frozen=True):

@@ -9,6 +9,7 @@ import msgspec
 from aos_protocol.diagnostics import Diagnostic
 from aos_protocol.documents import Project
 from aos_protocol.messages.base import Message
+from aos_protocol.messages.records import ChosenBy, SearchMade
 from aos_protocol.messages.skills import Outcome
 
 __all__ = [
@@ -276,7 +277,11 @@ class DecisionRecord(Message, frozen=True):
     `constraints` are the mission's, each with what the decision risks. The decision does without the skills
     that are `set_aside`, each with the reason; `actions` has none of theirs. With `is_cautious` it is for the
     belief in which nothing ran that was not observed. `adopted` tells of the model that has taken over since
-    the decision before.
+    the decision before. `chosen_by` says who chose the action. `searches` are all that were made since the
+    decision before, in their order; where one made this decision it is the last
+    that is not dropped. The engine's
+    process had been started `engine_starts` times. `build_digest` is of the model's text, the engine's
+    headers, compiler and flags: decisions repeat where it is the same.
     """
 
     sequence: int
@@ -309,6 +314,10 @@ class DecisionRecord(Message, frozen=True):
     preparation_s: float = 0.0
     update_s: float = 0.0
     adopted: ModelAdopted | None = None
+    chosen_by: ChosenBy = "planner"
+    searches: tuple[SearchMade, ...] = ()
+    engine_starts: int = 1
+    build_digest: str = ""
 
 
 class HistoryQuery(Message, frozen=True):

@@ -7,6 +7,8 @@ import logging
 from collections.abc import Mapping
 from pathlib import Path
 
+import msgspec
+
 from aos_protocol.diagnostics import Diagnostic, Severity, Span, render
 from aos_protocol.documents import Project
 from aos_protocol.errors import AosError, DocumentError, NobodyAnswersError, StorageError
@@ -92,7 +94,11 @@ class _Registry:
     async def _answer_project(self, query: ProjectQuery, _: str) -> ProjectRevision:
         project = self._named(query.project)
         current = self._intake.revisions[project]
-        return self._intake.past(project, query.revision) if query.revision else current
+        found = self._intake.past(project, query.revision) if query.revision else current
+        if not query.with_files:
+            return found
+        stored = self._catalogue.revision(project, found.revision)
+        return msgspec.structs.replace(found, files=stored.files if stored is not None else {})
 
     async def _answer_history(self, query: RevisionsQuery, _: str) -> Revisions:
         entries = self._catalogue.history(query.project)

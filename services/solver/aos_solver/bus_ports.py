@@ -26,6 +26,7 @@ class BusPorts:
     """The `Ports` of each mission of a solver. `changed` is set when a mission may have to look again."""
 
     world_ending: Ending | None = None
+    keeps_beliefs: bool = True
 
     def __init__(
         self,

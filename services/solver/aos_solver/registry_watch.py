@@ -53,10 +53,11 @@ class RegistryWatch:
 
     async def documents(self, revision: int) -> Project:
         """The documents of a revision."""
-        answer = await self._bus.ask(
-            self._keys.project,
-            ProjectQuery(self._project, revision),
-            ProjectRevision,
-            timeout_s=ASK_TIMEOUT_S,
-        )
-        return answer.project
+        return (await self._ask(ProjectQuery(self._project, revision))).project
+
+    async def files(self, revision: int) -> dict[str, bytes]:
+        """The source files of a revision."""
+        return (await self._ask(ProjectQuery(self._project, revision, with_files=True))).files
+
+    async def _ask(self, query: ProjectQuery) -> ProjectRevision:
+        return await self._bus.ask(self._keys.project, query, ProjectRevision, timeout_s=ASK_TIMEOUT_S)

@@ -41,6 +41,7 @@ from aos_solver.mission_runner import MissionRunner
 from aos_solver.registry_watch import RegistryWatch
 from aos_solver.settings import Settings
 from aos_solver.stopping import until_stopped
+from aos_solver.study_desk import StudyDesk
 
 __all__ = ["serve"]
 
@@ -82,6 +83,7 @@ class _Solver:
         if self._books.newest is not None and not self._books.newest.memory.has_ended:
             self._shelf.values.kept = self._books.newest.memory.mission_parameters
         self._registry = RegistryWatch(service.bus, service.keys, settings.project, self._shelf.make)
+        self._studies = StudyDesk(settings, self._books, self._registry)
         self._ports = BusPorts(service, self._books, self._mappings, self._shelf, self._changed)
         self._missions = MissionRunner(
             settings, self._books, self._shelf, self._mappings, self._registry, self._ports
@@ -97,6 +99,7 @@ class _Solver:
             await bus.answer(keys.resume_mission, ResumeMission, self._resume)
             await bus.answer(keys.stop_mission, StopMission, self._stop)
             await bus.answer(keys.missions, MissionsQuery, self._answer_missions)
+            await self._studies.answer(bus, keys)
             await self._service.ready()
             tasks.create_task(self._registry.follow())
             if self._missions.is_interrupted:
@@ -109,6 +112,7 @@ class _Solver:
 
     async def close(self) -> None:
         """Leaves the journal as it is: why the solver was stopped, whoever stopped it knows."""
+        await self._studies.close()
         await self._shelf.close()
         self._books.close()
 

@@ -92,6 +92,11 @@ class BuiltModel(msgspec.Struct, frozen=True):
     mission_values: dict[str, str] = {}
 
     @property
+    def digest(self) -> str:
+        """The digest of all that decides about the executable."""
+        return self.executable.parent.name.removeprefix("model-")
+
+    @property
     def cache_dir(self) -> Path:
         """The cache that it is an entry of."""
         return self.executable.parent.parent

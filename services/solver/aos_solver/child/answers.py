@@ -13,6 +13,7 @@ from aos_solver.child.command_line import command_line
 __all__ = [
     "BeliefCount",
     "BeliefUpdate",
+    "Believed",
     "Conditioned",
     "EngineDescription",
     "EngineFault",
@@ -27,6 +28,8 @@ __all__ = [
     "Progress",
     "Reach",
     "ReachedAction",
+    "RewardTerm",
+    "RewardTerms",
     "Risks",
     "SampleCount",
     "WorldStart",
@@ -72,6 +75,8 @@ class Plan(msgspec.Struct, frozen=True):
     that have, None where that is its index. `planner` has made it with so many `threads`, and `why` says why
     that planner did. `known_simulations` were in the tree before the search. The search took `search_s` of
     processor time, and before it the lists, values and first bounds, which no budget counts, `preparation_s`.
+    `by_thread` are the simulations of each thread where POMCP searched, and `pondered` those that were made
+    since the plan before while an action was carried out.
     """
 
     index: int
@@ -88,6 +93,8 @@ class Plan(msgspec.Struct, frozen=True):
     why: str = ""
     threads: int = 1
     place: int | None = None
+    by_thread: tuple[int, ...] = ()
+    pondered: tuple[int, ...] = ()
 
     @property
     def best(self) -> ActionValue:
@@ -314,6 +321,30 @@ class Conditioned(msgspec.Struct, frozen=True):
 
     probability: float
     summary: BeliefSummary
+
+
+class Believed(msgspec.Struct, frozen=True):
+    """The probability that a variable had a value before another was supposed, and the belief after it."""
+
+    probability: float
+    has_variable: bool
+    summary: BeliefSummary
+
+
+class RewardTerm(msgspec.Struct, frozen=True):
+    """The part of an expected return that one statement gives: its number, or the skill whose precondition
+    was violated."""
+
+    place: int
+    skill: str
+    amount: float
+
+
+class RewardTerms(msgspec.Struct, frozen=True):
+    """The parts of an expected return, and all of it as the steps' rewards have it."""
+
+    total: float
+    terms: tuple[RewardTerm, ...]
 
 
 class WorldStart(msgspec.Struct, frozen=True):

@@ -19,7 +19,14 @@ from aos_language.mission_parameters import ParameterLeaf
 from aos_protocol.errors import AosError, ModelError
 from aos_protocol.messages import BeliefSummary
 from aos_solver.building.build import BuiltModel
-from aos_solver.child.answers import BeliefUpdate, Conditioned, EngineDescription, EngineFault, Progress
+from aos_solver.child.answers import (
+    BeliefUpdate,
+    Believed,
+    Conditioned,
+    EngineDescription,
+    EngineFault,
+    Progress,
+)
 from aos_solver.child.belief_draws import BeliefDraws, BeliefLog
 from aos_solver.child.command_line import command_line, with_field
 from aos_solver.child.engine_child import (
@@ -40,7 +47,7 @@ __all__ = ["ANSWER_DEADLINE_S", "Asking", "Done"]
 log = logging.getLogger(__name__)
 
 A = TypeVar("A")
-B = TypeVar("B", BeliefSummary, BeliefUpdate, Conditioned)
+B = TypeVar("B", BeliefSummary, BeliefUpdate, Conditioned, Believed)
 
 ANSWER_DEADLINE_S = 30.0
 
@@ -57,14 +64,18 @@ class Done(msgspec.Struct, frozen=True):
 class Asking:
     """Owns the child process of one built model. Questions are asked one at a time."""
 
-    def __init__(self, built: BuiltModel, seed: int, impossible_observation: ImpossiblePolicy) -> None:
+    def __init__(
+        self, built: BuiltModel, seed: int, impossible_observation: ImpossiblePolicy, niceness: int = 0
+    ) -> None:
         self._built = built
         self._seed = seed
         self._policy = impossible_observation
+        self._niceness = niceness
         self._child: EngineChild | None = None
         self._beliefs: SharedMemory | None = None
         self._listing: SharedMemory | None = None
         self._changes = 0
+        self._starts = 0
         self._draws = BeliefDraws(seed)
         self._log = BeliefLog()
         self._correction_faults: dict[EngineFault, AosError] = {}
@@ -83,13 +94,14 @@ class Asking:
         seed: int,
         impossible_observation: ImpossiblePolicy = "widen",
         keeps_belief: bool = True,
+        niceness: int = 0,
     ) -> Self:
         """Starts the child on the initial belief; ModelError if the model cannot even begin.
 
         A child that is started again gets the belief, of which each child keeps a copy in our memory. Without
-        `keeps_belief` it gets the initial belief.
+        `keeps_belief` it gets the initial belief. The `niceness` is added to this process's own.
         """
-        engine = cls(built, seed, impossible_observation)
+        engine = cls(built, seed, impossible_observation, niceness)
         if keeps_belief:
             engine._beliefs = SharedMemory.create("aos-beliefs")
         engine._listing = SharedMemory.create("aos-listing")
@@ -134,6 +146,11 @@ class Asking:
         values = {name: text for name, text in mission_values.items() if name in self.parameters}
         return msgspec.structs.replace(self._built, mission_values=values)
 
+    async def forget(self) -> None:
+        """Starts the child anew with what is believed, as after a crash: searches begin without a tree."""
+        async with self._asking:
+            await self._restart_child()
+
     async def close(self) -> None:
         """Ends the child. A closed engine is not asked again."""
         await self._drop_child()
@@ -168,6 +185,16 @@ class Asking:
         return self._built.emitted.parameters
 
     @property
+    def starts(self) -> int:
+        """The number of times that the child was started. A new child has the belief, and no search tree."""
+        return self._starts
+
+    @property
+    def build_digest(self) -> str:
+        """The digest of the model's text, the engine's headers, the compiler and its flags."""
+        return self._built.digest
+
+    @property
     def pid(self) -> int | None:
         """The guarded child's process id; None while there is no child."""
         return self._child.pid if self._child else None
@@ -200,7 +227,7 @@ class Asking:
         self._log.add([*before, command], summary, time.monotonic() - begun_s)
         self._changes += 1
         told = self._log.told(summary)
-        if isinstance(answer, BeliefUpdate | Conditioned):
+        if isinstance(answer, BeliefUpdate | Conditioned | Believed):
             return msgspec.structs.replace(answer, summary=told)
         return told
 
@@ -242,11 +269,12 @@ class Asking:
         except AosError as error:
             raise await at_its_statement(error, self._built, self._start, []) from None
         self.description = self._child.description
+        self._starts += 1
 
     @property
     def _start(self) -> EngineStart:
         values = parameter_arguments(self._built.emitted.parameters, self._built.mission_values)
-        return EngineStart(self._seed, self._policy, self._beliefs, self._listing, values)
+        return EngineStart(self._seed, self._policy, self._beliefs, self._listing, values, self._niceness)
 
     async def _restart_child(self) -> None:
         await self._drop_child()

@@ -205,6 +205,18 @@ class BeliefQuestions(Asking):
         beliefs = [await self.export_belief(number=number) for number in range(count.beliefs)]
         return ExportedBeliefs(count.words, tuple(beliefs))
 
+    async def export_beliefs_within(self, max_bytes: int) -> ExportedBeliefs | None:
+        """All that is believed if it takes about `max_bytes` at most; else None, soon."""
+        count = await self._ask("describe_beliefs", BeliefCount)
+        beliefs: list[ExportedBelief] = []
+        for number in range(count.beliefs):
+            fields = {"is_whole": True, "number": number, "max_bytes": max_bytes // count.beliefs}
+            found = await self._ask(command_line("export_belief", first=0, **fields), ExportedBelief)
+            if len(found.particles) < found.states:
+                return None
+            beliefs.append(found)
+        return ExportedBeliefs(count.words, tuple(beliefs))
+
     async def import_belief(self, belief: ExportedBelief) -> BeliefSummary:
         """Takes over the belief of an engine whose model has the same state layout (`state_digest`)."""
         return await self._change_belief(belief.command, BeliefSummary)

@@ -84,7 +84,8 @@ _PROGRESS_LINE = b'{"progress":'
 class EngineStart(msgspec.Struct, frozen=True):
     """The start of a child. It keeps its beliefs in the one memory, and writes listings to the other.
 
-    `mission_values` are those of mission parameters, as `parameter_arguments` writes them.
+    `mission_values` are those of mission parameters, as `parameter_arguments` writes them. With a `niceness`
+    of up to 19 the child leaves the processor to others.
     """
 
     seed: int
@@ -92,6 +93,7 @@ class EngineStart(msgspec.Struct, frozen=True):
     beliefs: SharedMemory | None = None
     listing: SharedMemory | None = None
     mission_values: tuple[str, ...] = ()
+    niceness: int = 0
 
 
 class KilledError(ModelError):
@@ -132,9 +134,10 @@ class EngineChild:
         kept = -1 if start.beliefs is None else start.beliefs.descriptor
         arguments = [str(blame.descriptor), str(kept), str(draws_of(start.seed)), start.policy, str(periods)]
         arguments += start.mission_values
+        limits = msgspec.structs.replace(_LIMITS, niceness=start.niceness or None)
         try:
             child = await Child.start(
-                guarded([str(built.executable), *arguments], _LIMITS, confinement_of(built.executable)),
+                guarded([str(built.executable), *arguments], limits, confinement_of(built.executable)),
                 name="engine",
                 pass_fds=shared,
                 stdin=PIPE,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from aos_protocol.messages import ChosenBy
 from aos_solver.child.answers import Plan
 from aos_solver.child.engine import Engine
 from aos_solver.child.mission_questions import DEFAULT_PLANNER, UNRESTRICTED, Planner, Restriction
@@ -28,6 +29,11 @@ class Search(msgspec.Struct, frozen=True, kw_only=True):
     planner: Planner = DEFAULT_PLANNER
     threads: int = 1
     ponder_while_acting: bool = True
+
+    @property
+    def chosen_by(self) -> ChosenBy:
+        """The word for who chooses by this way of deciding."""
+        return "planner"
 
     def seed_of(self, step: int) -> int:
         """The seed of decision `step`, so that missions with neighbouring seeds share none."""

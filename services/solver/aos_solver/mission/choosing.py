@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import msgspec
 
-from aos_protocol.messages import BeliefSummary, DecisionRecord
+from aos_protocol.messages import BeliefSummary, ChosenBy, DecisionRecord, SearchMade
 from aos_solver.child.answers import Plan, Risks
 from aos_solver.child.engine import Engine, Restriction
 from aos_solver.mission.endings import (
@@ -24,13 +24,14 @@ from aos_solver.mission.terms import Terms
 
 __all__ = ["Choice", "Chooser", "Ended", "Held"]
 
+_TOO_RISKY = "it risks more than the mission's constraints have left"
 _CAUTIOUSLY = "it is decided as if nothing had run that was not observed"
 
 
 class Choice(msgspec.Struct, frozen=True):
     """An action, and what it was chosen without. `is_cautious` says that it is for the cautious belief.
 
-    `forbidden` are the numbers of the actions that risk too much.
+    `forbidden` are the numbers of the actions that risk too much. `searches` are all that were made for it.
     """
 
     plan: Plan
@@ -38,6 +39,8 @@ class Choice(msgspec.Struct, frozen=True):
     forbidden: frozenset[int]
     set_aside: dict[str, str]
     is_cautious: bool = False
+    chosen_by: ChosenBy = "planner"
+    searches: tuple[SearchMade, ...] = ()
 
 
 class Ended(msgspec.Struct, frozen=True):
@@ -63,6 +66,11 @@ class Chooser:
         self._failures = failures
         self._around = around
         self._budget = budget
+        self._searches: list[SearchMade] = []
+
+    def forget_searches(self) -> None:
+        """Another engine decides from now on, whatever was searched in the one before."""
+        self._searches.clear()
 
     def is_something_available(self, engine: Engine) -> bool:
         """Returns whether any action could be carried out now."""
@@ -83,7 +91,11 @@ class Chooser:
             if not set(possible) - forbidden:
                 return Ended(Ending.SKILLS_FAILED, _nothing_left(set_aside))
             unavailable = self._around.unavailable
-            barred = [n for n in possible if actions[n].skill in unavailable or n in forbidden]
+            barred = {
+                n: unavailable.get(actions[n].skill, _TOO_RISKY)
+                for n in possible
+                if actions[n].skill in unavailable or n in forbidden
+            }
             if len(barred) == len(possible):
                 why = "; ".join(sorted({*unavailable.values(), *set_aside.values()}))
                 risky = ", and all others are too risky" if forbidden else ""
@@ -92,13 +104,22 @@ class Chooser:
             if retried is not None and model.digest == retried.model_digest:
                 index = [action.name for action in actions].index(retried.action)
                 if index in possible and index not in barred:
-                    return Choice(await self._repeated(engine, retried, index), risks, forbidden, set_aside)
+                    again = await self._repeated(engine, retried, index)
+                    return Choice(again, risks, forbidden, set_aside, False, "retry", self._searched())
             plan, is_cautious = await self._plan(engine, step, belief, barred, set_aside)
             if actions[plan.index].skill in self._around.unavailable:
                 continue
             ended = await self._ending(engine, plan, belief, set_aside)
             plan = _explained(plan, set_aside, is_cautious)
-            return ended or Choice(plan, risks, forbidden, set_aside, is_cautious)
+            if ended is not None:
+                return ended
+            chosen_by, searches = self.search.chosen_by, self._searched()
+            return Choice(plan, risks, forbidden, set_aside, is_cautious, chosen_by, searches)
+
+    def _searched(self) -> tuple[SearchMade, ...]:
+        """The searches since the decision before, which are told once."""
+        searches, self._searches = tuple(self._searches), []
+        return searches
 
     def _set_aside(self) -> dict[str, str]:
         return self._failures.set_aside(self._around.clock.monotonic_s(), self._around.announced)
@@ -108,25 +129,64 @@ class Chooser:
         engine: Engine,
         step: int,
         belief: BeliefSummary,
-        barred: list[int],
+        barred: Mapping[int, str],
         set_aside: Mapping[str, str],
     ) -> tuple[Plan, bool]:
         """The best action, and whether it is for the cautious belief.
 
         It is where the mission would be over but for that belief, or else nothing would be worth doing.
         """
-        within = Restriction(barred=barred, without=sorted(set_aside))
-        cautiously = Restriction(barred=barred, without=within.without, cautious=True)
+        without = sorted(set_aside)
         if not self._terms.is_cautious:
-            return await self.search.run(engine, step, within), False
+            return await self._search(engine, step, barred, without), False
         if is_held_back(belief, self._limits):
-            return await self.search.run(engine, step, cautiously), True
-        plan = await self.search.run(engine, step, within)
+            return await self._search(engine, step, barred, without, cautious=True), True
+        plan = await self._search(engine, step, barred, without)
         if belief.cautious is not None and is_worth_nothing(plan.best, self._limits):
-            cautious = await self.search.run(engine, step, cautiously)
+            cautious = await self._search(engine, step, barred, without, cautious=True)
             if not is_worth_nothing(cautious.best, self._limits):
                 return cautious, True
+            self._keep_last_but_one()
         return plan, False
+
+    async def _search(
+        self,
+        engine: Engine,
+        step: int,
+        barred: Mapping[int, str],
+        without: list[str],
+        *,
+        cautious: bool = False,
+    ) -> Plan:
+        """A plan, of whose search a record is kept; those before it are dropped."""
+        within = Restriction(barred=list(barred), without=without, cautious=cautious)
+        plan = await self.search.run(engine, step, within)
+        self._searches = [msgspec.structs.replace(made, is_dropped=True) for made in self._searches]
+        if plan.pondered:
+            pondering = SearchMade(plan.planner, plan.pondered, is_pondering=True, engine=engine.starts)
+            self._searches.append(pondering)
+        self._searches.append(
+            SearchMade(
+                plan.planner,
+                plan.by_thread or (plan.simulations,),
+                plan.known_simulations,
+                {engine.description.actions[number].name: why for number, why in barred.items()},
+                tuple(without),
+                cautious,
+                engine=engine.starts,
+            )
+        )
+        return plan
+
+    def _keep_last_but_one(self) -> None:
+        """The last search decides nothing, but the one before it."""
+        if len(self._searches) > 1:
+            *others, decided, dropped = self._searches
+            self._searches = [
+                *others,
+                msgspec.structs.replace(decided, is_dropped=False),
+                msgspec.structs.replace(dropped, is_dropped=True),
+            ]
 
     async def _ending(
         self, engine: Engine, plan: Plan, belief: BeliefSummary, set_aside: Mapping[str, str]

@@ -22,6 +22,7 @@ from aos_protocol.messages import (
     Outcome,
 )
 from aos_solver.child.answers import BeliefUpdate
+from aos_solver.mission.belief_rows import keep_belief
 from aos_solver.mission.choosing import Choice, Chooser, Ended, Held
 from aos_solver.mission.endings import Ending, ending_of_belief, remark_of
 from aos_solver.mission.failures import Failures
@@ -110,6 +111,8 @@ class Mission:
         self.belief = await self._model.engine.summary()
         if not await self._take_up():
             return
+        if self.state.step == 0:
+            await keep_belief(self._ports, self._model, 0, self.belief)
         while (ending := self._ending()) is None:
             if await self._adopt():
                 continue
@@ -181,6 +184,8 @@ class Mission:
             return False
         before, self._model = self._model, takeover.model
         self.belief, self._adopted = takeover.belief, takeover.row
+        if takeover.model.engine is not before.engine:
+            self._chooser.forget_searches()
         if takeover.model.digest != before.digest:
             self._terms = msgspec.structs.replace(self._terms, search=self._terms.search.after_takeover())
             self._chooser.search = self._terms.search
@@ -271,6 +276,7 @@ class Mission:
         remark = self._take_failure(decision, outcome, update, self._ports.clock.monotonic_s())
         self._reports.observed(decision, outcome, update, update_s, remark)
         self.belief = update.summary
+        await keep_belief(self._ports, self._model, decision.step, self.belief)
 
     def _take_failure(
         self, decision: DecisionRecord, outcome: Outcome, update: BeliefUpdate, now_s: float

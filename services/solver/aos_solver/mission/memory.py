@@ -117,7 +117,7 @@ def folded(rows: Iterable[JournalRow]) -> MissionMemory:
 
 
 def _without_search(decision: DecisionRecord) -> DecisionRecord:
-    return msgspec.structs.replace(decision, actions=(), predicted=(), belief=_NO_BELIEF, why="")
+    return msgspec.structs.replace(decision, actions=(), predicted=(), belief=_NO_BELIEF, why="", searches=())
 
 
 def _decoded(row: JournalRow) -> Any:

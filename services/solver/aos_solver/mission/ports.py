@@ -51,7 +51,13 @@ class Robot(Available, Protocol):
 
 
 class Record(Protocol):
-    """The journal and the audience of a mission."""
+    """The journal and the audience of a mission.
+
+    Where it `keeps_beliefs` the journal has whole beliefs too.
+    """
+
+    @property
+    def keeps_beliefs(self) -> bool: ...
 
     def journal(self, kind: str, payload: Message) -> None:
         """Write durably; returns once it is on the disk."""
@@ -87,6 +93,7 @@ class QuietPorts:
     unavailable: Mapping[str, str] = {}
     announced: Mapping[str, int] = {}
     world_ending: Ending | None = None
+    keeps_beliefs: bool = False
 
     async def until_changed(self, timeout_s: float) -> None:
         """Nothing ever changes."""

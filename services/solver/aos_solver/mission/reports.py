@@ -72,6 +72,10 @@ class Reports:
             set_aside=choice.set_aside,
             is_cautious=choice.is_cautious,
             adopted=adopted,
+            chosen_by=choice.chosen_by,
+            searches=choice.searches,
+            engine_starts=model.engine.starts,
+            build_digest=model.engine.build_digest,
         )
         self._publish(record)
         return record

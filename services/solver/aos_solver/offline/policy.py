@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 
 from aos_protocol.errors import PlanningError
-from aos_protocol.messages import ActionValue
+from aos_protocol.messages import ActionValue, ChosenBy
 from aos_solver.child.answers import ExportedBelief, Plan
 from aos_solver.child.engine import Engine
 from aos_solver.child.mission_questions import UNRESTRICTED, Restriction
@@ -122,6 +122,11 @@ class PolicySearch(Search, frozen=True, kw_only=True):
     """Decides by a policy instead of searching; the budget is not used."""
 
     policy: Policy
+
+    @property
+    def chosen_by(self) -> ChosenBy:
+        """The policy, which searches nothing."""
+        return "policy"
 
     def after_takeover(self) -> Search:
         """A search with the budget: the policy is for the model before."""

@@ -19,6 +19,7 @@
 #include "aos/belief/kept_beliefs.hpp"
 #include "aos/child/command.hpp"
 #include "aos/child/faults.hpp"
+#include "aos/child/jeffreys_rule.hpp"
 #include "aos/child/left_out.hpp"
 #include "aos/child/projected_beliefs.hpp"
 #include "aos/child/saved_beliefs.hpp"
@@ -170,7 +171,8 @@ class BeliefCommands {
   }
 
   // Writes the particles from `first` on, of the belief or of the one with this `number` among those of `describe_beliefs`.
-  // Unless `is_whole`, variables that do not matter have stand-ins.
+  // Unless `is_whole`, variables that do not matter have stand-ins. Where all would take more than `max_bytes`, some are
+  // missing.
   void export_belief(JsonWriter& json, const Command& command) const {
     const LeftOut<Model> left_out;
     const bool is_whole = command.flag("is_whole");
@@ -179,7 +181,8 @@ class BeliefCommands {
     const auto number = has_number ? command.number<std::size_t>("number") : 0;
     if (number >= all.size()) throw BadCommand{"there is no such belief"};
     save_belief(json, has_number ? *all[number] : belief_for(command), command.number<std::size_t>("first"),
-                [&](const State& state) { return is_whole ? state : left_out.rest_of(state); });
+                [&](const State& state) { return is_whole ? state : left_out.rest_of(state); },
+                command.optional_text("max_bytes") ? command.number<std::size_t>("max_bytes") : max_answer_bytes);
   }
   // Writes how many beliefs there are, and what tells them apart.
   void describe_beliefs(JsonWriter& json) const {
@@ -222,6 +225,39 @@ class BeliefCommands {
   void project_belief(JsonWriter& json, const Command& command) {
     random_ = Sampler{command.number<std::uint64_t>("draws")};
     take_over(json, command, load_joint<Model>(command, random_));
+  }
+
+  // Moves the probability that a variable has a value, of the belief that the command is about, and keeps all ratios
+  // among the states where it has the value, and among the others (Jeffrey's rule). With `from_aside` the belief is the
+  // one that was put aside. Writes the probability before. Where that excludes the value or its contrary and another
+  // probability is wanted, nothing changes.
+  void believe(JsonWriter& json, const Command& command) {
+    kept_.number_next(command.number<std::uint64_t>("change"));
+    const bool is_from_aside = command.optional_text("from_aside") && command.flag("from_aside");
+    if (is_from_aside && !aside_) throw BadCommand{"no belief was put aside"};
+    const bool is_cautious = command.optional_text("cautious") && command.flag("cautious");
+    const Hypotheses& base = is_from_aside ? *aside_ : believed_;
+    const Belief<Model>& from = is_cautious && base.cautious() != nullptr ? *base.cautious() : base.belief();
+    const JeffreysRule<Model> rule{from, command.text("variable"), command.text("value")};
+    const auto moved = rule.moved_to(command.number<double>("probability"));
+    json.begin_object().member("probability", rule.probability()).member("has_variable", rule.has_variable());
+    json.key("summary");
+    if (moved) {
+      become(json, Hypotheses{*moved});
+    } else {
+      become(json, believed_, [] {});
+    }
+    json.end_object();
+  }
+  // Puts what is believed aside, and takes it back.
+  void put_aside(JsonWriter& json) {
+    aside_ = believed_;
+    json.begin_object().end_object();
+  }
+  void take_back(JsonWriter& json, const Command& command) {
+    kept_.number_next(command.number<std::uint64_t>("change"));
+    if (!aside_) throw BadCommand{"no belief was put aside"};
+    become(json, *aside_);
   }
 
   // Takes over what an earlier engine kept after change number `change`.
@@ -309,6 +345,7 @@ class BeliefCommands {
   ImpossiblePolicy policy_;
   int impossible_in_a_row_ = 0;
   Hypotheses believed_;
+  std::optional<Hypotheses> aside_;
   std::vector<Belief<Model>> incoming_;
   KeptBeliefs<Model> kept_;
   Planner<Model>& search_;

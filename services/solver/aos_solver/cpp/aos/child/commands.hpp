@@ -15,6 +15,7 @@
 #include "aos/child/planning_commands.hpp"
 #include "aos/child/rates.hpp"
 #include "aos/child/risk_commands.hpp"
+#include "aos/child/study_commands.hpp"
 #include "aos/child/watchdog.hpp"
 #include "aos/child/world_commands.hpp"
 #include "aos/model/values.hpp"
@@ -26,7 +27,7 @@ template <class Model>
 class Commands {
  public:
   Commands(std::uint64_t draws, ImpossiblePolicy policy, int kept_beliefs)
-      : beliefs_(draws, policy, kept_beliefs, search_), planning_(beliefs_, search_) {}
+      : beliefs_(draws, policy, kept_beliefs, search_), planning_(beliefs_, search_), studies_(beliefs_) {}
 
   void describe(JsonWriter& json) const {
     json.begin_object().member("project", Model::project).member("horizon", Model::horizon);
@@ -82,6 +83,7 @@ class Commands {
   using Answer = void (*)(Commands& commands, JsonWriter& json, const Command& command);
   using Beliefs = BeliefCommands<Model>;
   using Planning = PlanningCommands<Model>;
+  using Studies = StudyCommands<Model>;
   using Worlds = WorldCommands<Model>;
 
   // The answer of one part. A function without a command takes no fields.
@@ -105,6 +107,11 @@ class Commands {
         {"risks", [](Commands& commands, JsonWriter& json, const Command& command) {
            write_risks(json, command, commands.beliefs_.belief());
          }},
+        {"exact_values", by<&Commands::studies_, &Studies::exact_values>},
+        {"reward_terms", by<&Commands::studies_, &Studies::reward_terms>},
+        {"believe", by<&Commands::beliefs_, &Beliefs::believe>},
+        {"put_aside", by<&Commands::beliefs_, &Beliefs::put_aside>},
+        {"take_back", by<&Commands::beliefs_, &Beliefs::take_back>},
         {"summary", by<&Commands::beliefs_, &Beliefs::summary>},
         {"reset_belief", by<&Commands::beliefs_, &Beliefs::reset>},
         {"begin_mission", by<&Commands::beliefs_, &Beliefs::begin_mission>},
@@ -145,6 +152,7 @@ class Commands {
   Planner<Model> search_;
   Beliefs beliefs_;
   Planning planning_;
+  Studies studies_;
   Worlds worlds_;
 };
 

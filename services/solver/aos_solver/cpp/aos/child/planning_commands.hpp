@@ -65,6 +65,7 @@ class PlanningCommands {
       const bool is_cautious = planned_cautiously_ && beliefs_.cautious() != nullptr;
       const Belief<Model>& planned = is_cautious ? *beliefs_.cautious() : belief();
       search_.ponder(pondered.action, planned, pondered.budget, planned_horizon_, random, is_over);
+      pondered_simulations_ = search_.simulations_by_thread();
     } catch (...) {
       search_.forget();
       blame::at(0);
@@ -185,6 +186,8 @@ class PlanningCommands {
     const std::string_view name = search.name();
     json.member("planner", name).member("why", search.why());
     json.member("threads", name == "pomcp" ? budget.threads : 1);  // only POMCP has several threads
+    write_numbers(json.key("by_thread"), search.simulations_by_thread());
+    write_numbers(json.key("pondered"), std::exchange(pondered_simulations_, {}));
     json.key("actions").begin_array();
     for (int action = 0; action < Model::action_count(); ++action) {
       const auto& value = values[static_cast<std::size_t>(action)];
@@ -214,6 +217,12 @@ class PlanningCommands {
     return barred;
   }
 
+  static void write_numbers(JsonWriter& json, const std::vector<std::uint64_t>& numbers) {
+    json.begin_array();
+    for (const std::uint64_t number : numbers) json.value(number);
+    json.end_array();
+  }
+
   static int horizon_of(const Command& command) {
     const int horizon = command.number<int>("horizon");
     return horizon > 0 ? horizon : Model::horizon;
@@ -232,6 +241,7 @@ class PlanningCommands {
   std::vector<int> left_;
   std::unique_ptr<Planner<Model>> shorter_search_;  // with the actions that are `left_`
   std::optional<Pondered> pondered_;
+  std::vector<std::uint64_t> pondered_simulations_;  // since the last plan
   std::optional<Listing<Model>> listing_;
 };
 

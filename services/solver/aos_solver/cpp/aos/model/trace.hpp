@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "aos/base/fault.hpp"
+#include "aos/base/reward_ledger.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/reflection.hpp"
 
@@ -34,11 +35,11 @@ class Inside {
 
 // Remembers the statement that gave a result. A wrong result shows only when its section is over, and then
 // that statement is blamed. A reward blames the statement that made it infinite or NaN; a response blames the
-// last one that set it.
+// last one that set it. In a study, each statement has in the ledger by how much it changed the reward.
 template <class Result>
 class Giving {
  public:
-  explicit Giving(const Result& result) : result_(result) {}
+  explicit Giving(const Result& result) : result_(result), before_(result) {}
   Giving(const Giving&) = delete;
   Giving& operator=(const Giving&) = delete;
   ~Giving() {
@@ -47,6 +48,7 @@ class Giving {
 
   void by(std::uint32_t place) {
     if constexpr (std::is_floating_point_v<Result>) {
+      if (reward_ledger != nullptr) reward_ledger->add(place, result_ - std::exchange(before_, result_));
       if (std::isfinite(result_)) {
         place_ = 0;
       } else if (place_ == 0) {
@@ -59,6 +61,7 @@ class Giving {
 
  private:
   const Result& result_;
+  Result before_;
   std::uint32_t place_ = 0;
   int exceptions_ = std::uncaught_exceptions();
 };

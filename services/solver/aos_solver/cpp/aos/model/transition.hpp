@@ -9,12 +9,15 @@
 #include <type_traits>
 
 #include "aos/base/fault.hpp"
+#include "aos/base/reward_ledger.hpp"
 #include "aos/model/blame.hpp"
 #include "aos/model/grounding.hpp"
 #include "aos/model/reflection.hpp"
 #include "aos/model/step.hpp"
 
 namespace aos {
+
+class Sampler;
 
 inline constexpr const char* no_text_response = "NoStrResponse";
 
@@ -92,6 +95,17 @@ struct NoSkill : SkillDefaults {
   static constexpr bool keeps_state = !Environment::is_one_state;
 };
 
+namespace detail {
+
+// Where a study has a ledger, it is told the reward of each phase, and the place that runs. Samplers have none.
+inline void note_reward(double reward) {
+  if (reward_ledger != nullptr) [[unlikely]] reward_ledger->end_phase(blame::piece(), reward);
+}
+template <class Random>
+inline constexpr bool notes_rewards = !std::is_same_v<std::remove_cvref_t<Random>, Sampler>;
+
+}  // namespace detail
+
 // What a special state says: only that the mission ends, or also whether this is a failure.
 enum class Said { endings, failures };
 
@@ -118,6 +132,7 @@ double special_state(State& next, std::uint64_t bit, auto&& evaluate) {
   bool is_failure = false;
   bool is_used_up = false;
   evaluate(reward, is_goal, is_failure, is_used_up);
+  detail::note_reward(reward);
   if ((is_goal || is_failure) && next.aos_ending == Ending::running) next.aos_ending = ending_of<said>(reward, is_failure);
   if constexpr (requires { next.aos_spent; }) {
     if (is_used_up) next.aos_spent |= static_cast<decltype(next.aos_spent)>(bit);
@@ -156,10 +171,14 @@ Step run_skill(auto& state, auto& state_, auto& next, bool meets_precondition, i
   std::conditional_t<Skill::has_text_response, EffectWithText, Effect> effect;
   [[maybe_unused]] const std::conditional_t<Skill::has_text_response, ShownText, NoText> shown{effect};
   Skill::next_state(state, state_, next, meets_precondition, execution_time, effect, parameters, random);
+  if constexpr (notes_rewards<decltype(random)>) note_reward(effect.reward);
   Step step;
   step.reward = effect.reward;
   // Adding zero takes time as well, so only terms that may differ from zero are added.
   const double penalty = meets_precondition ? 0 : Skill::violation_penalty;
+  if constexpr (Skill::violation_penalty != 0 && notes_rewards<decltype(random)>) {
+    if (reward_ledger != nullptr) [[unlikely]] reward_ledger->end_phase(0, penalty, Skill::aos_name);
+  }
   if constexpr (Environment::has_extrinsic_changes) {
     step.reward = penalty + extrinsic_reward + effect.reward;
   } else if constexpr (Skill::violation_penalty != 0) {
@@ -188,6 +207,7 @@ Step transition(State& next, const auto& parameters, auto& random) {
     double reward = 0;
     const typename Environment::Chosen chosen{std::type_identity<Skill>{}, parameters};
     Environment::extrinsic_changes(state, next, reward, execution_time, chosen, random);
+    if constexpr (notes_rewards<decltype(random)>) note_reward(reward);
     check_reward(reward);
     Kept<State, Skill::keeps_state_> state_ = next;
     return run_skill<Environment, Skill>(state, state_, next, meets_precondition, execution_time, reward, parameters,

@@ -125,6 +125,40 @@ class ExactEvaluation {
     return found;
   }
 
+  // How often, discounted, missions that begin with an action take each action in each state, if they decide best: the
+  // expected rewards by these weights add up to the action's value. Throws NotEnumerable at a limit.
+  std::map<std::pair<std::uint32_t, std::size_t>, double> occupancy(const Belief<Model>& belief, std::size_t action, int horizon) {
+    struct Visit {
+      Weighted belief;  // of sum 1
+      double weight = 0;
+    };
+    std::map<std::pair<std::uint32_t, std::size_t>, double> found;
+    std::unordered_map<BeliefKey, Visit, KeyHash> level;
+    const auto add = [](auto& visits, Weighted states, double weight) {
+      double total = 0;
+      for (const auto& part : states) total += part.second;
+      if (total <= 0) return;
+      for (auto& part : states) part.second /= total;
+      Visit& visit = visits[key_of(states)];
+      visit.weight += weight * total;
+      if (visit.belief.empty()) visit.belief = std::move(states);
+    };
+    add(level, space_.weights_of(belief), 1);
+    for (int left = horizon; left > 0 && !level.empty(); --left) {
+      std::unordered_map<BeliefKey, Visit, KeyHash> next;
+      for (const auto& [key, visit] : level) {
+        const std::size_t chosen = left == horizon ? action : best_action(visit.belief, left);
+        for (const auto& [state, weight] : visit.belief) found[{state, chosen}] += visit.weight * weight;
+        if (left == 1) continue;
+        for (const auto& [observation, states] : posteriors(visit.belief, chosen)) {
+          add(next, {states.begin(), states.end()}, visit.weight * Model::discount);
+        }
+      }
+      level = std::move(next);
+    }
+    return found;
+  }
+
   // How far rounding may have moved a value with so many decisions to go, at most: that of sums, that of the keys of
   // beliefs, and ties.
   double error(int horizon) const {

@@ -65,6 +65,11 @@ class Planner {
     return simulations + tried_in_vain_;
   }
 
+  // The simulations of each thread of POMCP's last search; empty for another planner, which has one thread.
+  std::vector<std::uint64_t> simulations_by_thread() const {
+    return used_ == PlannerKind::pomcp ? pomcp_.simulations_by_thread() : std::vector<std::uint64_t>{};
+  }
+
   // This thread's processor time of the last search, and that of the lists, values and first bounds before it, which no budget counts.
   std::chrono::duration<double> searching() const { return searching_; }
   std::chrono::duration<double> preparing() const { return preparing_; }

@@ -121,6 +121,7 @@ class Pomcp {
     return "without observations all " + std::to_string(wide_values_.states()) + " can be, and their values are computed";
   }
 
+  const std::vector<std::uint64_t>& simulations_by_thread() const { return threads_.simulations(); }
   // How many simulations went through the root.
   std::uint64_t known_simulations() const {
     std::uint64_t sum = 0;

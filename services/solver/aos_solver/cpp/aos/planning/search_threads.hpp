@@ -30,12 +30,15 @@ class SearchThreads {
 
   // Makes one tree for each thread.
   void prepare(int threads) {
+    simulations_.clear();
     const auto count = static_cast<std::size_t>(threads);
     if (trees_.size() == count) return;
     trees_.clear();
     for (std::size_t i = 0; i < count; ++i) trees_.push_back(std::make_unique<Tree>(max_search_bytes / count));
   }
   const std::vector<std::unique_ptr<Tree>>& trees() const { return trees_; }
+  // Of the last search, by thread.
+  const std::vector<std::uint64_t>& simulations() const { return simulations_; }
 
   // How a budget in simulations is counted: by the work in the tree, with so many operations to a simulation, or by
   // descents if there are none, since each of these has a rollout.
@@ -60,12 +63,14 @@ class SearchThreads {
       works[0] = work(*trees_[0], start_state, share(budget, 0), each_, start, random, first, is_over);
     }
     std::uint64_t simulations = 0;
+    simulations_.clear();
     for (const Work& done : works) {
       if (done.fault) {
         blame::at(done.piece);
         std::rethrow_exception(done.fault);
       }
       simulations += done.simulations;
+      simulations_.push_back(done.simulations);
     }
     return simulations;
   }
@@ -119,6 +124,7 @@ class SearchThreads {
   }
 
   std::vector<std::unique_ptr<Tree>> trees_;
+  std::vector<std::uint64_t> simulations_;
   Operations each_ = 0;
 };
 

@@ -1,0 +1,159 @@
+"""`aos replay` and `aos diff`: a mission computed once more, and two missions beside each other."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from aos_deploy.exit_codes import ExitCode
+from aos_deploy.living_runs import chosen_run
+from aos_deploy.options import AsJson, Mission, Runs, TrustDocuments
+from aos_deploy.printing import count, from_here, print_json
+from aos_deploy.run_difference import Difference, difference
+from aos_deploy.studied_run import StudiedRun
+from aos_deploy.terminal import waiting
+from aos_protocol.messages import ModelAdopted
+from aos_solver.study.comparing import Comparison, compared
+
+__all__ = ["Replayed", "register", "replayed_run"]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the commands to `aos`."""
+    app.command(epilog="Example: aos replay runs/latest --until 4")(replay)
+    app.command(epilog="Example: aos diff runs/20260105T101500Z-armadillo runs/latest")(diff)
+
+
+class Replayed(msgspec.Struct):
+    """The output of `aos replay --json`: how much was compared, and the first row that differs.
+
+    `values` are the decisions of which all was compared, `beliefs` the rows of which the belief was;
+    `partly` has the steps of the other decisions by the reason.
+    """
+
+    run: str
+    decisions: int = 0
+    values: int = 0
+    beliefs: int = 0
+    takeovers: int = 0
+    partly: dict[str, list[int]] = {}
+    first_difference: Comparison | None = None
+
+
+def replay(
+    run: Annotated[Path | None, typer.Argument(metavar="RUN", help="A run directory; else the last")] = None,
+    until: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="End with the decision of this step")
+    ] = None,
+    mission: Mission = None,
+    runs: Runs = None,
+    as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
+) -> None:
+    """Compute a mission once more, and compare each decision.
+
+    Documents, decisions and outcomes of the journal are put through an engine
+    of the same model. Compared bit for bit are the action, the values and
+    counts of all actions, and the digest of the belief. The first difference
+    is named with its cause, and makes the exit code 1. A decision with a budget
+    in time is compared by its belief alone. No mission is touched.
+    """
+    directory = chosen_run(run, runs).path
+    with waiting("replaying") as told:
+        found = asyncio.run(replayed_run(StudiedRun.open(directory, mission), told, until))
+    if as_json:
+        print_json(found)
+    else:
+        _print(found)
+    if found.first_difference is not None:
+        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+
+
+async def replayed_run(
+    studied: StudiedRun, told: Callable[[str], None], until: int | None = None
+) -> Replayed:
+    """Compares a mission with its replay up to the first difference, or to the decision of step `until`."""
+    found = Replayed(str(from_here(studied.run)))
+    remade = studied.replay(told, decides=True, niceness=0)
+    try:
+        async for made in remade.rows(until):
+            found.takeovers += isinstance(made.said, ModelAdopted)
+            row = compared(made, remade.engine.build_digest, studied.settings.time_s)
+            if row is None:
+                continue
+            found.decisions += row.decides
+            found.values += row.has_values
+            found.beliefs += row.has_belief
+            if row.without:
+                found.partly.setdefault(row.without, []).append(row.step)
+            if row.difference:
+                found.first_difference = row
+                break
+    finally:
+        await remade.close()
+    return found
+
+
+def _print(found: Replayed) -> None:
+    over = f", {count(found.takeovers, 'takeover')}" if found.takeovers else ""
+    first = found.first_difference
+    if first is not None:
+        what = "decision" if first.decides else "outcome"
+        typer.echo(f"{found.run}: step {first.step} differs, at its {what}, {first.action}")
+        typer.echo(f"  {first.difference}")
+        typer.echo(f"  cause: {first.cause}")
+    else:
+        values = (
+            f"{found.values} of {count(found.decisions, 'decision')} identical in action, values and counts"
+        )
+        typer.echo(f"{found.run}: {values}; {count(found.beliefs, 'belief')} identical{over}")
+    for why, steps in found.partly.items():
+        typer.echo(f"  by their beliefs alone, steps {_ranges(steps)}: {why}")
+
+
+def _ranges(steps: list[int]) -> str:
+    """The steps for people: `1-4, 7`."""
+    parts: list[list[int]] = []
+    for step in steps:
+        if parts and step == parts[-1][-1] + 1:
+            parts[-1].append(step)
+        else:
+            parts.append([step])
+    return ", ".join(f"{part[0]}-{part[-1]}" if len(part) > 1 else str(part[0]) for part in parts)
+
+
+def diff(
+    first: Annotated[Path, typer.Argument(metavar="A", help="A run directory")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another one")],
+    mission: Mission = None,
+    as_json: AsJson = False,
+) -> None:
+    """Compare two missions: where they part, and what was different before.
+
+    The exit code is 1 where they differ.
+    """
+    opened = [StudiedRun.open(chosen_run(run, None).path, mission) for run in (first, second)]
+    found = difference(*opened)
+    if as_json:
+        print_json(found)
+    else:
+        _print_difference(found, str(from_here(opened[0].run)), str(from_here(opened[1].run)))
+    if found.is_any:
+        raise typer.Exit(ExitCode.DOCUMENTS_WRONG)
+
+
+def _print_difference(found: Difference, first: str, second: str) -> None:
+    typer.echo(f"A is {first}, B is {second}")
+    for name, (then, now) in found.settings.items():
+        typer.echo(f"  {name}: {then} in A, {now} in B")
+    if found.step:
+        typer.echo(f"  step {found.step} is the first that differs: {found.what}")
+        if found.before:
+            typer.echo(f"  before it the same {count(found.before, 'step')}")
+    else:
+        typer.echo(f"  all {count(found.before, 'step')} are the same")

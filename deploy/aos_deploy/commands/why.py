@@ -1,0 +1,130 @@
+"""`aos why` and `aos whatif`: questions about a decision that was made."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import Annotated, TypeVar
+
+import typer
+
+from aos_deploy.living_runs import chosen_run
+from aos_deploy.options import AsJson, Mission, TrustDocuments
+from aos_deploy.printing import print_json
+from aos_deploy.running_system import System, on_system
+from aos_deploy.studied_run import StudiedRun
+from aos_deploy.terminal import waiting
+from aos_deploy.views.reasons import what_if_lines, why_lines
+from aos_protocol.messages import WhatIf, WhatIfQuery, Why, WhyQuery
+from aos_runtime.client import AosClient
+
+__all__ = ["register"]
+
+T = TypeVar("T", Why, WhatIf)
+
+Step = Annotated[int, typer.Argument(min=1, metavar="STEP", help="The number of the decision")]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the commands to `aos`."""
+    app.command(epilog='Example: aos why 3 --instead "navigate(destination=corridor)"')(why)
+    app.command(epilog='Example: aos whatif 3 --believe "holding_can=true:0.5"')(whatif)
+
+
+@on_system
+def why(
+    system: System,
+    step: Step,
+    instead: Annotated[
+        str, typer.Option("--instead", metavar="ACTION", help="Not the runner-up but this action")
+    ] = "",
+    mission: Mission = None,
+    as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
+) -> None:
+    """Explain a decision.
+
+    Its value and that of another action; what was expected, and what each
+    response would lead to; which lines of the documents the margin comes from;
+    where along the belief the choice changes. A mission that runs is asked
+    through its solver, which has an engine of its own for this; one that is
+    over is read from its directory.
+    """
+
+    async def ask(aos: AosClient) -> Why:
+        return await aos.why(step, instead=instead, mission=mission)
+
+    async def look(studied: StudiedRun) -> Why:
+        return await studied.study(lambda study: study.why(WhyQuery(step, instead)))
+
+    found = _found(system, mission, ask, look)
+    if as_json:
+        print_json(found)
+    else:
+        typer.echo("\n".join(why_lines(found)))
+
+
+@on_system
+def whatif(
+    system: System,
+    step: Step,
+    forbid: Annotated[
+        list[str] | None, typer.Option("--forbid", metavar="ACTION", help="Not this action now; repeatable")
+    ] = None,
+    without: Annotated[
+        list[str] | None, typer.Option("--without", metavar="SKILL", help="Never this skill; repeatable")
+    ] = None,
+    believe: Annotated[
+        list[str] | None,
+        typer.Option("--believe", metavar="VAR=VALUE:P", help="Another probability; repeatable"),
+    ] = None,
+    change: Annotated[
+        list[str] | None,
+        typer.Option("--change", metavar="FILE:LINE=NUMBER", help="Another number in a document; repeatable"),
+    ] = None,
+    mission: Mission = None,
+    as_json: AsJson = False,
+    trust_documents: TrustDocuments = False,
+) -> None:
+    """Decide a step anew under other circumstances.
+
+    The mission is not touched. Suppositions about beliefs keep all ratios
+    inside (Jeffrey's rule). With another number in a document the model is
+    compiled, and replays what was observed before the step.
+    """
+    query = WhatIfQuery(
+        step, tuple(forbid or ()), tuple(without or ()), tuple(believe or ()), tuple(change or ())
+    )
+
+    async def ask(aos: AosClient) -> WhatIf:
+        return await aos.what_if(query, mission=mission)
+
+    async def look(studied: StudiedRun) -> WhatIf:
+        return await studied.study(lambda study: study.what_if(query))
+
+    found = _found(system, mission, ask, look)
+    if as_json:
+        print_json(found)
+    else:
+        typer.echo("\n".join(what_if_lines(found)))
+
+
+def _found(
+    system: System,
+    mission: int | None,
+    ask: Callable[[AosClient], Awaitable[T]],
+    look: Callable[[StudiedRun], Awaitable[T]],
+) -> T:
+    """The answer of the system that runs, or else from the directory of the run."""
+    with waiting("looking into the decision"):
+        if not system.is_at_endpoint:
+            directory = chosen_run(system.run, system.runs)
+            if not directory.is_running:
+
+                async def looked() -> T:
+                    return await look(StudiedRun.open(directory.path, mission))
+
+                return asyncio.run(looked())
+            record = directory.read_record()
+            system = System(record.endpoint, record.robot)
+        return system.do(ask)

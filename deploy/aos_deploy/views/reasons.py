@@ -1,0 +1,105 @@
+"""A decision explained for people, in eight lines at most."""
+
+from __future__ import annotations
+
+from aos_protocol.messages import Consequence, Flip, ValueTerm, WhatIf, Why
+
+__all__ = ["what_if_lines", "why_lines"]
+
+_SHOWN_TERMS = 4
+_LEAST_TERM = 5e-4
+
+
+def why_lines(why: Why) -> list[str]:
+    """The lines of `aos why`."""
+    lines = [_verdict(why), _expected(why)]
+    lines += [_consequence(each) for each in why.expected if each.action or each.goal_probability][:3]
+    lines += _terms(why)
+    lines.append(_flips(why))
+    if why.remark:
+        lines.append(f"  remark: {why.remark}")
+    return [line for line in lines if line]
+
+
+def _verdict(why: Why) -> str:
+    here = _worth(why.value, why.stderr)
+    there = _worth(why.other_value, why.other_stderr)
+    exact = "exactly " if why.is_exact else ""
+    head = f"step {why.step}: {why.action} is worth {exact}{here}, {why.other} {there}"
+    if not why.is_close:
+        return f"{head}: margin {_worth(why.margin, why.margin_stderr)}"
+    more = (
+        f"about {why.simulations_to_tell:,} simulations would tell"
+        if why.simulations_to_tell
+        else ("no number of simulations is sure to tell")
+    )
+    return f"{head}: too close to call, {more}"
+
+
+def _worth(value: float, stderr: float) -> str:
+    return f"{value:+.4g}" + (f" ± {stderr:.2g}" if stderr else "")
+
+
+def _expected(why: Why) -> str:
+    likely = ", ".join(f"{each.response} {each.probability:.1%}" for each in why.expected)
+    seen = next((each for each in why.expected if each.is_seen), None)
+    came = f"; {seen.response} was seen" if seen is not None else ""
+    return f"  expected: {likely}{came}" if likely else ""
+
+
+def _consequence(each: Consequence) -> str:
+    goal = f"    after {each.response} the goal has {each.goal_probability:.3g}"
+    if not each.action:
+        return f"{goal}, and the mission would be over"
+    return f"{goal}, and next would be {each.action}, worth {_worth(each.value, each.stderr)}"
+
+
+def _terms(why: Why) -> list[str]:
+    """The lines of documents that the margin comes from, and what of it is not told apart."""
+    telling = [term for term in why.terms if abs(term.value - term.other) > _LEAST_TERM]
+    shown = [_term(term) for term in telling[:_SHOWN_TERMS]]
+    left = sum(term.value - term.other for term in telling[_SHOWN_TERMS:])
+    if telling[_SHOWN_TERMS:]:
+        shown.append(f"{left:+.4g} from {len(telling) - _SHOWN_TERMS} other lines")
+    if not why.is_exact and why.terms:
+        shown.append(f"{why.rest - why.other_rest:+.4g} from later steps")
+    return [f"  the margin is {', '.join(shown)}"] if shown else []
+
+
+def _term(term: ValueTerm) -> str:
+    return f"{term.value - term.other:+.4g} from {term.place}"
+
+
+def _flips(why: Why) -> str:
+    if not why.flips:
+        return "" if why.remark else f"  no probability of one value makes {why.other} better"
+    flip = why.flips[0]
+    return (
+        f"  {why.other} is better where P({flip.variable}={flip.value}) is {_side(flip)}, now {flip.now:.4g}"
+    )
+
+
+def _side(flip: Flip) -> str:
+    """`below 0.412`, or the interval in which the choice changes where that is known less well."""
+    rises = (flip.low + flip.high) / 2 > flip.now
+    if flip.high - flip.low > 1e-3:
+        return f"{'above' if rises else 'below'} a value in {flip.low:.3g}-{flip.high:.3g}"
+    return f"above {flip.high:.4g}" if rises else f"below {flip.low:.4g}"
+
+
+def what_if_lines(found: WhatIf) -> list[str]:
+    """The lines of `aos whatif`: the decision then, what was supposed, the best other actions."""
+    same = "still " if found.action == found.before else ""
+    lines = [
+        f"step {found.step}: {same}{found.action}, worth {_worth(found.value, found.stderr)}"
+        + (f", instead of {found.before}, worth {found.value_before:+.4g}" if not same else "")
+    ]
+    lines += [f"  supposed {each}" for each in found.supposed]
+    others = sorted(found.actions, key=lambda value: -value.q)
+    told = [each for each in others if each.action != found.action and (each.n or not each.stderr)]
+    if told:
+        worth = (f"{each.action} {_worth(each.q, each.stderr)}" for each in told[:4])
+        lines.append(f"  then {', '.join(worth)}")
+    if found.remark:
+        lines.append(f"  remark: {found.remark}")
+    return lines

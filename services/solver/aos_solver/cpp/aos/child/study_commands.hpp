@@ -1,0 +1,83 @@
+// The commands of a study: exact values and their terms at one supposed belief after the other.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "aos/base/json.hpp"
+#include "aos/belief/belief.hpp"
+#include "aos/child/belief_commands.hpp"
+#include "aos/child/command.hpp"
+#include "aos/child/reward_terms.hpp"
+#include "aos/child/wording.hpp"
+#include "aos/planning/exact.hpp"
+#include "aos/planning/state_space.hpp"
+
+namespace aos {
+
+template <class Model>
+class StudyCommands {
+ public:
+  explicit StudyCommands(const BeliefCommands<Model>& beliefs) : beliefs_(beliefs) {}
+
+  // Writes the exact value of each action, as `exact` does. What is listed is kept for the next belief.
+  void exact_values(JsonWriter& json, const Command& command) {
+    const int horizon = horizon_of(command);
+    const Belief<Model>& belief = beliefs_.belief_for(command);
+    auto evaluation = evaluation_for(command, belief, horizon);
+    const auto values = evaluation.action_values(belief, horizon);
+    json.begin_object().key("actions").begin_array();
+    for (int action = 0; action < Model::action_count(); ++action) {
+      json.begin_object().member("action", Model::action_name(action));
+      json.member("q", values[static_cast<std::size_t>(action)].value).end_object();
+    }
+    json.end_array().member("error", evaluation.error(horizon) + space_->slack(belief, horizon));
+    json.member("beliefs", evaluation.beliefs()).member("states", space_->size()).end_object();
+  }
+
+  // Writes the terms of an action's value over the whole horizon, or of its first step alone (`is_first`).
+  void reward_terms(JsonWriter& json, const Command& command) {
+    const int action = action_of<Model>(command);
+    const Belief<Model>& belief = beliefs_.belief_for(command);
+    RewardTerms<Model> terms;
+    if (command.flag("is_first")) {
+      for (const auto& [state, weight] : belief.particles()) {
+        if (Model::ending(state) == Ending::running) terms.add(state, action, weight);
+      }
+      return terms.write(json);
+    }
+    const int horizon = horizon_of(command);
+    auto evaluation = evaluation_for(command, belief, horizon);
+    evaluation.action_values(belief, horizon);
+    const auto times = evaluation.occupancy(belief, static_cast<std::size_t>(action), horizon);
+    for (const auto& [where, weight] : times) {
+      terms.add((*space_)[where.first], static_cast<int>(where.second), weight);
+    }
+    terms.write(json);
+  }
+
+ private:
+  static int horizon_of(const Command& command) {
+    const int horizon = command.number<int>("horizon");
+    return horizon > 0 ? horizon : Model::horizon;
+  }
+
+  ExactEvaluation<Model> evaluation_for(const Command& command, const Belief<Model>& belief, int horizon) {
+    const std::chrono::duration<double> limit{command.number<double>("seconds")};
+    const auto start = std::chrono::steady_clock::now();
+    if (!space_) space_ = std::make_unique<StateSpace<Model>>();
+    space_->reach_within(belief, horizon);
+    observable_.prepare(*space_, horizon);
+    return {*space_, observable_,
+            {.beliefs = command.number<std::uint64_t>("beliefs"),
+             .is_over = [=] { return std::chrono::steady_clock::now() - start > limit; }}};
+  }
+
+  const BeliefCommands<Model>& beliefs_;
+  std::unique_ptr<StateSpace<Model>> space_;
+  ObservableValues<Model> observable_;
+};
+
+}  // namespace aos

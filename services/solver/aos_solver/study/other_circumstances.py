@@ -1,0 +1,152 @@
+"""The decision of a step under other circumstances: actions forbidden, other beliefs, other documents."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from aos_language.load import load_files
+from aos_protocol.errors import DocumentError, SkillError, StudyError
+from aos_protocol.messages import ActionValue, DecisionRecord, WhatIf, WhatIfQuery
+from aos_solver.building.project_build import build_project
+from aos_solver.child.engine import Engine, Restriction
+from aos_solver.mission.past import replayed
+from aos_solver.study.replaying import ReplayedMission
+from aos_solver.study.supposing import believe_all, changed_files
+from aos_solver.study.valuing import deciding_search
+
+__all__ = ["OtherDocuments", "decided_otherwise"]
+
+
+class OtherDocuments(NamedTuple):
+    """The source of a revision's files, and the cache of what is compiled from changed ones."""
+
+    files: Callable[[int], Awaitable[dict[str, bytes]]]
+    cache_dir: Path
+    niceness: int
+
+
+async def decided_otherwise(
+    replay: ReplayedMission, decision: DecisionRecord, query: WhatIfQuery, documents: OtherDocuments
+) -> WhatIf:
+    """The decision that would be made at the step at which a replay is; the replay stays there."""
+    if not (query.forbid or query.without or query.believe or query.change):
+        raise StudyError(
+            "nothing is supposed",
+            hint="Use --forbid, --without, --believe or --change; `aos why` explains the decision as it was",
+        )
+    async with _engine(replay, query.change, documents) as (engine, said):
+        await engine.put_aside()
+        try:
+            return await _decided(replay, decision, query, engine, said)
+        finally:
+            await engine.take_back()
+
+
+async def _decided(
+    replay: ReplayedMission,
+    decision: DecisionRecord,
+    query: WhatIfQuery,
+    engine: Engine,
+    said: tuple[str, ...],
+) -> WhatIf:
+    made = deciding_search(decision)
+    was = replay.restriction_of(made) if made is not None else Restriction()
+    within = _restricted(engine, query, was)
+    said += await believe_all(engine, query.believe, cautious=within.cautious)
+    search = replay.search_by(decision)
+    if query.change:
+        search = search.after_takeover()
+    belief = await engine.summary()
+    plan = await search.run(engine, decision.step, within)
+    was_worth = {value.action: value.q for value in _told(decision.actions, decision.planner)}
+    actions = _told(plan.actions, plan.planner)
+    best = next(value for value in actions if value.action == plan.best.action)
+    return WhatIf(
+        decision.mission,
+        decision.step,
+        best.action,
+        best.q,
+        best.stderr,
+        decision.action,
+        was_worth.get(decision.action, 0.0),
+        actions,
+        belief,
+        plan.planner,
+        plan.why,
+        said,
+    )
+
+
+def _told(actions: tuple[ActionValue, ...], planner: str) -> tuple[ActionValue, ...]:
+    """The values as `why` tells them: exact ones, and not those of missions that plan anew at each step."""
+    if planner != "exact":
+        return actions
+    return tuple(
+        msgspec.structs.replace(value, q=value.at_least, stderr=0.0)
+        if value.at_most is None
+        else msgspec.structs.replace(value, q=(value.at_least + value.at_most) / 2, stderr=0.0)
+        for value in actions
+        if value.at_least is not None
+    )
+
+
+def _restricted(engine: Engine, query: WhatIfQuery, was: Restriction) -> Restriction:
+    """The actions and the belief that the decision is for; SkillError AOS501 for unknown ones."""
+    numbers = {action.name: number for number, action in enumerate(engine.description.actions)}
+    skills = {action.skill for action in engine.description.actions}
+    for kind, given, known in (("action", query.forbid, numbers), ("skill", query.without, skills)):
+        for name in given:
+            if name not in known:
+                hint = f"Name one of {', '.join(sorted(known))}"
+                raise SkillError(f"there is no {kind} {name}", code="AOS501", hint=hint)
+    barred = sorted({*was.barred, *(numbers[name] for name in query.forbid)})
+    without = sorted({*was.without, *query.without})
+    left = [a for n, a in enumerate(engine.description.actions) if n not in barred and a.skill not in without]
+    if not left:
+        raise StudyError("no action would be left", hint="Forbid fewer")
+    return Restriction(barred=barred, without=without, cautious=was.cautious)
+
+
+@asynccontextmanager
+async def _engine(
+    replay: ReplayedMission, changes: tuple[str, ...], documents: OtherDocuments
+) -> AsyncIterator[tuple[Engine, tuple[str, ...]]]:
+    """The replay's engine, or one of changed documents with its posterior after the same steps."""
+    if not changes:
+        yield replay.engine, ()
+        return
+    files, said = changed_files(await documents.files(replay.revision), changes)
+    loaded = load_files(files, name=replay.settings.project)
+    if loaded.project is None:
+        raise DocumentError(
+            "the changed documents have errors", hint="Suppose another", diagnostics=loaded.diagnostics
+        )
+    project = msgspec.structs.replace(
+        loaded.project, constraints=replay.settings.constraints, mission_values=()
+    )
+    built = await build_project(project, documents.cache_dir, lambda text: None)
+    begun = replay.mission.begun
+    assert begun is not None
+    known = built.emitted.parameters
+    values = {name: text for name, text in begun.mission_parameters.items() if name in known}
+    built = msgspec.structs.replace(built, mission_values=values)
+    engine = await Engine.start(
+        built,
+        seed=begun.seed,
+        impossible_observation=replay.settings.impossible_observation,
+        niceness=documents.niceness,
+    )
+    try:
+        step = 0
+        async for update in replayed(engine, replay.past):
+            step += 1
+            if update.is_impossible:
+                said = (*said, f"step {step} is impossible in the changed documents")
+        yield engine, said
+    finally:
+        await engine.close()

@@ -1,0 +1,196 @@
+"""The reasons for a decision: its margin, what was expected, which rewards count, where it changes."""
+
+from __future__ import annotations
+
+import math
+import time
+
+from aos_protocol.errors import AosError, IntractableError, SkillError, StudyError
+from aos_protocol.messages import Consequence, DecisionRecord, Flip, ValueTerm, Why
+from aos_solver.child.answers import RewardTerms
+from aos_solver.child.engine import Engine
+from aos_solver.mission.past import updated
+from aos_solver.study.flips import flips_of
+from aos_solver.study.replaying import ReplayedMission
+from aos_solver.study.traced_engines import TracedEngine, TracedEngines
+from aos_solver.study.valuing import Margin, Value, Valuing, best_of, deciding_search
+
+__all__ = ["Reasons"]
+
+_SHOWN_RESPONSES = 3
+_TERM = 1e-12
+
+
+class Reasons:
+    """Explains the decision of the step at which a replay is, and leaves the replay there."""
+
+    def __init__(
+        self, replay: ReplayedMission, decision: DecisionRecord, traced: TracedEngines, flips_s: float
+    ) -> None:
+        """Exact values are computed for `flips_s` to find where the choice changes."""
+        self._replay = replay
+        self._engine = replay.engine
+        self._decision = decision
+        self._traced = traced
+        self._flips_s = flips_s
+        self._valuing = Valuing(replay, decision)
+        self._remarks: list[str] = []
+
+    async def why(self, instead: str = "") -> Why:
+        """The explanation; SkillError AOS501 for an action that the model does not have."""
+        begun_s = time.monotonic()
+        decision, valuing = self._decision, self._valuing
+        values = await self._values()
+        if decision.action not in values:
+            raise StudyError(f"{decision.action} has no value: the search did without it")
+        other = self._other(instead, values)
+        action, others = values[decision.action], values[other]
+        margin = Margin.of(action, others)
+        belief = await self._engine.summary()
+        await self._engine.put_aside()
+        try:
+            flips = await self._flips(other, begun_s)
+            expected = await self._consequences()
+        finally:
+            await self._engine.take_back()
+        terms, rest, other_rest = await self._terms(other, action.q, others.q)
+        return Why(
+            mission=decision.mission,
+            step=decision.step,
+            action=decision.action,
+            value=action.q,
+            stderr=action.stderr,
+            other=other,
+            other_value=others.q,
+            other_stderr=others.stderr,
+            margin=margin.value,
+            margin_stderr=margin.stderr,
+            is_exact=valuing.is_exact,
+            is_close=not valuing.is_exact and margin.is_close,
+            simulations_to_tell=self._simulations_to_tell(margin),
+            horizon=decision.horizon,
+            planner=decision.planner,
+            chosen_by=decision.chosen_by,
+            belief=belief,
+            expected=expected,
+            terms=terms,
+            rest=rest,
+            other_rest=other_rest,
+            flips=flips,
+            remark="; ".join(self._remarks),
+        )
+
+    async def _values(self) -> dict[str, Value]:
+        """The values that decided; exact ones are computed, since the record has those of missions that plan
+        anew at each step."""
+        if self._valuing.is_exact:
+            return dict(await self._valuing.values(self._engine, anywhere=True))
+        return {value.action: Value(value.q, value.stderr, value.n) for value in self._decision.actions}
+
+    def _other(self, instead: str, values: dict[str, Value]) -> str:
+        if instead:
+            if instead not in values:
+                names = ", ".join(name for name in values if name != self._decision.action)
+                raise SkillError(f"there is no action {instead}", code="AOS501", hint=f"Name one of {names}")
+            if instead == self._decision.action:
+                raise StudyError(f"{instead} is the action that was chosen", hint="Name another action")
+            if instead in self._valuing.barred:
+                made = deciding_search(self._decision)
+                self._remarks.append(f"{instead} was barred: {made.barred[instead] if made else ''}")
+            if not values[instead].n:
+                self._remarks.append(f"the search never tried {instead}: its value is unknown")
+            return instead
+        left = {name: value for name, value in values.items() if name not in self._valuing.barred}
+        if len(left) < 2:
+            raise StudyError("no other action was left to choose", hint="Name one with --instead")
+        return best_of(left, but=self._decision.action)
+
+    def _simulations_to_tell(self, margin: Margin) -> int:
+        made = deciding_search(self._decision)
+        if self._valuing.is_exact or not margin.is_close or made is None or margin.value == 0:
+            return 0
+        spent = sum(made.simulations) + made.known
+        return math.ceil(spent * (2 * margin.stderr / margin.value) ** 2)
+
+    async def _flips(self, other: str, begun_s: float) -> tuple[Flip, ...]:
+        decision, valuing = self._decision, self._valuing
+        if decision.chosen_by not in ("planner", "operator", "script"):
+            self._remarks.append(f"it was chosen by {decision.chosen_by}, whatever is believed")
+            return ()
+        until_s = begun_s + (self._flips_s if valuing.is_exact else math.inf)
+        belief = await self._engine.summary()
+        return await flips_of(self._engine, valuing, belief, (decision.action, other), until_s)
+
+    async def _consequences(self) -> tuple[Consequence, ...]:
+        """The likeliest responses, and the one that came, with what would be done after each."""
+        record = self._replay.mission.outcome(self._decision.step)
+        seen = record.outcome.response if record is not None and record.outcome is not None else ""
+        predicted = {each.response: each.probability for each in self._decision.predicted}
+        shown = sorted(predicted, key=lambda response: -predicted[response])[:_SHOWN_RESPONSES]
+        if seen and seen not in shown:
+            shown = [*shown[: _SHOWN_RESPONSES - 1], seen]
+        return tuple(
+            [await self._consequence(each, predicted.get(each, 0.0), is_seen=each == seen) for each in shown]
+        )
+
+    async def _consequence(self, response: str, probability: float, *, is_seen: bool) -> Consequence:
+        await self._engine.take_back()
+        number = len(self._replay.past) + 1
+        record = self._replay.mission.outcome(self._decision.step)
+        refuted_below = self._replay.past.refuted_below
+        if is_seen and record is not None:
+            update = await updated(
+                self._engine, self._replay.evidence_of(record), refuted_below, number=number
+            )
+        else:
+            update = await self._engine.update(
+                self._decision.action, response, refuted_below=refuted_below, step=number
+            )
+        goal = update.summary.goal_probability
+        if update.is_impossible:
+            return Consequence(response, 0.0, is_seen, goal)
+        over = goal + update.summary.failure_probability + update.summary.over_probability
+        if goal >= self._replay.goal_probability or over >= 1 - _TERM:
+            return Consequence(response, probability, is_seen, goal)
+        values = await self._valuing.values(self._engine, share=1 / 4)
+        best = best_of(values)
+        return Consequence(response, probability, is_seen, goal, best, values[best].q, values[best].stderr)
+
+    async def _terms(
+        self, other: str, value: float, other_value: float
+    ) -> tuple[tuple[ValueTerm, ...], float, float]:
+        """The parts of both values by statement, and what is not told apart of each."""
+        try:
+            traced = await self._traced.of(await self._replay.model())
+            await traced.engine.import_beliefs(await self._engine.export_beliefs())
+            one, two = [
+                await self._terms_of(traced.engine, action) for action in (self._decision.action, other)
+            ]
+        except IntractableError as error:
+            self._remarks.append(f"the rewards cannot be told apart: {error.message}")
+            return (), value, other_value
+        except AosError as error:
+            self._remarks.append(f"the rewards are not told apart: {error.message}")
+            return (), value, other_value
+        terms = _joined(traced, one, two)
+        rests = [v - sum(t.amount for t in found.terms) for v, found in ((value, one), (other_value, two))]
+        return terms, rests[0], rests[1]
+
+    async def _terms_of(self, engine: Engine, action: str) -> RewardTerms:
+        index = [known.name for known in engine.description.actions].index(action)
+        return await engine.reward_terms(
+            index,
+            horizon=self._decision.horizon,
+            is_first=not self._valuing.is_exact,
+            cautious=self._valuing.within.cautious,
+        )
+
+
+def _joined(traced: TracedEngine, one: RewardTerms, two: RewardTerms) -> tuple[ValueTerm, ...]:
+    """The terms of two values by their places, those that differ most first."""
+    parts: dict[str, list[float]] = {}
+    for column, found in enumerate((one, two)):
+        for term in found.terms:
+            parts.setdefault(traced.place(term), [0.0, 0.0])[column] += term.amount
+    terms = [ValueTerm(place, *amounts) for place, amounts in parts.items()]
+    return tuple(sorted(terms, key=lambda term: -abs(term.value - term.other)))

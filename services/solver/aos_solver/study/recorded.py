@@ -1,0 +1,84 @@
+"""The journal of a mission as what a replay needs: what began, what was decided, what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, TypeVar
+
+import msgspec
+
+from aos_protocol.errors import SkillError, StorageError
+from aos_protocol.messages import BeliefRow, DecisionRecord, MissionBegun, ModelAdopted
+from aos_runtime.journal import JournalRow
+from aos_solver.mission.belief_rows import BELIEF
+from aos_solver.mission.memory import BEGUN
+
+__all__ = ["Event", "RecordedEvent", "RecordedMission", "recorded"]
+
+Event = MissionBegun | ModelAdopted | DecisionRecord | BeliefRow
+
+M = TypeVar("M", MissionBegun, ModelAdopted, DecisionRecord, BeliefRow)
+
+_KINDS: dict[str, type[Any]] = {
+    BEGUN: MissionBegun,
+    "adopted": ModelAdopted,
+    "decision": DecisionRecord,
+    BELIEF: BeliefRow,
+}
+
+
+class RecordedEvent(msgspec.Struct, frozen=True):
+    """A row of the journal with its number."""
+
+    row: int
+    said: Event
+
+
+class RecordedMission(msgspec.Struct, frozen=True):
+    """The rows in their order."""
+
+    events: tuple[RecordedEvent, ...]
+
+    @property
+    def begun(self) -> MissionBegun | None:
+        """The row with which the first solver began the mission; None where none has."""
+        return next(self.of_kind(MissionBegun), None)
+
+    @property
+    def decisions(self) -> tuple[DecisionRecord, ...]:
+        """The decisions; of a step that was decided twice the later one."""
+        made = {said.step: said for said in self.of_kind(DecisionRecord) if said.outcome is None}
+        return tuple(made[step] for step in sorted(made))
+
+    def of_kind(self, kind: type[M]) -> Iterator[M]:
+        """The messages of one kind."""
+        return (event.said for event in self.events if isinstance(event.said, kind))
+
+    def decision(self, step: int) -> DecisionRecord:
+        """The decision of a step; SkillError AOS501 if there was none."""
+        found = next((made for made in self.decisions if made.step == step), None)
+        if found is None:
+            last = self.decisions[-1].step if self.decisions else 0
+            hint = f"Name a step from 1 to {last}" if last else "Wait for the first decision"
+            raise SkillError(f"the mission has no decision of step {step}", code="AOS501", hint=hint)
+        return found
+
+    def outcome(self, step: int) -> DecisionRecord | None:
+        """The record of what came of a step; None where that is not known yet."""
+        records = self.of_kind(DecisionRecord)
+        return next((said for said in records if said.step == step and said.outcome is not None), None)
+
+
+def recorded(rows: Iterable[JournalRow]) -> RecordedMission:
+    """The mission that a journal holds; StorageError AOS702 for a row that cannot be read."""
+    return RecordedMission(tuple(_events(rows)))
+
+
+def _events(rows: Iterable[JournalRow]) -> Iterator[RecordedEvent]:
+    for row in rows:
+        if row.kind not in _KINDS:
+            continue
+        try:
+            yield RecordedEvent(row.seq, msgspec.json.decode(row.payload, type=_KINDS[row.kind]))
+        except msgspec.MsgspecError as error:
+            raise StorageError(f"row {row.seq} of the journal: {error}", code="AOS702") from error

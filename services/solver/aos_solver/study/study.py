@@ -1,0 +1,132 @@
+"""The study of a mission: questions about its decisions, answered by an engine that is brought to the step.
+
+Live and offline are the same code: only where journal and documents come from differs (`Source`).
+"""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from typing import Protocol
+
+from aos_protocol.errors import SkillError
+from aos_protocol.messages import (
+    DecisionRecord,
+    DecisionTree,
+    TreeQuery,
+    WhatIf,
+    WhatIfQuery,
+    Why,
+    WhyQuery,
+)
+from aos_solver.study.looking_ahead import tree_below
+from aos_solver.study.other_circumstances import OtherDocuments, decided_otherwise
+from aos_solver.study.reasons import Reasons
+from aos_solver.study.recorded import RecordedMission
+from aos_solver.study.replaying import ReplayedMission
+from aos_solver.study.traced_engines import TracedEngines
+
+__all__ = ["FLIPS_S", "Source", "Study"]
+
+FLIPS_S = 0.6
+"""The whole answer about an exact decision is to take a second."""
+
+
+class Source(Protocol):
+    """The place where missions are recorded."""
+
+    async def recorded(self, mission: str) -> RecordedMission:
+        """The mission of that name as far as its journal goes, the newest for an empty name."""
+        ...
+
+    def replay(self, mission: RecordedMission) -> ReplayedMission:
+        """A replay of it that makes no decision again."""
+        ...
+
+    async def files(self, revision: int) -> dict[str, bytes]:
+        """The files of a revision of the documents."""
+        ...
+
+
+class Study:
+    """Answers one question after the other. Its engines are started when they are needed.
+
+    With a `niceness` engines and compilers give way to whatever else runs. Other beliefs of an exact decision
+    are valued for `flips_s` at most.
+    """
+
+    def __init__(
+        self, source: Source, cache_dir: Path, niceness: int = 0, *, flips_s: float = FLIPS_S
+    ) -> None:
+        self._source = source
+        self._niceness = niceness
+        self._flips_s = flips_s
+        self._cache_dir = cache_dir
+        self._replay: ReplayedMission | None = None
+        self._traced = TracedEngines(cache_dir, niceness)
+        self._asking = asyncio.Lock()
+
+    async def why(self, query: WhyQuery) -> Why:
+        """Explains a decision; StudyError AOS530 where that cannot be, SkillError AOS501 for an unknown
+        step or action."""
+        async with self._asking:
+            replay, decision = await self._at(query.mission, query.step)
+            try:
+                return await Reasons(replay, decision, self._traced, self._flips_s).why(query.instead)
+            except SkillError:
+                raise  # The engine is where it was.
+            except BaseException:
+                await self._drop()
+                raise
+
+    async def what_if(self, query: WhatIfQuery) -> WhatIf:
+        """The decision under other circumstances; errors as from `why`."""
+        async with self._asking:
+            replay, decision = await self._at(query.mission, query.step)
+            try:
+                others = OtherDocuments(self._source.files, self._cache_dir, self._niceness)
+                return await decided_otherwise(replay, decision, query, others)
+            except SkillError:
+                raise  # The engine is where it was.
+            except BaseException:
+                await self._drop()
+                raise
+
+    async def tree(self, query: TreeQuery) -> DecisionTree:
+        """The tree below a decision; errors as from `why`."""
+        async with self._asking:
+            replay, decision = await self._at(query.mission, query.step)
+            try:
+                return await tree_below(replay, decision, query)
+            except SkillError:
+                raise  # The engine is where it was.
+            except BaseException:
+                await self._drop()
+                raise
+
+    async def close(self) -> None:
+        """Ends the engines; whatever is asked afterwards starts others."""
+        async with self._asking:
+            await self._drop()
+            await self._traced.close()
+
+    async def _at(self, mission: str, step: int) -> tuple[ReplayedMission, DecisionRecord]:
+        """A replay at the belief of a step's decision, from where the last question has left it if it can."""
+        recorded = await self._source.recorded(mission)
+        decision = recorded.decision(step)
+        replay = self._replay
+        if replay is None or not replay.can_go_on(recorded, step):
+            await self._drop()
+            self._replay = replay = self._source.replay(recorded)
+        try:
+            replay.mission = recorded
+            await replay.go_to(step)
+        except BaseException:
+            await self._drop()
+            raise
+        return replay, decision
+
+    async def _drop(self) -> None:
+        replay, self._replay = self._replay, None
+        if replay is not None:
+            await replay.close()

@@ -1,0 +1,89 @@
+"""The values of actions at a belief that a study supposes: exact where the decision was, else searched."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import msgspec
+
+from aos_protocol.messages import DecisionRecord, SearchMade
+from aos_solver.child.engine import Engine, Restriction
+from aos_solver.child.search import Search
+from aos_solver.study.replaying import ReplayedMission
+
+__all__ = ["Margin", "Value", "Valuing", "best_of", "deciding_search"]
+
+
+class Value(msgspec.Struct, frozen=True):
+    """The value of an action and its standard error; `n` is how often a search tried it."""
+
+    q: float
+    stderr: float = 0.0
+    n: int = 0
+
+
+class Margin(msgspec.Struct, frozen=True):
+    """The difference between the values of two actions, with its standard error."""
+
+    value: float
+    stderr: float
+
+    @property
+    def is_close(self) -> bool:
+        """Says whether the difference is within two standard errors; a tie always is."""
+        return abs(self.value) <= 2 * self.stderr
+
+    @classmethod
+    def of(cls, one: Value, other: Value) -> Margin:
+        return cls(one.q - other.q, math.hypot(one.stderr, other.stderr))
+
+
+def deciding_search(decision: DecisionRecord) -> SearchMade | None:
+    """The search that made a decision; None where none did."""
+    made = [each for each in decision.searches if not each.is_dropped and not each.is_pondering]
+    return made[-1] if made else None
+
+
+class Valuing:
+    """Values what the engine believes as the decision of a step was valued.
+
+    A share of the decision's budget is `share` of its simulations or its time.
+    """
+
+    def __init__(self, replay: ReplayedMission, decision: DecisionRecord) -> None:
+        self._search = replay.search_by(decision)
+        self._step = decision.step
+        made = deciding_search(decision)
+        self.within = replay.restriction_of(made) if made is not None else Restriction()
+        self.is_exact = decision.planner == "exact" and not self.within.without
+        self.horizon = decision.horizon
+        numbers = {action.name: n for n, action in enumerate(replay.engine.description.actions)}
+        self.barred = {name for name, number in numbers.items() if number in self.within.barred}
+
+    async def values(
+        self, engine: Engine, *, share: float = 1.0, anywhere: bool = False
+    ) -> Mapping[str, Value]:
+        """The value of each action that may be chosen; `anywhere` also that of barred ones."""
+        if self.is_exact:
+            found = await engine.exact_values(self.horizon, cautious=self.within.cautious)
+            values = {value.action: Value(value.q, n=1) for value in found.actions}
+        else:
+            within = Restriction(without=self.within.without) if anywhere else self.within
+            plan = await self._with(share).run(engine, self._step, within)
+            values = {value.action: Value(value.q, value.stderr, value.n) for value in plan.actions}
+        return values if anywhere else {name: v for name, v in values.items() if name not in self.barred}
+
+    def _with(self, share: float) -> Search:
+        """The search with a share of its budget."""
+        if self._search.time_s is not None:
+            return msgspec.structs.replace(self._search, time_s=self._search.time_s * share)
+        return msgspec.structs.replace(
+            self._search, simulations=max(round(self._search.simulations * share), 1)
+        )
+
+
+def best_of(values: Mapping[str, Value], but: str = "") -> str:
+    """The action that is worth most of those that were tried at all."""
+    tried = [name for name, value in values.items() if name != but and value.n > 0]
+    return max(tried or values, key=lambda name: values[name].q)

@@ -1,0 +1,81 @@
+"""The solver's answers to studies of its missions, by an engine that no mission asks."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+from aos_protocol.documents import Project
+from aos_protocol.keys import Keys
+from aos_protocol.messages import (
+    DecisionTree,
+    TreeQuery,
+    WhatIf,
+    WhatIfQuery,
+    Why,
+    WhyQuery,
+)
+from aos_runtime.bus import Bus
+from aos_runtime.journal import Journal
+from aos_solver.mission.logbook import Logbooks
+from aos_solver.registry_watch import RegistryWatch
+from aos_solver.settings import Settings
+from aos_solver.study.recorded import RecordedMission, recorded
+from aos_solver.study.replaying import NICENESS, ReplayedMission
+from aos_solver.study.study import Study
+
+__all__ = ["StudyDesk"]
+
+
+class StudyDesk:
+    """Answers questions about the missions in the logbooks, one after the other."""
+
+    def __init__(self, settings: Settings, books: Logbooks, registry: RegistryWatch) -> None:
+        source = _Logged(settings, books, registry)
+        self._study = Study(source, Path(settings.cache_dir), NICENESS)
+
+    async def answer(self, bus: Bus, keys: Keys) -> None:
+        """Answers from now on."""
+        await bus.answer(keys.study_why, WhyQuery, self._why)
+        await bus.answer(keys.study_whatif, WhatIfQuery, self._what_if)
+        await bus.answer(keys.study_tree, TreeQuery, self._tree)
+
+    async def close(self) -> None:
+        """Ends the engines of studies."""
+        await self._study.close()
+
+    async def _why(self, query: WhyQuery, _: str) -> Why:
+        return await self._study.why(query)
+
+    async def _what_if(self, query: WhatIfQuery, _: str) -> WhatIf:
+        return await self._study.what_if(query)
+
+    async def _tree(self, query: TreeQuery, _: str) -> DecisionTree:
+        return await self._study.tree(query)
+
+
+class _Logged:
+    """The missions of the solver, as their journals are now, and the registry's documents."""
+
+    def __init__(self, settings: Settings, books: Logbooks, registry: RegistryWatch) -> None:
+        self._settings = settings
+        self._books = books
+        self._registry = registry
+
+    async def recorded(self, mission: str) -> RecordedMission:
+        return await asyncio.to_thread(_read, self._books.path_of(mission))
+
+    def replay(self, mission: RecordedMission) -> ReplayedMission:
+        policy = Path(self._settings.policy) if self._settings.policy else None
+        return ReplayedMission(mission, self, self._settings, policy=policy)
+
+    async def revision(self, number: int) -> Project:
+        return await self._registry.documents(number)
+
+    async def files(self, revision: int) -> dict[str, bytes]:
+        return await self._registry.files(revision)
+
+
+def _read(path: Path) -> RecordedMission:
+    with Journal.read(path) as journal:
+        return recorded(journal.walk())

@@ -1,0 +1,102 @@
+"""Explanations of decisions, and decisions under other circumstances, held against planning."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from models import built_bundle, engine_of
+from study.played import Played, play
+
+from aos_language.load import read_bundle_files
+from aos_protocol.errors import AosError
+from aos_protocol.messages import TreeQuery, WhatIfQuery, WhyQuery
+from aos_solver.study.study import Study
+
+BUNDLE = "armadillo-rough"
+
+
+@pytest.fixture
+async def played(bundles: Path, cache_dir: Path) -> Played:
+    """A mission of two exact decisions."""
+    return await play(read_bundle_files(bundles / BUNDLE)[0], cache_dir, steps=2)
+
+
+async def test_terms_add_up_and_the_choice_changes_where_it_is_said(played: Played, cache_dir: Path) -> None:
+    study = Study(played, cache_dir, flips_s=math.inf)
+    try:
+        why = await study.why(WhyQuery(2))
+        again = await study.why(WhyQuery(2))
+        assert again == why  # A question leaves the engine where it was.
+        assert why.is_exact
+        assert not why.remark
+        assert abs(sum(term.value for term in why.terms) - why.value) < 1e-9
+        assert abs(sum(term.other for term in why.terms) - why.other_value) < 1e-9
+        assert sum(each.probability for each in why.expected) == pytest.approx(1)
+        assert [each.response for each in why.expected if each.is_seen] == [
+            played.mission.outcome(2).outcome.response  # type: ignore[union-attr]
+        ]
+        assert why.flips
+        for flip in why.flips:
+            assert flip.is_checked
+            assert flip.high - flip.low <= 1e-3
+            beyond = flip.low if flip.low < flip.now else flip.high
+            short = flip.high if flip.low < flip.now else flip.low
+            for probability, is_better in ((beyond, True), (short, False)):
+                query = WhatIfQuery(2, believe=(f"{flip.variable}={flip.value}:{probability}",))
+                found = await study.what_if(query)
+                worth = {value.action: value.q for value in found.actions}
+                assert (worth[why.other] > worth[why.action]) == is_better
+    finally:
+        await study.close()
+
+
+async def test_a_decision_under_other_circumstances_is_that_of_a_mission_in_them(
+    played: Played, bundles: Path, cache_dir: Path
+) -> None:
+    study = Study(played, cache_dir)
+    try:
+        chosen = played.mission.decision(1).action
+        forbidden = await study.what_if(WhatIfQuery(1, forbid=(chosen,)))
+        assert forbidden.action != chosen == forbidden.before
+        lines = (bundles / BUNDLE / "pick.sd").read_text().split("\n")
+        place = f"pick.sd:{lines.index('__reward = -2;') + 1}"
+        changed = await study.what_if(WhatIfQuery(1, change=(f"{place}=-20",)))
+        assert changed.supposed == (f"{place}: -20 instead of -2",)
+        assert changed.action != "pick"
+        without = await study.what_if(WhatIfQuery(1, without=("pick",)))
+        assert all(not value.action.startswith("pick") for value in without.actions)
+        tree = await study.tree(TreeQuery(1, depth=2, branches=2))
+        assert tree.root.actions[0].action == chosen
+        async with engine_of(await built_bundle(bundles / BUNDLE, cache_dir)) as engine:
+            index = [action.name for action in engine.description.actions].index(chosen)
+            predicted = {each.response: each.probability for each in (await engine.predict(index)).predicted}
+        assert {response: p for response, p, _ in tree.root.actions[0].after} == predicted
+    finally:
+        await study.close()
+
+
+@pytest.mark.parametrize(
+    ("query", "code", "said"),
+    [
+        (WhatIfQuery(1), "AOS530", "nothing is supposed"),
+        (WhatIfQuery(9, forbid=("pick",)), "AOS501", "no decision of step 9"),
+        (WhatIfQuery(1, forbid=("fly",)), "AOS501", "no action fly"),
+        (WhatIfQuery(1, without=("fly",)), "AOS501", "no skill fly"),
+        (WhatIfQuery(1, believe=("wings=true:1",)), "AOS501", "no variable wings"),
+        (WhatIfQuery(1, believe=("robot_at=Corridor:0.5",)), "AOS530", "is excluded"),
+    ],
+)
+async def test_what_cannot_be_supposed_is_told(
+    played: Played, cache_dir: Path, query: WhatIfQuery, code: str, said: str
+) -> None:
+    study = Study(played, cache_dir)
+    try:
+        with pytest.raises(AosError, match=said) as caught:
+            await study.what_if(query)
+        assert caught.value.code == code
+        assert caught.value.hint
+        assert (await study.what_if(WhatIfQuery(1, forbid=("pick",)))).action != "pick"
+    finally:
+        await study.close()
