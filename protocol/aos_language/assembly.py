@@ -1,6 +1,6 @@
 """Documents put together to a project: one environment, each skill with its model and its mapping.
 
-A skill whose mapping is written nowhere gets a derived one.
+A skill without a written mapping gets a derived one. A parameter that is an enum gets all of its values.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Mapping
 import msgspec
 
 from aos_language.derived_mapping import derived_mapping
+from aos_language.derived_values import with_values_of_enums
 from aos_language.findings import Findings
 from aos_language.reading.document import Document, DocumentKind
 from aos_protocol.diagnostics import Span
@@ -66,6 +67,8 @@ def assemble(
                 assembly.monitors[document.name] = mapping
             case AbstractionMapping() as mapping if document.name:
                 assembly.mappings[document.name] = mapping
+    for name, model in assembly.models.items():
+        assembly.models[name] = with_values_of_enums(model, assembly.environment)
     written = {name for kind, name in unique if kind is DocumentKind.MAPPING}
     for name in assembly.models.keys() - written:
         assembly.mappings[name] = derived_mapping(assembly.models[name], assembly.environment)

@@ -57,7 +57,13 @@ LATER = """project: shop
 dynamic_model:
 state__.at = {Table, Table};
 """
-FILES = {"shop.ef": ENVIRONMENT, "take.sd": TAKE, "later.sd": LATER}
+PUT = """project: shop
+parameter: Place where
+parameter: Item item
+dynamic_model:
+state__.at[item] = where;
+"""
+FILES = {"shop.ef": ENVIRONMENT, "take.sd": TAKE, "later.sd": LATER, "put.sd": PUT}
 
 
 def files(**changed: str) -> dict[str, bytes]:
@@ -147,3 +153,12 @@ def test_an_index_that_is_of_no_enum_or_of_another_is_an_error(change: str, plac
     (error,) = errors(change)
     assert (error.code, str(error.span)) == ("AOS110", place)
     assert error.hint.startswith(hint)
+
+
+def test_a_parameter_that_is_an_enum_has_all_values_where_none_are_declared(model: ScriptedModel) -> None:
+    puts = {name: values for name, values in model.describe().items() if name.startswith("put")}
+    assert list(puts) == [f"put(where={place}, item=Soda)" for place in ("Shelf", "Table", "Hand")]
+    assert model.play("put(where=Hand, item=Soda)").values("at[Soda]") == ["Shelf", "Hand"]
+    listed = text_project(FILES).skill("put").model.possible_parameters
+    assert str(listed[0].span).startswith("put.sd:2:")
+    assert not text_project(FILES).skill("take").model.possible_parameters

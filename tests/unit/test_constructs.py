@@ -82,7 +82,7 @@ MISUSES = {
     "xObjectsForActions": Rule(
         "go.json", "if (end == eWell)", "if (state.«tDorObjectsForActions.empty())", "AOS110"
     ),
-    "declared action values": Rule("go.sd", "parameter: Door door", "parameter: Room «door", "AOS119"),
+    "declared action values": Rule("go.sd", "parameter: Door door", "parameter: float «door", "AOS119"),
     "__possibleParameters": Rule(
         "go.sd",
         "precondition:",

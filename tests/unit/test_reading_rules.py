@@ -141,7 +141,7 @@ REFUSED = [
     Rule("go.json", '"PlpMain"', '"«PlpMian"', "AOS102"),
     Rule("go.json", "-2\n", '«"-2"\n', "AOS106"),
     Rule("go.json", '"Type": "tDoor"}', '"Type": "«tDore"}', "AOS110"),
-    Rule("go.json", '"Type": "tDoor"}', '"Type": "tRoom"}', "AOS119"),
+    Rule("go.json", '"Type": "tDoor"}', '"Type": "float"}', "AOS119"),
     Rule("go.json", "!state.closed", "!«state__.closed", "AOS123"),
     Rule("go.json", "!state.closed", "!«state_.closed", "AOS123"),
     Rule("go.json", '"EnumValues": ["eWell", "eBadly"]', '"EnumValues": []', "AOS105"),

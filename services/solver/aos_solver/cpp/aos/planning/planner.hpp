@@ -25,6 +25,7 @@
 #include "aos/planning/exploration.hpp"
 #include "aos/planning/group_missions.hpp"
 #include "aos/planning/mdp_values.hpp"
+#include "aos/planning/near_states.hpp"
 #include "aos/planning/point_based.hpp"
 #include "aos/planning/pomcp.hpp"
 #include "aos/planning/state_space.hpp"
@@ -83,7 +84,7 @@ class Planner {
     switch (used_) {
       case PlannerKind::exact: return exact_.estimates();
       case PlannerKind::despot: return despot_->estimates(belief);
-      case PlannerKind::sarsop: return point_based_.estimates();
+      case PlannerKind::sarsop: return sarsop().estimates();
       case PlannerKind::belief_tree: return belief_tree_.estimates(belief);
       default: return pomcp_.estimates(belief);
     }
@@ -92,7 +93,7 @@ class Planner {
   // while the mission plans anew at each of them (action_values.hpp). `estimates` are those by which `choice` was made.
   std::vector<ActionEstimate> values(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
     std::vector<ActionEstimate> values = values_of_belief(belief, std::move(estimates), choice);
-    const double slack = space_.slack(belief, horizon_);
+    const double slack = (is_near_ ? near_.space() : space_).slack(belief, horizon_);
     for (ActionEstimate& value : values) {
       value.at_least -= slack;
       value.at_most += slack;
@@ -124,11 +125,11 @@ class Planner {
       pomcp_.prepare(belief, horizon, budget.threads, random);
       pomcp_.ponder(action, belief, budget, horizon, random, is_over);
     }
-    if (used_ == PlannerKind::sarsop) point_based_.ponder(action, budget, is_over);
+    if (used_ == PlannerKind::sarsop) sarsop().ponder(action, budget, is_over);
   }
   // How many simulations of earlier searches serve the next one.
   std::uint64_t known_simulations() const {
-    return used_ == PlannerKind::sarsop ? point_based_.known_simulations() : pomcp_.known_simulations();
+    return used_ == PlannerKind::sarsop ? sarsop().known_simulations() : pomcp_.known_simulations();
   }
 
   void move_to(int action, Observation observation) {
@@ -147,6 +148,8 @@ class Planner {
     exact_.start_over();
     belief_tree_.start_over();
     point_based_.start_over();
+    near_.start_over();
+    near_search_.start_over();
     missions_.start_over();
   }
 
@@ -179,9 +182,9 @@ class Planner {
       case PlannerKind::despot: return despot().search(belief, budget, horizon, random, barred_);
       case PlannerKind::belief_tree: return belief_tree_.search(budget, horizon, random, barred_);
       case PlannerKind::sarsop: {
-        const std::uint64_t simulations = point_based_.search(budget, [&] { return choice(point_based_.estimates(), barred_); });
-        why_ += "; " + bounds_text(horizon, space_.slack(belief, horizon));
-        if (const auto& policy = point_based_.policy()) {
+        const std::uint64_t simulations = sarsop().search(budget, [&] { return choice(sarsop().estimates(), barred_); });
+        why_ += "; " + bounds_text(horizon, (is_near_ ? near_.space() : space_).slack(belief, horizon));
+        if (const auto& policy = sarsop().policy()) {
           why_ += "; a simple policy decides, since it returns " + rounded_down(policy->value) + " in played missions";
         }
         if (simulations == 0) why_ += "; preparation and earlier searches have found these bounds, and nothing was searched now";
@@ -197,6 +200,7 @@ class Planner {
 
   // Also sets `why_`.
   PlannerKind chosen_kind(PlannerKind asked_for, const Belief<Model>& belief, Budget budget, int horizon) {
+    is_near_ = false;
     if (asked_for == PlannerKind::automatic) return suited_kind(belief, budget, horizon);
     why_ = "it was asked for";
     if (asked_for != PlannerKind::sarsop) return asked_for;
@@ -209,7 +213,7 @@ class Planner {
   PlannerKind suited_kind(const Belief<Model>& belief, Budget budget, int horizon) {
     if (!space_.reach(belief)) {
       why_ = space_.obstacle();
-      return PlannerKind::pomcp;
+      return serves_near(belief, horizon) ? PlannerKind::sarsop : PlannerKind::pomcp;
     }
     why_ = "all " + std::to_string(space_.size()) + " states can be listed";
     if (fits_exact_search(belief, budget, horizon)) {
@@ -246,15 +250,28 @@ class Planner {
   }
 
   std::string point_based_obstacle(const Belief<Model>& belief, int horizon) {
-    if (!space_.reach(belief)) return space_.obstacle();
+    if (!space_.reach(belief)) return serves_near(belief, horizon) ? "" : space_.obstacle();
     return space_.leaves_out_observations() ? space_.observations_obstacle() : point_based_.prepare(belief, horizon);
   }
+  // Whether the states near a belief can stand for all of them. The missions that tell a value make as many decisions as the
+  // horizon has, each of them with a whole horizon to go.
+  bool serves_near(const Belief<Model>& belief, int horizon) {
+    const int decisions = 2 * horizon;
+    is_near_ = near_.reach(belief, decisions) && near_search_.prepare(belief, horizon).empty();
+    if (is_near_) {
+      why_ += "; the " + std::to_string(near_.space().size()) + " states that " + std::to_string(decisions) +
+              " decisions can lead to are listed";
+    }
+    return is_near_;
+  }
+  PointBased<Model>& sarsop() { return is_near_ ? near_search_ : point_based_; }
+  const PointBased<Model>& sarsop() const { return is_near_ ? near_search_ : point_based_; }
 
   // The values if the belief is what it should be.
   std::vector<ActionEstimate> values_of_belief(const Belief<Model>& belief, std::vector<ActionEstimate> estimates, int choice) const {
     switch (used_) {
       case PlannerKind::exact: return exact_.values();
-      case PlannerKind::sarsop: return point_based_.values(std::move(estimates), choice);
+      case PlannerKind::sarsop: return sarsop().values(std::move(estimates), choice);
       default: return values_of_search(belief, std::move(estimates), choice);
     }
   }
@@ -276,12 +293,12 @@ class Planner {
   }
 
   std::string bounds_text(int horizon, double slack) const {
-    const auto [lowest, highest] = point_based_.bounds();
+    const auto [lowest, highest] = sarsop().bounds();
     const double lower = lowest - slack, upper = highest + slack;
-    const std::string scope = point_based_.is_endless() ? "without a horizon" : "with " + std::to_string(horizon) + " decisions to go";
-    if (point_based_.tells_by_cells()) {
+    const std::string scope = sarsop().is_endless() ? "without a horizon" : "with " + std::to_string(horizon) + " decisions to go";
+    if (sarsop().tells_by_cells()) {
       return scope + " the belief is worth at least " + rounded_down(lower) + ", telling numbers by " +
-             std::to_string(point_based_.cells()) + " cells";
+             std::to_string(sarsop().cells()) + " cells";
     }
     return scope + " the belief is worth between " + rounded_down(lower) + " and " + rounded_up(upper);
   }
@@ -303,6 +320,9 @@ class Planner {
   Pomcp<Model> pomcp_{space_, values_};
   ExactSearch<Model> exact_{space_};
   PointBased<Model> point_based_{space_};
+  NearStates<Model> near_;
+  PointBased<Model> near_search_{near_.space(), false};
+  bool is_near_ = false;  // whether the states near the belief stood for all of them in the last search
   BeliefTree<Model> belief_tree_{space_, values_};
   std::unique_ptr<Despot<Model>> despot_;
   GroupMissions<Model> missions_;

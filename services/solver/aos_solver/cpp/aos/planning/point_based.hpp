@@ -30,7 +30,8 @@ namespace aos {
 template <class Model>
 class PointBased {
  public:
-  explicit PointBased(const StateSpace<Model>& space) : space_(space) {}
+  // A space that ends after some decisions, as NearStates do, needs a search with a horizon.
+  explicit PointBased(const StateSpace<Model>& space, bool may_be_endless = true) : space_(space), may_be_endless_(may_be_endless) {}
 
   // Takes the model from a space that lists the belief's states. Returns why the search cannot be used, or an
   // empty text. The first decision may take long here, which no budget counts.
@@ -198,11 +199,12 @@ class PointBased {
     point_based::FlatModel model = flat_model();
     error_ = error_of(model);
     const double most_later = is_long() || is_large(model) ? much : next_to_nothing;
-    is_endless_ = Model::discount < 1 && std::pow(Model::discount, horizon_) <= most_later;
+    is_endless_ = may_be_endless_ && Model::discount < 1 && std::pow(Model::discount, horizon_) <= most_later;
     try {
       search_ = search_with(std::move(model), is_endless_ ? 0 : horizon_);
     } catch (const std::length_error&) {
       search_.reset();
+      if (!may_be_endless_) return "there are too many states for so long a horizon";
       if (Model::discount >= 1) return "there are too many states for so long a horizon without a discount";
       is_endless_ = true;
       search_ = search_with(flat_model(), 0);
@@ -259,6 +261,7 @@ class PointBased {
   }
 
   const StateSpace<Model>& space_;
+  const bool may_be_endless_;
   Numbering numbering_;                          // of the model that was taken
   std::vector<point_based::Start> starts_;  // only one unless something surprising has happened
   std::unique_ptr<point_based::OnlineSarsop> search_;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <unordered_map>
@@ -84,6 +85,27 @@ class StateSpace {
     add_states_of(belief);
     for (; decisions > 0 && !is_closed(); --decisions) list_rows_before(numbers_.size());
   }
+
+  // Lists from a belief alone what `decisions` decisions can lead to, or as many of them as the limits allow, which are
+  // `least` or more. The states behind the last of them have no outcomes and earn nothing. Returns how many decisions are
+  // listed. Throws NotEnumerable, or what model code throws.
+  int reach_near(const Belief<Model>& belief, int least, int decisions) {
+    for (;;) {
+      restart();
+      int listed = 0;
+      try {
+        add_states_of(belief);
+        for (; listed < decisions && !is_closed(); ++listed) list_rows_before(numbers_.size());
+        const bool is_whole = is_closed();
+        end_list();
+        return is_whole ? std::numeric_limits<int>::max() : listed;
+      } catch (const NotEnumerable&) {
+        if (listed < least || listed == decisions) throw;
+        decisions = listed;
+      }
+    }
+  }
+  void limit(SpaceLimits limits) { limits_ = limits; }
 
   // Begins another mission: its tries come when those of the first one came.
   void start_over() { given_up_with_ = first_given_up_with_; }
@@ -210,6 +232,14 @@ class StateSpace {
     }
     rows_.states = listed_;
     rows_.observations = skips_sensing_ ? 1 : reports_numbers_ ? reports_.reports().size() : observations_.size();
+  }
+
+  void end_list() {
+    for (; listed_ < numbers_.size(); ++listed_) {
+      rows_.rewards.resize(rows_.rewards.size() + rows_.actions);
+      rows_.outcomes.first.resize(rows_.outcomes.first.size() + rows_.actions, rows_.outcomes.elements.size());
+    }
+    rows_.states = listed_;
   }
 
   void add_row(std::uint32_t number, int action) {

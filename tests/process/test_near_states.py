@@ -1,0 +1,133 @@
+"""Models with endlessly many states, of which a decision reaches few, such as counts without an end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from models import built_bundle, built_text, engine_of
+
+from aos_solver.building.build import BuiltModel
+from aos_solver.child.answers import Plan
+from aos_solver.child.engine import Engine
+from aos_solver.child.search import Search
+from aos_solver.mission.endings import MissionLimits
+from aos_solver.mission.simulation import simulate_mission
+
+COUNT = """
+state_variable: int steps
+
+extrinsic_code:
+state_.steps = state.steps + 1;
+
+reward_code:
+if (state.steps > 1000000) __reward = -1;
+"""
+"""Nobody plays so long, but a planner cannot know."""
+
+VACUUM = {
+    "vacuum.ef": """project: vacuum
+horizon: 20
+discount: 0.98
+
+define_type: Room
+enum_members: Dock, Hall, Kitchen
+
+state_variable: Room at
+
+state_variable: int battery
+default_value: 6
+
+state_variable: bool dirt [Room]
+
+initial_belief:
+state.dirt[Hall] = AOS.Bernoulli(0.7);
+state.dirt[Kitchen] = AOS.Bernoulli(0.9);
+
+reward_code:
+if (state.at == Dock && !state.dirt[Hall] && !state.dirt[Kitchen]) { __reward = 40; __isGoalState = true; }
+
+reward_code:
+if (state.at != Dock && state.battery <= 0) { __reward = -50; __isFailureState = true; }
+""",
+    "go.sd": """project: vacuum
+parameter: Room room
+
+dynamic_model:
+state__.battery = state.battery - 1;
+if (AOS.Bernoulli(0.9)) state__.at = room;
+__moduleResponse = state__.at == room ? arrived : stuck;
+__reward = -1;
+""",
+    "clean.sd": """project: vacuum
+
+dynamic_model:
+state__.battery = state.battery - 2;
+if (AOS.Bernoulli(0.85)) state__.dirt[state.at] = false;
+__moduleResponse = cleaned;
+__reward = -2;
+""",
+    "look.sd": """project: vacuum
+
+dynamic_model:
+__moduleResponse = AOS.Bernoulli(0.9) == state.dirt[state.at] ? dirty : clean;
+__reward = -0.2;
+""",
+    "charge.sd": """project: vacuum
+
+dynamic_model:
+if (state.at == Dock) state__.battery = 6;
+__moduleResponse = charged;
+__reward = -3;
+""",
+}
+
+
+@pytest.fixture
+async def counted_tiger(bundles: Path, cache_dir: Path) -> BuiltModel:
+    files = {file.name: file.read_text() for file in sorted((bundles / "bench" / "tiger").iterdir())}
+    return await built_text(files | {"tiger.ef": files["tiger.ef"] + COUNT}, cache_dir)
+
+
+async def decide(engine: Engine, horizon: int) -> Plan:
+    plan = await engine.plan(simulations=20_000, seed=1, planner="sarsop", horizon=horizon)
+    assert plan.planner == "sarsop"
+    return plan
+
+
+async def test_a_count_that_matters_to_nothing_moves_no_bound(
+    bundles: Path, cache_dir: Path, counted_tiger: BuiltModel
+) -> None:
+    plain = await built_bundle(bundles / "bench" / "tiger", cache_dir)
+    async with engine_of(plain) as engine, engine_of(counted_tiger) as counted:
+        exact = {value.action: value.q for value in (await engine.exact(6)).actions}
+        plan = await decide(counted, 6)
+        assert "that 12 decisions can lead to are listed" in plan.why
+        for action in plan.actions:
+            assert action.at_least is not None
+            assert action.at_most is not None
+            assert action.at_least - 1e-6 <= exact[action.action] <= action.at_most + 1e-6
+        assert exact[plan.best.action] == pytest.approx(max(exact.values()))
+
+
+async def test_later_beliefs_are_served_by_lists_of_their_own(counted_tiger: BuiltModel) -> None:
+    async with engine_of(counted_tiger) as engine:
+        first = await decide(engine, 6)
+        for sound in ["tiger_left", "tiger_right"] * 15:
+            await engine.update("listen", sound)
+            plan = await decide(engine, 6)
+        assert plan.best.action == first.best.action
+        # The tiger is where it was. What is proven of one list is proven of the next one.
+        assert plan.best.at_least == pytest.approx(first.best.at_least, abs=0.2)
+
+
+async def test_a_robot_with_a_battery_without_bounds_comes_home(cache_dir: Path) -> None:
+    built = await built_text(VACUUM, cache_dir)
+    search = Search(simulations=3_000, seed=1)
+    async with engine_of(built) as engine:
+        runs = [
+            await simulate_mission(engine, search, MissionLimits(goal_probability=1.0, step_limit=40))
+            for _ in range(2)
+        ]
+    assert runs[0] == runs[1]
+    assert [run.world_ending for run in runs] == ["goal", "goal"]
